@@ -1,0 +1,10 @@
+# The two commands of the README, each the only thing to type.
+.PHONY: demo test
+
+demo: ## run the main-bearing study and print where its report is
+	@.ci/setup
+	@.venv/bin/fe-drivetrain run main_bearing/rmse
+
+test: ## run the whole test suite
+	@.ci/setup test
+	@.venv/bin/python -m pytest -q

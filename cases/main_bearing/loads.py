@@ -1,0 +1,249 @@
+"""Hub loads of the study, the user's or the surrogate's, and the charts over them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fe_drivetrain.cases.main_bearing.study import line, rounded
+
+from fe_drivetrain import compare
+from fe_drivetrain.case import Run
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.hub_loads import read_hub_loads
+from fe_drivetrain.results import Chart
+from fe_drivetrain.surrogate import Condition, hub_load_set, surrogate_grid
+
+#: Seeds of each group under --quick: the least that has a standard deviation.
+QUICK_SEEDS = 2
+
+Pairs = Mapping[str, tuple[str, Floats]]
+_PLANES = (("horizontal", "Fy", 1), ("vertical", "Fz", 2))
+
+
+@dataclass(frozen=True, eq=False)
+class HubLoads:
+    """Histories stacked for one matrix product.
+
+    Attributes
+    ----------
+    time
+        (n,) [s].
+    loads
+        (m, n, 6) [N, N m].
+    names
+        (m,) of the histories.
+    conditions
+        (m,) of a surrogate; empty for the user's own files.
+    statement
+        What the loads are, for the page.
+    assumptions
+        (name, value, unit, source) of the surrogate.
+    seed
+        None for the user's own files.
+    """
+
+    time: Floats
+    loads: Floats
+    names: tuple[str, ...]
+    conditions: tuple[Condition, ...]
+    statement: str
+    assumptions: list[tuple[str, float, str, str]]
+    seed: int | None
+
+
+def hub_loads_of(run: Run) -> HubLoads:
+    """The user's files (``--set loads=FILE``, a folder, or a pattern), or the surrogate."""
+    if "loads" in run.settings:
+        return _read(str(run.settings["loads"]))
+    from fe_drivetrain.rotor import assumptions
+
+    grid = surrogate_grid()
+    if run.quick:
+        grid = [c for c in grid if c.seed <= QUICK_SEEDS]
+    histories = hub_load_set(
+        grid, progress=lambda done, of: run.report(f"hub loads ({done} of {of})")
+    )
+    return HubLoads(
+        histories.time,
+        histories.loads,
+        tuple(c.name for c in histories.conditions),
+        histories.conditions,
+        f"Hub loads are a surrogate: {len(grid)} ten-minute histories at 20 Hz of a 2 MW, 80 m, "
+        "three-bladed rotor, quasi-steady blade elements in Kaimal turbulence, over the thesis's "
+        "grid of wind speed, turbulence and shear. They stand in for the thesis's Bladed "
+        "histories, which are not public; the same comparison on your own histories: "
+        "--set loads=FOLDER.",
+        list(assumptions()),
+        1,
+    )
+
+
+def _read(pattern: str) -> HubLoads:
+    path = Path(pattern)
+    suffixes = (".out", ".outb", ".csv")
+    if path.is_dir():
+        files = sorted(f for f in path.iterdir() if f.suffix.lower() in suffixes)
+    elif path.exists() or not any(c in pattern for c in "*?["):
+        files = [path]
+    else:
+        files = sorted(path.parent.glob(path.name))
+    if not files:
+        raise InputError(f"loads = {pattern!r}: no {', '.join(suffixes)} file is there")
+    histories = [read_hub_loads(f) for f in files]
+    first = histories[0]
+    for file, history in zip(files, histories, strict=True):
+        if len(history.time) != len(first.time):
+            raise InputError(
+                f"{file} has {len(history.time)} samples and {files[0]} has {len(first.time)}: "
+                "cut the histories to one length"
+            )
+    return HubLoads(
+        np.asarray(first.time),
+        np.stack([history.loads for history in histories]),
+        tuple(history.name for history in histories),
+        (),
+        f"Hub loads: {len(files)} file{'s' if len(files) > 1 else ''} of your own, "
+        f"{len(first.time):,} samples each.",
+        [],
+        None,
+    )
+
+
+def rmse_charts(
+    conditions: Sequence[Condition], fe: Mapping[str, Floats], pairs: Pairs
+) -> list[Chart]:
+    """RMSE per plane against mean wind speed: mean and standard deviation of each seed group."""
+    charts = []
+    groups = [(c.wind_speed, c.turbulence, c.shear) for c in conditions]
+    for label, (kind, model) in pairs.items():
+        for plane, quantity, component in _PLANES:
+            rmse = compare.rmse(fe[kind][..., component], model[..., component]) / 1e3
+            statistics = compare.by_group(rmse, groups)
+            traces = []
+            found: list[Any] = list(statistics.groups)
+            order = ("low", "medium", "high")
+            series = sorted({g[1:] for g in found}, key=lambda s: (s[1], order.index(s[0])))
+            for k, (turbulence, shear) in enumerate(series):
+                rows = [i for i, g in enumerate(found) if g[1:] == (turbulence, shear)]
+                # Staggered about the mean wind speed, as in the thesis, for clarity.
+                wind = [found[i][0] + 0.25 * (k - (len(series) - 1) / 2) for i in rows]
+                traces.append(
+                    line(
+                        wind,
+                        statistics.mean[rows],
+                        f"{turbulence} turbulence, shear {shear:g}",
+                        mode="markers",
+                        marker={"symbol": "circle" if shear < 0.4 else "diamond", "size": 8},
+                        error_y={"type": "data", "array": rounded(statistics.std[rows])},
+                    )
+                )
+            charts.append(
+                Chart(
+                    caption=f"RMSE, {label}, {plane} plane ({quantity}): mean and standard "
+                    "deviation over the seeds of each group, staggered about the mean wind speed",
+                    figure={
+                        "data": traces,
+                        "layout": {
+                            "xaxis": {
+                                "title": {"text": "mean wind speed [m/s]"},
+                                "tickvals": sorted({g[0] for g in groups}),
+                            },
+                            "yaxis": {
+                                "title": {"text": f"RMSE of {quantity} [kN]"},
+                                "rangemode": "tozero",
+                            },
+                        },
+                    },
+                )
+            )
+    return charts
+
+
+def series_charts(
+    hub: HubLoads, fe: Mapping[str, Floats], pairs: Pairs, seconds: float = 60.0
+) -> list[Chart]:
+    """A minute of one history, FE and beams, per plane."""
+    chosen = len(hub.names) // 2
+    shown = hub.time - hub.time[0] <= seconds
+    charts = []
+    for plane, quantity, component in _PLANES:
+        for kind in ("spherical", "bonded"):
+            traces = [
+                line(
+                    hub.time[shown],
+                    fe[kind][chosen, shown, component] / 1e3,
+                    f"{kind} FE",
+                    mode="lines",
+                    line={"width": 3},
+                )
+            ]
+            traces += [
+                line(
+                    hub.time[shown],
+                    model[chosen, shown, component] / 1e3,
+                    label.partition(" against")[0],
+                    mode="lines",
+                    line={"dash": dash},
+                )
+                for (label, (of, model)), dash in zip(
+                    pairs.items(), ("dash", "dash", "dot", "dashdot"), strict=True
+                )
+                if of == kind
+            ]
+            charts.append(
+                Chart(
+                    caption=f"Load on the {kind} main bearing, {plane} plane ({quantity}): first "
+                    f"minute of {hub.names[chosen]}",
+                    figure={
+                        "data": traces,
+                        "layout": {
+                            "xaxis": {"title": {"text": "time [s]"}},
+                            "yaxis": {"title": {"text": f"{quantity} [kN]"}},
+                        },
+                    },
+                )
+            )
+    return charts
+
+
+def scatter_charts(
+    fe: Mapping[str, Floats], pairs: Pairs, points: int = 1500, seed: int = 0
+) -> list[Chart]:
+    """FE against beam for each quantity of the bonded bearing, on a random choice of samples."""
+    reference = fe["bonded"].reshape(-1, 6)
+    generator = np.random.default_rng(seed)
+    chosen = generator.choice(len(reference), min(points, len(reference)), replace=False)
+    charts = []
+    for quantity, component in (("Fy", 1), ("Fz", 2), ("My", 4), ("Mz", 5)):
+        x = reference[chosen, component] / 1e3
+        unit = "kN" if component < 3 else "kN m"
+        ends = np.array([x.min(), x.max()])
+        traces = [line(ends, ends, "equal", mode="lines", line={"color": "#888888", "width": 1})]
+        traces += [
+            line(
+                x,
+                model.reshape(-1, 6)[chosen, component] / 1e3,
+                label.partition(" against")[0],
+                mode="markers",
+                marker={"size": 4, "opacity": 0.6},
+            )
+            for label, (kind, model) in pairs.items()
+            if kind == "bonded"
+        ]
+        charts.append(
+            Chart(
+                caption=f"{quantity} on the bonded main bearing, beams against FE: "
+                f"{len(chosen):,} of {len(reference):,} samples, chosen at random",
+                figure={
+                    "data": traces,
+                    "layout": {
+                        "xaxis": {"title": {"text": f"{quantity}, FE [{unit}]"}},
+                        "yaxis": {"title": {"text": f"{quantity}, beam [{unit}]"}},
+                    },
+                },
+            )
+        )
+    return charts

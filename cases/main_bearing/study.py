@@ -1,0 +1,371 @@
+"""What the main-bearing cases share: their scene, its solution, and how both are shown."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.case import Run
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.mesh import MeshQuality, quality, write
+from fe_drivetrain.model import COMPONENTS, LOADS, Model, build_model, mesh_scene
+from fe_drivetrain.response import Response, unit_load_response
+from fe_drivetrain.results import (
+    AssumptionRow,
+    Image,
+    Section,
+    Table,
+    Text,
+    Verdict,
+    judge,
+)
+from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
+from fe_drivetrain.stiffness import (
+    PLANES,
+    bearing_unit_stiffness,
+    tilt_stiffness,
+    without_gearbox,
+)
+
+SOURCE = "Stirling 2023, PhD thesis, chapter 3 (sections 3.1 to 3.3, Table 3.1)"
+
+#: Keys of --set that are the case's own; every other key changes the scene.
+OWN_KEYS = ("scene", "loads", "solver")
+
+ESTIMATORS = ("four nodes", "averaged seat", "energy")
+
+#: Coarsening of the mesh under --quick.
+QUICK = 1.5
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A scene with its model and its response to unit loads."""
+
+    scene: Scene
+    model: Model
+    response: Response
+    quality: MeshQuality
+
+    @property
+    def bearing(self) -> str:
+        """Name of the main bearing."""
+        return self.scene.bearing_units[0].bearing.name
+
+
+def scene_of(run: Run, kind: str) -> Scene:
+    """The library's scene, or the user's own, with the user's changes.
+
+    Parameters
+    ----------
+    kind
+        "spherical" or "bonded". A user's scene is made to have that interface.
+
+    Raises
+    ------
+    InputError
+        The scene has not exactly one bearing unit, as the closed forms need.
+    """
+    changes = {key: value for key, value in run.settings.items() if key not in OWN_KEYS}
+    if "scene" in run.settings:
+        scene = read_scene(str(run.settings["scene"]), changes)
+    else:
+        scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
+    if len(scene.bearing_units) != 1:
+        raise InputError(
+            f"scene {scene.title!r} has {len(scene.bearing_units)} bearing units: the "
+            "main-bearing cases compare with closed forms for one; give a scene with one"
+        )
+    if "scene" in run.settings:
+        scene = with_kind(scene, kind)
+    if run.quick:
+        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(QUICK)})
+    return scene
+
+
+def with_kind(scene: Scene, kind: str) -> Scene:
+    """The scene with its bearing spherical (sliding joint) or bonded (plain ring)."""
+    unit = scene.bearing_units[0]
+    if kind == "spherical" and unit.interface == "bonded":
+        changes = {"bearing.kind": "spherical", "interface": "sliding"}
+    elif kind == "bonded" and unit.interface != "bonded":
+        changes = {"bearing.kind": "ring", "interface": "bonded"}
+    else:
+        return scene
+    return change_scene(scene, {f"bearing_units.0.{k}": v for k, v in changes.items()})
+
+
+def with_interface(scene: Scene, interface: str) -> Scene:
+    """The scene with another form of the spherical joint."""
+    return change_scene(scene, {"bearing_units.0.interface": interface})
+
+
+def solver(run: Run) -> Any:
+    """The user's choice of solver."""
+    method = run.settings.get("solver", "auto")
+    if method not in ("auto", "superlu", "pardiso"):
+        raise InputError(f"solver = {method!r}: use one of auto, superlu, pardiso")
+    return method
+
+
+def solve_scene(run: Run, scene: Scene, label: str) -> Solved:
+    """Mesh, assemble and solve a scene, timing each step."""
+    with run.step(f"mesh ({label})"):
+        mesh = mesh_scene(scene)
+        mesh_quality = quality(mesh)
+    with run.step(f"assembly ({label})"):
+        model = build_model(scene, mesh)
+    with run.step(f"solve 10 unit loads ({label})"):
+        response = unit_load_response(model, solver(run))
+    return Solved(scene, model, response, mesh_quality)
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """Stiffness of a bonded bearing unit, measured with the gearbox springs removed.
+
+    Attributes
+    ----------
+    by_plane
+        K_R [N m/rad] by plane ("vertical", "horizontal") and estimator.
+    matrix
+        (6, 6) condensed stiffness at the bearing's centre.
+    free
+        The solution without gearbox springs.
+    """
+
+    by_plane: dict[str, dict[str, float]]
+    matrix: Floats
+    free: Solved
+
+    def both(self, estimator: str) -> tuple[float, float]:
+        """K_R of the vertical and of the horizontal plane."""
+        return self.by_plane["vertical"][estimator], self.by_plane["horizontal"][estimator]
+
+
+def solve_tilt(run: Run, solved: Solved) -> Tilt:
+    """K_R of a bonded bearing unit, as the thesis measures it: gearbox springs removed."""
+    with run.step("solve without gearbox springs (K_R)"):
+        model = build_model(without_gearbox(solved.scene), solved.model.mesh)
+        response = unit_load_response(model, solver(run))
+    free = Solved(model.scene, model, response, solved.quality)
+    by_plane = {
+        plane.name: tilt_stiffness(model, response, solved.bearing, plane) for plane in PLANES
+    }
+    return Tilt(by_plane, bearing_unit_stiffness(response, solved.bearing), free)
+
+
+def tilt_table(tilt: Tilt) -> Table:
+    """K_R by plane and estimator beside the thesis's."""
+    published = {"vertical": 145.0, "horizontal": 392.0}
+    rows: list[list[Any]] = []
+    for plane, values in tilt.by_plane.items():
+        k = [v / 1e6 for v in values.values()]
+        spread = 100.0 * (max(k) - min(k)) / float(np.median(k))
+        rows.append([plane, *k, spread, published[plane]])
+    return Table(
+        caption="K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed. The "
+        "thesis's figures belong to its own housing, whose dimensions it does not give",
+        columns=["plane", *ESTIMATORS, "spread [%]", "Stirling 2023"],
+        rows=rows,
+    )
+
+
+def matrix_table(caption: str, matrix: Floats) -> Table:
+    """A 6x6 stiffness."""
+    names = ("ux", "uy", "uz", "rx", "ry", "rz")
+    size = np.sqrt(np.outer(matrix.diagonal(), matrix.diagonal()))
+    shown = np.where(np.abs(matrix) < 1e-3 * size, 0.0, matrix)
+    return Table(
+        caption=caption + " [N/m, N, N m/rad]; terms below 0.1 % of their diagonals shown as 0",
+        columns=["", *names],
+        rows=[[names[i], *(float(v) for v in shown[i])] for i in range(6)],
+    )
+
+
+def check_verdicts(solved: Solved, label: str) -> list[Verdict]:
+    """The two independent checks that every solution carries."""
+    source = "exact"
+    return [
+        judge(
+            f"{label}: total equilibrium, applied less reacted",
+            solved.response.equilibrium_error,
+            0.0,
+            tolerance=1e-8,
+            relative=False,
+            source=source,
+            reason="reactions come from the residual on constrained freedoms: solver accuracy",
+        ),
+        judge(
+            f"{label}: random load, solved directly against superposed",
+            solved.response.superposition_error,
+            0.0,
+            tolerance=1e-8,
+            relative=False,
+            source=source,
+            reason="the scene is linear: solver accuracy",
+        ),
+    ]
+
+
+def mesh_table(solutions: dict[str, Solved]) -> Table:
+    """Mesh, solver and diagnostics of each solution."""
+    rows: list[list[Any]] = []
+    for label, s in solutions.items():
+        mesh = s.model.mesh
+        rows.append(
+            [
+                label,
+                len(mesh.cells),
+                len(mesh.points),
+                s.response.n_unknowns,
+                s.quality.minimum_scaled_jacobian,
+                s.response.method,
+                s.response.seconds,
+                s.response.residual,
+                s.response.equilibrium_error,
+                s.response.superposition_error,
+            ]
+        )
+    return Table(
+        caption="Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve",
+        columns=[
+            "model",
+            "elements",
+            "nodes",
+            "unknowns",
+            "minimum scaled Jacobian",
+            "solver",
+            "factor and solve [s]",
+            "relative residual",
+            "equilibrium error",
+            "superposition error",
+        ],
+        rows=rows,
+    )
+
+
+def reaction_table(caption: str, reaction: Floats) -> Table:
+    """A (6, 10) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
+    size = np.abs(reaction).max(axis=0)
+    shown = np.where(np.abs(reaction) < 1e-4 * size, 0.0, reaction)
+    return Table(
+        caption=caption + ". Entries below 0.01 % of the largest of their column are shown as 0",
+        columns=["reaction", *(f"{c} [per {_unit(c)}]" for c in LOADS)],
+        rows=[
+            [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *(float(v) for v in shown[i])]
+            for i, c in enumerate(COMPONENTS)
+        ],
+    )
+
+
+def _unit(load: str) -> str:
+    if load.startswith("gravity"):
+        return "m/s²"
+    return "N m" if load.startswith("hub.M") else "N"
+
+
+def picture_section(run: Run, solved: Solved, loads: Floats, what: str) -> Section:
+    """Pictures of the model and of its deformed shape; says why where there is none.
+
+    Parameters
+    ----------
+    loads
+        (10,) load factors of the deformed shape.
+    what
+        The loads in words.
+    """
+    from fe_drivetrain import pictures
+
+    items: list[Any] = []
+    with run.step("pictures"):
+        try:
+            pictures.picture_of_model(solved.model, run.folder / "model.png")
+            factor = pictures.picture_of_deformation(
+                solved.model, solved.response, loads, run.folder / "deformed.png"
+            )
+        except pictures.NoPictureError as reason:
+            items.append(Text(text=f"No picture: {reason}"))
+        else:
+            items += [
+                Image(
+                    caption=f"{solved.scene.title}: parts, loads and supports",
+                    file="model.png",
+                ),
+                Image(
+                    caption=f"Deformed {factor:,.0f} times too large, under {what}",
+                    file="deformed.png",
+                ),
+            ]
+    return Section(title="Model", items=items)
+
+
+def write_mesh_files(run: Run, solved: Solved, name: str) -> None:
+    """The mesh for ParaView (.vtu) and gmsh (.msh), with unit-load displacements."""
+    fields = {
+        f"displacement {load}": solved.response.displacements[:, :, k]
+        for k, load in enumerate(LOADS)
+    }
+    with run.step("mesh files"):
+        write(solved.model.mesh, run.folder / f"{name}.vtu", fields)
+        write(solved.model.mesh, run.folder / f"{name}.msh")
+
+
+def assumptions(scene: Scene) -> list[AssumptionRow]:
+    """Everything that the thesis does not give."""
+    rows: list[tuple[Any, ...]] = [
+        ("material of the shaft", scene.shaft.material, "", "assumed: the thesis gives no E or nu"),
+        (
+            "gearbox torque reaction",
+            "rigid about x" if scene.gearbox.stiffness[3] == "rigid" else "spring about x",
+            "",
+            "assumed: a spherical joint lets the shaft spin, so the gearbox must react torque; "
+            "the thesis's gearbox has three translational springs only",
+        ),
+        (
+            "gearbox and hub coupling",
+            f"{scene.gearbox.coupling}, {scene.hub.coupling}",
+            "",
+            "loads and springs act on the mean motion of the shaft's end faces (RBE3) unless the "
+            "scene says rigid",
+        ),
+        ("bedplate", "rigid", "", "as in the thesis: the housing's base is fixed"),
+        ("clearance, friction, damping", "none", "", "as in the thesis: quasi-static, linear"),
+    ]
+    for unit in scene.bearing_units:
+        for part in (unit.bearing, unit.housing):
+            rows += [tuple(row) for row in part.assumptions()]
+    for name in _parts(scene):
+        material = scene.material_of(name)
+        rows.append(
+            (
+                f"{name}: E, nu, density",
+                f"{material.youngs_modulus / 1e9:g} GPa, {material.poisson_ratio:g}, "
+                f"{material.density:g} kg/m³",
+                "",
+                "assumed: the thesis names no material",
+            )
+        )
+    return [AssumptionRow(name=n, value=v, unit=u, source=s) for n, v, u, s in rows]
+
+
+def _parts(scene: Scene) -> list[str]:
+    names = [unit.bearing.name for unit in scene.bearing_units]
+    return ["shaft", *names, *(f"{name}.housing" for name in names)]
+
+
+def line(x: Any, y: Any, name: str, **more: Any) -> dict[str, Any]:
+    """One trace of a Plotly figure, numbers rounded to what a chart can show."""
+    return {
+        "type": "scatter",
+        "name": name,
+        "x": rounded(x),
+        "y": rounded(y),
+        **more,
+    }
+
+
+def rounded(values: Any, digits: int = 6) -> list[float]:
+    """Plain floats of so many significant digits: keeps results.json and pages small."""
+    return [float(f"{v:.{digits}g}") for v in np.asarray(values, dtype=float)]

@@ -1,0 +1,405 @@
+"""The command line: list the cases, run one, and say what came out.
+
+Exit status: 0 when every check passes, 1 when one fails, 2 for what the user can mend, 130 when
+stopped with Ctrl-C. Nothing heavy is imported before a case is looked for, so help is quick.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
+
+import typer
+
+from fe_drivetrain.errors import InputError
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from fe_drivetrain.case import Case
+    from fe_drivetrain.results import Results, Verdict
+
+PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
+
+# what a user can mend about a folder or a disk; any other OSError is ours
+_USERS_ERRORS = {
+    errno.EACCES,
+    errno.EDQUOT,
+    errno.ENAMETOOLONG,
+    errno.ENOSPC,
+    errno.ENOTDIR,
+    errno.EPERM,
+    errno.EROFS,
+}
+
+_SUMMARY_SENTENCES = 3
+
+_app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+_OutOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        help="Result folder: new, empty, or with results of an earlier run, which it replaces. "
+        "Left out, reports/GROUP/NAME below the current folder.",
+    ),
+]
+_SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a setting of the case; the value is a YAML number, word or list, as in "
+        "--set gearbox.weight=4e5. May be given several times.",
+    ),
+]
+_QuickOption = Annotated[
+    bool, typer.Option("--quick", help="Coarser and smaller, for a first look.")
+]
+
+
+def main() -> None:
+    """Entry point of ``fe-drivetrain``."""
+    _forgive_narrow_encodings()
+    _app(prog_name="fe-drivetrain")
+
+
+def main_of_case(case: Case) -> None:
+    """Entry point of a case's own script, with the options of ``fe-drivetrain run``."""
+    app = typer.Typer(
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+
+    @app.command(help=f"{case.title}\n\nSource: {case.source}")
+    def run(out: _OutOption = None, set_: _SetOption = None, quick: _QuickOption = False) -> None:
+        raise typer.Exit(_run(lambda: case, out, set_ or (), quick))
+
+    _forgive_narrow_encodings()
+    app()
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        _write(sys.stdout, f"fe-drivetrain {version('fe-drivetrain')}\n")
+        raise typer.Exit
+
+
+@_app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_show_version, is_eager=True, help="Show the version and exit."
+        ),
+    ] = False,
+) -> None:
+    """Finite-element validation cases for wind-turbine drivetrains."""
+
+
+@_app.command("list")
+def _list() -> None:
+    """List the validation cases."""
+    from itertools import groupby
+
+    lines: list[str] = []
+
+    def collect() -> int:
+        from fe_drivetrain.case import all_cases
+
+        cases = all_cases()
+        width = max((len(name) for name in cases), default=0)
+        for group, names in groupby(cases, lambda name: name.partition("/")[0]):
+            lines.extend(["", group] if lines else [group])
+            lines.extend(f"  {name:<{width}}  {cases[name].title}" for name in names)
+        return PASSED
+
+    status = _guarded(collect)
+    _write(sys.stdout, "".join(f"{line}\n" for line in lines))
+    raise typer.Exit(status)
+
+
+@_app.command("run")
+def _run_named(
+    case: Annotated[
+        str, typer.Argument(metavar="CASE", help="GROUP/NAME, or NAME where it is unique.")
+    ],
+    out: _OutOption = None,
+    set_: _SetOption = None,
+    quick: _QuickOption = False,
+) -> None:
+    """Run a validation case and write its report.
+
+    The exit status is 0 when every check passes, 1 when one fails, 2 for a wrong option or
+    setting, and 130 when stopped.
+    """
+
+    def found() -> Case:
+        from fe_drivetrain.case import find_case
+
+        return find_case(case)
+
+    raise typer.Exit(_run(found, out, set_ or (), quick))
+
+
+def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
+    """The values of ``--set KEY=VALUE``, parsed as YAML scalars and lists.
+
+    A number is what YAML 1.2 says it is: 1e6 is one, 12:30 and 2026-01-31 are words.
+
+    Raises
+    ------
+    InputError
+        There is no "=", no key, or no such value.
+    """
+    import yaml
+
+    loader = _loader()
+    settings = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        key = key.strip()
+        if not equals or not key:
+            raise InputError(
+                f"--set {text!r} must be KEY=VALUE: write it as in --set gearbox.weight=4e5"
+            )
+        try:
+            parsed = yaml.load(value, Loader=loader)
+            plain = _is_plain(parsed)
+        except (yaml.YAMLError, ValueError, RecursionError) as error:
+            reason = " ".join(str(getattr(error, "problem", None) or error).split())
+            raise InputError(
+                f"--set {key}: value {value!r} is no YAML ({reason}): put text in quotes"
+            ) from error
+        if not plain:
+            raise InputError(
+                f"--set {key}: value {value!r} must be a number, a word or a list of them: set "
+                "the keys below it one by one, as in --set shaft.material=steel"
+            )
+        settings[key] = parsed
+    return settings
+
+
+def _loader() -> Any:
+    """PyYAML's safe loader with the numbers of YAML 1.2."""
+    import yaml
+
+    class Loader(yaml.SafeLoader):
+        pass
+
+    numbers = {f"tag:yaml.org,2002:{kind}" for kind in ("float", "int", "timestamp")}
+    Loader.yaml_implicit_resolvers = {
+        first: [(tag, pattern) for tag, pattern in resolvers if tag not in numbers]
+        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+    whole = re.compile(r"[-+]?(0|[1-9][0-9]*)$")
+    real = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$")
+    first = list("-+.0123456789")
+    Loader.add_implicit_resolver("tag:yaml.org,2002:int", whole, first)
+    Loader.add_implicit_resolver("tag:yaml.org,2002:float", real, first)
+    return Loader
+
+
+def _is_plain(value: object) -> bool:
+    if isinstance(value, list):
+        return all(map(_is_plain, value))
+    return value is None or isinstance(value, str | int | float | bool)
+
+
+def _run(find: Callable[[], Case], out: Path | None, settings: Sequence[str], quick: bool) -> int:
+    """Run a case; the exit status."""
+
+    def work() -> int:
+        parsed = parse_settings(settings)
+        case = find()
+        from fe_drivetrain.case import run_case
+
+        folder = Path("reports", *case.name.split("/")) if out is None else out
+        with _progress() as report:
+            # a link, or ".", stands for the folder that it leads to
+            results = run_case(case, folder.resolve(), parsed, quick, report)
+        _write(sys.stdout, _outcome(results, folder / "report.html"))
+        return PASSED if results.passed else FAILED
+
+    with _stopped_by_terminate():
+        return _guarded(work)
+
+
+def _guarded(work: Callable[[], int]) -> int:
+    """Do the work; a user's mistake becomes one sentence and its exit status."""
+    try:
+        return work()
+    except InputError as error:
+        message, status = str(error), MISTAKE
+    except KeyboardInterrupt:
+        message, status = "stopped; results of an earlier run are as they were", STOPPED
+    except OSError as error:
+        sentence = _sentence(error)
+        if sentence is None:
+            raise
+        message, status = sentence, MISTAKE
+    except RuntimeError as error:
+        # what Path.resolve raises before Python 3.13
+        if "Symlink loop" not in str(error):
+            raise
+        message, status = f"cannot write: {error}: give another folder with --out", MISTAKE
+    _write(sys.stderr, f"fe-drivetrain: {message}\n")
+    return status
+
+
+def _sentence(error: OSError) -> str | None:
+    """What to tell the user, where the user can mend it."""
+    if "cannot open shared object file" in str(error):
+        return (
+            f"a system library is missing ({error}): install it, on Debian and Ubuntu with the "
+            "packages libglu1-mesa, libxcursor1, libxft2, libxinerama1 and libxrender1"
+        )
+    if error.errno in _USERS_ERRORS:
+        where = f" {error.filename}" if error.filename else ""
+        return f"cannot write{where}: {error.strerror}: give a writable folder with --out"
+    return None
+
+
+def _outcome(results: Results, page: Path) -> str:
+    """What the user sees at the end: each check, the first sentences, and where to read on."""
+    lines = [_line(verdict) for verdict in results.verdicts]
+    passed = sum(verdict.passed for verdict in results.verdicts)
+    lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
+    lines += [f"{passed} of {len(results.verdicts)} checks pass: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _line(verdict: Verdict) -> str:
+    unit = f" {verdict.unit}" if verdict.unit not in ("", "-") else ""
+    allowed = f"{100 * verdict.tolerance:.3g} %" if verdict.relative else f"{verdict.tolerance:.3g}"
+    return (
+        f"{'pass' if verdict.passed else 'FAIL'}  {verdict.quantity}: "
+        f"computed {verdict.computed:.5g}{unit}, reference {verdict.reference:.5g}{unit}, "
+        f"tolerance {allowed}{'' if verdict.relative else unit}"
+    )
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str], None]]:
+    """Show steps as they begin: a live line on a terminal, plain lines elsewhere."""
+    shown = _live_steps() if sys.stderr.isatty() else _plain_steps()
+    with shown as report:
+        yield report
+
+
+def _without_count(step: str) -> str:
+    """The name of a step that says how far it is, as in "hub loads (12 of 144)"."""
+    return re.sub(r" \(\d+ of \d+\)$", "", step)
+
+
+@contextmanager
+def _live_steps() -> Iterator[Callable[[str], None]]:
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True, highlight=False)
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}", markup=False),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as display:
+
+        def finish() -> None:
+            for task in display.tasks:
+                line = f"{_without_count(task.description)} ... {task.elapsed or 0.0:.1f} s"
+                console.print(line, markup=False, soft_wrap=True)
+                display.remove_task(task.id)
+
+        def report(step: str) -> None:
+            for task in display.tasks:
+                if _without_count(step) == _without_count(task.description):
+                    display.update(task.id, description=step)
+                    return
+            finish()
+            display.add_task(step, total=None)
+
+        yield report
+        finish()
+
+
+@contextmanager
+def _plain_steps() -> Iterator[Callable[[str], None]]:
+    began: float | None = None
+    current = ""
+
+    def finish() -> None:
+        if began is not None:
+            _write(sys.stderr, f"{time.perf_counter() - began:.1f} s\n")
+
+    def report(step: str) -> None:
+        nonlocal began, current
+        name = _without_count(step)
+        if began is not None and name == current:
+            return
+        finish()
+        began, current = time.perf_counter(), name
+        _write(sys.stderr, f"{name} ... ")
+
+    try:
+        yield report
+    except BaseException:
+        if began is not None:
+            _write(sys.stderr, "not finished\n")
+        raise
+    finish()
+
+
+@contextmanager
+def _stopped_by_terminate() -> Iterator[None]:
+    """Let a terminate signal unwind like Ctrl-C, so that nothing half-written is left."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise SystemExit(TERMINATED)
+
+    try:
+        before = signal.signal(signal.SIGTERM, stop)
+    except ValueError:  # not in the main thread: signals are someone else's there
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _write(stream: TextIO, text: str) -> None:
+    """Write and flush; a reader that has gone away (as in ``| head``) is no error."""
+    try:
+        stream.write(text)
+        stream.flush()
+    except BrokenPipeError:
+        # so that nothing more is written there, at exit either
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+
+
+def _forgive_narrow_encodings() -> None:
+    """Print what a terminal cannot show as "?" instead of failing at the end of a long run."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors="replace")

@@ -1,0 +1,37 @@
+"""Linear elastic, isotropic materials."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Material(BaseModel):
+    """A linear elastic, isotropic material."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    youngs_modulus: Annotated[float, Field(gt=0, allow_inf_nan=False, description="E [Pa]")]
+    poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, description="nu [-]")]
+    density: Annotated[float, Field(ge=0, allow_inf_nan=False, description="rho [kg/m^3]")]
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lame's constants (lambda, mu) [Pa]."""
+        nu = self.poisson_ratio
+        return (
+            self.youngs_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            self.shear_modulus,
+        )
+
+
+#: The materials that a scene can name without defining them. Ductile iron: EN-GJS-400-15,
+#: EN 1563:2018, Annex (informative) on physical properties.
+MATERIALS: dict[str, Material] = {
+    "steel": Material(youngs_modulus=200e9, poisson_ratio=0.3, density=7850.0),
+    "ductile_iron": Material(youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0),
+}

@@ -1,0 +1,224 @@
+"""Responses to unit loads: solved once, then any load history is one matrix product."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.elasticity import Floats, Ints
+from fe_drivetrain.interfaces import eliminate, freedoms
+from fe_drivetrain.model import LOADS, Model
+from fe_drivetrain.solvers import Method, solve
+
+#: Standard gravity [m/s^2] (CGPM 1901).
+GRAVITY = 9.80665
+
+
+@dataclass(frozen=True)
+class Response:
+    """What the unit loads of `model.LOADS` do, one load a column.
+
+    Six components are Fx, Fy, Fz [N], Mx, My, Mz [N m], or displacements [m] and rotations [rad].
+
+    Attributes
+    ----------
+    reactions
+        (6, 10) by name: what the drivetrain puts on its surroundings or on the next part.
+        "NAME" (housing base, moments about the bearing's centre) for each bearing, "gearbox"
+        (springs and torque reaction), and the interfaces "NAME.seat" (shaft on bearing) and
+        "NAME.outer" (bearing on housing).
+    positions
+        (3,) by the same names: the point that the moments are about [m].
+    motions
+        (6, 10) by reference point: "hub", "gearbox", "NAME.seat".
+    strain_energy
+        (10, 10) by part: U = w^T E w / 2 for the load factors w [J].
+    displacements
+        (n_nodes, 3, 10) [m].
+    equilibrium_error
+        Largest imbalance of loads and reactions over all unit loads, relative to the load.
+    superposition_error
+        Difference between the reactions to a random load, solved directly, and the superposed
+        ones, relative to the largest reaction.
+    residual, method, seconds, n_unknowns
+        Diagnostics of the solve.
+    """
+
+    reactions: Mapping[str, Floats]
+    positions: Mapping[str, Floats]
+    motions: Mapping[str, Floats]
+    strain_energy: Mapping[str, Floats]
+    displacements: Floats
+    equilibrium_error: float
+    superposition_error: float
+    residual: float
+    method: str
+    seconds: float
+    n_unknowns: int
+
+    def history(
+        self,
+        name: str,
+        hub_loads: Floats,
+        gearbox_weight: float = 0.0,
+        gravity: float = 0.0,
+    ) -> Floats:
+        """One reaction over any number of load steps.
+
+        Parameters
+        ----------
+        name
+            A key of ``reactions``.
+        hub_loads
+            (..., 6) hub forces [N] and moments [N m].
+        gearbox_weight
+            [N], along -z.
+        gravity
+            Acceleration along -z that gives all parts their self-weight [m/s^2].
+
+        Returns
+        -------
+        reaction
+            (..., 6) [N, N m].
+        """
+        R = self.reactions[name]
+        constant = gearbox_weight * R[:, 9] - gravity * R[:, 8]
+        result = hub_loads @ R[:, :6].T
+        result += constant
+        return np.asarray(result)
+
+
+def unit_load_response(model: Model, method: Method = "auto", seed: int = 0) -> Response:
+    """Solve a model for all unit loads, and check the result twice.
+
+    Parameters
+    ----------
+    model
+        The model.
+    method
+        Solver, see `solvers.solve`.
+    seed
+        Of the random load vector of the superposition check.
+    """
+    loads = model.unit_loads()
+    n_loads = len(LOADS)
+    # Loads of very different size (1 N, 1 N m, a tonne under 1 m/s^2) count alike in the check.
+    factors = np.random.default_rng(seed).uniform(-1.0, 1.0, n_loads)
+    factors /= np.linalg.norm(loads, axis=0)
+    cases = np.column_stack([np.eye(n_loads), factors])
+    F = loads @ cases
+
+    K = model.stiffness
+    elimination = eliminate(model.constraints, model.n_freedoms)
+    T = elimination.T
+    solution = solve((T.T @ K @ T).tocsr(), T.T @ F, method)
+    U = T @ solution.x
+    reactions = _reactions(model, elimination.multipliers(K @ U - F), U, cases)
+
+    direct = np.concatenate([r[:, -1] for r in reactions.values()])
+    superposed = np.concatenate([r[:, :-1] @ factors for r in reactions.values()])
+    reactions = {name: r[:, :-1] for name, r in reactions.items()}
+    positions = {
+        name: model.points[
+            "gearbox" if name == "gearbox" else f"{name.split('.')[0]}.seat"
+        ].position
+        for name in reactions
+    }
+    U = U[:, :-1]
+    n = len(model.mesh.points)
+    return Response(
+        reactions=reactions,
+        positions=positions,
+        motions={name: point.motion @ U for name, point in model.points.items()},
+        strain_energy={part: U.T @ (k @ U) for part, k in model.part_stiffness.items()},
+        displacements=U[: 3 * n].reshape(n, 3, n_loads),
+        equilibrium_error=_equilibrium_error(model, reactions, positions),
+        superposition_error=float(np.abs(direct - superposed).max() / np.abs(direct).max()),
+        residual=solution.residual,
+        method=solution.method,
+        seconds=solution.seconds,
+        n_unknowns=T.shape[1],
+    )
+
+
+def resultant(points: Floats, nodes: Ints, forces: Floats, centre: Floats) -> Floats:
+    """Force and moment about a point of nodal forces.
+
+    Parameters
+    ----------
+    points
+        (n_nodes, 3) [m].
+    nodes
+        (n,) the nodes to sum over.
+    forces
+        (n_freedoms, n_loads) nodal forces [N].
+    centre
+        (3,) [m].
+
+    Returns
+    -------
+    resultant
+        (6, n_loads) [N, N m].
+    """
+    f = forces[freedoms(nodes)]
+    r = points[nodes] - centre
+    moment = np.cross(r[:, :, None], f, axis=1).sum(axis=0)
+    return np.vstack([f.sum(axis=0), moment])
+
+
+def _reactions(
+    model: Model, multipliers: Mapping[str, Floats], U: Floats, cases: Floats
+) -> dict[str, Floats]:
+    """Reactions from the residual on constrained freedoms; never from stresses."""
+    mesh = model.mesh
+    reactions: dict[str, Floats] = {}
+    for unit in model.scene.bearing_units:
+        name = unit.bearing.name
+        centre = model.points[f"{name}.seat"].position
+        base = mesh.face_nodes(f"{name}.housing.base")
+        forces = np.zeros_like(U)
+        forces[freedoms(base).ravel()] = multipliers[f"{name}.housing.base"]
+        reactions[name] = -resultant(mesh.points, base, forces, centre)
+        for key, part, face in (
+            (f"{name}.seat", name, f"shaft.seat.{name}"),
+            (f"{name}.outer", f"{name}.housing", f"{name}.housing.bore"),
+        ):
+            # What a part's neighbour puts on it: its internal forces less the loads inside it.
+            forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
+            reactions[key] = resultant(mesh.points, mesh.face_nodes(face), forces, centre)
+    total = np.zeros((6, U.shape[1]))
+    for point, k in model.springs:
+        total += k @ (point.motion @ U)
+    if "gearbox reaction" in multipliers:
+        total[model.held_gearbox] -= multipliers["gearbox reaction"]
+    reactions["gearbox"] = total
+    return reactions
+
+
+def _equilibrium_error(
+    model: Model, reactions: Mapping[str, Floats], positions: Mapping[str, Floats]
+) -> float:
+    """Largest component of (applied - reacted) about the origin, relative to each load's size."""
+    mesh = model.mesh
+    applied = np.zeros((6, len(LOADS)))
+    applied[:, :6] = _about_origin(np.eye(6), model.points["hub"].position)
+    mass = model.mass
+    first_moment = mass @ mesh.points
+    for axis in range(3):
+        e = np.eye(3)[axis]
+        applied[:3, 6 + axis] = mass.sum() * e
+        applied[3:, 6 + axis] = np.cross(first_moment, e)
+    weight = np.zeros((6, 1))
+    weight[2] = -1.0
+    applied[:, [9]] = _about_origin(weight, model.points["gearbox"].position)
+    reacted = np.zeros_like(applied)
+    for name in (*(unit.bearing.name for unit in model.scene.bearing_units), "gearbox"):
+        reacted += _about_origin(reactions[name], positions[name])
+    return float((np.abs(applied - reacted).max(axis=0) / np.abs(applied).max(axis=0)).max())
+
+
+def _about_origin(forces: Floats, position: Floats) -> Floats:
+    """The same (6, n) forces and moments, with the moments about the origin."""
+    moved = forces.copy()
+    moved[3:] += np.cross(position, forces[:3], axisb=0).T
+    return moved

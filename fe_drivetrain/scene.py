@@ -1,0 +1,257 @@
+"""A scene: parts, materials, interfaces, supports and mesh sizes; typed, validated, from YAML."""
+
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
+from fe_drivetrain.materials import MATERIALS, Material
+
+#: How the bearing's outer face meets the housing's bore.
+Interface = Literal["bonded", "sliding", "averaged", "rigid"]
+#: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
+Coupling = Literal["averaged", "rigid"]
+
+_MAX_BYTES = 1_000_000
+_MAX_DEPTH = 20
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class BearingUnit(_Part):
+    """A bearing, its housing, and the interface between the two."""
+
+    bearing: Bearing
+    housing: Housing
+    interface: Interface
+
+
+class Hub(_Part):
+    """The reference point of the hub loads, at the centre of the shaft's front face."""
+
+    coupling: Coupling = "averaged"
+
+
+class Gearbox(_Part):
+    """Springs to ground and a weight, at the centre of the shaft's rear face.
+
+    Each stiffness is a number, or "rigid", or 0 for free: N/m along x, y, z, N m/rad about them.
+    """
+
+    stiffness: tuple[float | Literal["rigid"], ...] = Field(min_length=6, max_length=6)
+    weight: float = Field(default=0.0, ge=0, allow_inf_nan=False, description="[N], along -z")
+    coupling: Coupling = "averaged"
+
+    @field_validator("stiffness")
+    @classmethod
+    def _not_negative(
+        cls, value: tuple[float | Literal["rigid"], ...]
+    ) -> tuple[float | Literal["rigid"], ...]:
+        for k in value:
+            if k != "rigid" and not 0 <= k < float("inf"):
+                raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
+        return value
+
+
+class Scene(_Part):
+    """A drivetrain: one shaft on any number of bearing units, with a hub and a gearbox."""
+
+    title: str
+    shaft: Shaft
+    bearing_units: tuple[BearingUnit, ...] = Field(min_length=1)
+    hub: Hub = Hub()
+    gearbox: Gearbox
+    materials: Mapping[str, Material] = {}
+    mesh: MeshSizes = MeshSizes()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        names = [unit.bearing.name for unit in self.bearing_units]
+        if len(set(names)) < len(names):
+            raise ValueError(f"bearing names {names} must differ from each other")
+        used = [("shaft", self.shaft.material)]
+        for unit in self.bearing_units:
+            used.append((unit.bearing.name, unit.bearing.material))
+            used.append((f"{unit.bearing.name}.housing", unit.housing.material))
+            if unit.interface != "bonded" and unit.bearing.kind != "spherical":
+                raise ValueError(
+                    f"bearing {unit.bearing.name!r} of kind {unit.bearing.kind!r} cannot have the "
+                    f"spherical-joint interface {unit.interface!r}: make its kind 'spherical' or "
+                    "its interface 'bonded'"
+                )
+        known = {**MATERIALS, **self.materials}
+        for part, material in used:
+            if material not in known:
+                raise ValueError(
+                    f"material {material!r} of {part} is unknown: use one of "
+                    f"{', '.join(known)}, or define it under 'materials'"
+                )
+        return self
+
+    def material_of(self, part: str) -> Material:
+        """The material of a part, by the part's name in the mesh."""
+        known = {**MATERIALS, **self.materials}
+        if part == "shaft":
+            return known[self.shaft.material]
+        name, _, housing = part.partition(".")
+        unit = self.bearing_unit(name)
+        return known[unit.housing.material if housing else unit.bearing.material]
+
+    def bearing_unit(self, name: str) -> BearingUnit:
+        """The bearing unit of that name."""
+        return next(unit for unit in self.bearing_units if unit.bearing.name == name)
+
+
+def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:
+    """Read a scene from a YAML file.
+
+    Parameters
+    ----------
+    path
+        A file of at most 1 MB, plain YAML without anchors, aliases or tags.
+    changes
+        Values by dotted key that replace what the file says, as in
+        ``{"shaft.sections.0.inner_diameter": 0.2}``; a bearing unit goes by its bearing's name.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not such YAML, or does not describe a scene.
+    """
+    path = Path(path)
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            raise InputError(
+                f"{path} has {path.stat().st_size} bytes; a scene file has at most {_MAX_BYTES}"
+            )
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot read scene file {path}: {error}") from error
+    return parse_scene(text, changes, source=str(path))
+
+
+def parse_scene(
+    text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
+) -> Scene:
+    """A scene from YAML text; see `read_scene`."""
+    try:
+        data = yaml.load(text, Loader=_PlainLoader)
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{source} is not plain YAML: {reason}") from error
+    if not isinstance(data, dict):
+        raise InputError(f"{source} must be a mapping with keys such as 'shaft' and 'gearbox'")
+    for key, value in (changes or {}).items():
+        _set(data, key, value)
+    return validated(Scene, data, source)
+
+
+def library_scene(name: str) -> Scene:
+    """A scene that comes with the package, by name: "main_bearing_spherical", "..._bonded"."""
+    folder = files("fe_drivetrain.geometry") / "library"
+    names = sorted(f.name.removesuffix(".yaml") for f in folder.iterdir())
+    if name not in names:
+        raise InputError(f"no scene {name!r} in the library: use one of {', '.join(names)}")
+    return parse_scene((folder / f"{name}.yaml").read_text("utf-8"), source=name)
+
+
+def change_scene(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """A copy of the scene with other values by dotted key; see `read_scene`."""
+    data = scene.model_dump(mode="json")
+    for key, value in changes.items():
+        _set(data, key, value)
+    return validated(Scene, data, "scene")
+
+
+def validated(model: type[_Model], data: Any, source: str) -> _Model:
+    """Validate data against a model; the first fault as an InputError in one sentence."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in fault["loc"] if not _is_type_tag(part))
+        message = fault["msg"].removeprefix("Value error, ")
+        if fault["type"] == "extra_forbidden":
+            message = f"unknown key; known here: {', '.join(_known_keys(model, fault['loc']))}"
+        value = fault["input"]
+        shown = f" = {value!r}" if isinstance(value, int | float | str) else ""
+        more = error.error_count() - 1
+        rest = f" (and {more} more)" if more else ""
+        raise InputError(
+            f"{source}: {where}{shown}: {message}{rest}".replace(": :", ":")
+        ) from error
+
+
+def _is_type_tag(part: object) -> bool:
+    return isinstance(part, str) and (part in {"float", "rigid"} or "[" in part)
+
+
+def _known_keys(model: type[BaseModel], location: Sequence[int | str]) -> list[str]:
+    """The field names of the model that a fault's location leads into."""
+    current: Any = model
+    for part in location[:-1]:
+        if isinstance(part, int):
+            continue
+        annotation = current.model_fields[part].annotation if part in current.model_fields else None
+        found = [m for m in _models_in(annotation)]
+        if not found:
+            return []
+        current = found[0]
+    return list(current.model_fields)
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [m for inner in getattr(annotation, "__args__", ()) for m in _models_in(inner)]
+
+
+def _set(data: Any, key: str, value: Any) -> None:
+    """Replace one value by dotted key, in place."""
+    target = data
+    *path, last = key.split(".")
+    for part in path:
+        target = _step(target, part, key)
+    if isinstance(target, dict):
+        target[last] = value
+    elif isinstance(target, list) and last.isdigit() and int(last) < len(target):
+        target[int(last)] = value
+    else:
+        raise InputError(f"key {key!r}: there is no {last!r} to set")
+
+
+def _step(target: Any, part: str, key: str) -> Any:
+    if isinstance(target, dict):
+        return target.setdefault(part, {})
+    if isinstance(target, list):
+        if part.isdigit() and int(part) < len(target):
+            return target[int(part)]
+        for unit in target:
+            if isinstance(unit, dict) and unit.get("bearing", {}).get("name") == part:
+                return unit
+    raise InputError(f"key {key!r}: there is no {part!r}")
+
+
+class _PlainLoader(yaml.SafeLoader):
+    """Safe YAML without aliases, and not nested deeper than a scene ever is."""
+
+    _depth = 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            raise yaml.YAMLError("anchors and aliases are not allowed in a scene file")
+        self._depth += 1
+        if self._depth > _MAX_DEPTH:
+            raise yaml.YAMLError(f"nested deeper than {_MAX_DEPTH} levels")
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node

@@ -1,0 +1,136 @@
+"""What every parametric part has in common: frozen, no unknown keys, one-sentence errors."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Self
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    model_validator,
+)
+from pydantic.fields import FieldInfo
+
+from fe_drivetrain.errors import InputError
+
+LENGTH_TOLERANCE = 1e-9
+"""Two lengths closer than this (m) are the same length."""
+
+
+class Assumption(NamedTuple):
+    """One dimension of a part, and where its value comes from."""
+
+    name: str
+    value: float | str
+    unit: str
+    source: str
+
+
+def dimension(
+    default: Any = ...,
+    *,
+    of: str,
+    unit: str = "m",
+    source: str = "",
+    gt: float | None = None,
+    ge: float | None = None,
+) -> Any:
+    """Declare a field that carries its unit and the source of its default value.
+
+    Parameters
+    ----------
+    default
+        Default value; required where left out.
+    of
+        What the number measures, in a few words.
+    unit
+        Unit of the number.
+    source
+        Where the default comes from: a catalogue, or 'assumed: reason'.
+    gt, ge
+        Lower bounds, exclusive and inclusive.
+    """
+    return Field(
+        default,
+        description=f"{of}, {unit}" if unit != "-" else of,
+        gt=gt,
+        ge=ge,
+        json_schema_extra={"unit": unit, "source": source},
+    )
+
+
+def _extra(field: FieldInfo, key: str) -> str:
+    extra = field.json_schema_extra
+    return str(extra.get(key, "")) if isinstance(extra, dict) else ""
+
+
+_RANGES = {
+    "greater_than": "greater than {gt}",
+    "greater_than_equal": "at least {ge}",
+    "less_than": "less than {lt}",
+    "less_than_equal": "at most {le}",
+}
+
+
+def _sentence(owner: str, fields: dict[str, FieldInfo], error: ValidationError) -> str:
+    """First complaint of pydantic, as one sentence: object, value, allowed range, mend."""
+    first = error.errors(include_url=False)[0]
+    path = ".".join(str(step) for step in first["loc"])
+    name = str(first["loc"][0]) if first["loc"] else ""
+    field = fields.get(name)
+    meaning = field.description if field is not None else ""
+    kind = first["type"]
+    if kind == "missing":
+        return f"{owner} lacks {path} ({meaning}): add it"
+    if kind == "extra_forbidden":
+        return f"{owner} has no {path!r}: use one of {', '.join(fields)}"
+    if kind in _RANGES:
+        allowed = _RANGES[kind].format(**first["ctx"])
+        return f"{owner}: {path} is {first['input']!r} but must be {allowed}: give {meaning}"
+    return f"{owner}: {path} is {first['input']!r}: {first['msg'].lower()}: give {meaning}"
+
+
+class Part(BaseModel):
+    """Base of every part: a wrong value raises `InputError` with one sentence.
+
+    `InputError` is no `ValueError`, so pydantic lets it through as it is; that holds for a part
+    built in Python as well as for one read from a scene file.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _one_sentence(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise InputError(_sentence(cls.__name__, cls.model_fields, error)) from None
+
+    def assumptions(self) -> list[Assumption]:
+        """List every dimension with its value, unit and source.
+
+        Returns
+        -------
+        list of Assumption
+            (name, value, unit, source); a value that differs from the default is reported as
+            given by the scene, since the source of the default no longer speaks for it.
+        """
+        rows = []
+        for name, field in type(self).model_fields.items():
+            source, value = _extra(field, "source"), getattr(self, name)
+            if not source:
+                continue
+            given = value != field.default
+            rows.append(
+                Assumption(
+                    name,
+                    value if value is not None else "derived",
+                    _extra(field, "unit"),
+                    "given by the scene" if given else source,
+                )
+            )
+        return rows

@@ -1,0 +1,56 @@
+"""The one place where gmsh is opened and closed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import gmsh
+
+from fe_drivetrain.errors import InputError
+
+
+@contextmanager
+def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
+    """Open gmsh with an empty model, silent and deterministic, and close it whatever happens.
+
+    No command-line arguments and no user's configuration file are read, so that the same input
+    gives the same mesh everywhere; gmsh leaves the signal handlers alone, so that Ctrl-C works.
+
+    Parameters
+    ----------
+    name
+        Name of the gmsh model.
+    threads
+        Threads for gmsh; one by default, because only then is the mesh sure to repeat.
+
+    Raises
+    ------
+    InputError
+        gmsh is already open in this process, or gmsh could not build or mesh the parts (its last
+        message is quoted).
+    """
+    if gmsh.isInitialized():
+        raise InputError(
+            "gmsh is already open in this process, but a mesh needs a session of its own: "
+            "call gmsh.finalize() first"
+        )
+    gmsh.initialize(argv=[], readConfigFiles=False, run=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", threads)
+        gmsh.option.setNumber("Mesh.RandomSeed", 1)
+        gmsh.model.add(name)
+        try:
+            yield
+        except Exception as error:
+            # gmsh reports its own failures as bare Exception; every subclass is someone else's.
+            if type(error) is not Exception:
+                raise
+            reason = gmsh.logger.getLastError() or str(error) or "no reason given"
+            raise InputError(
+                f"gmsh could not build or mesh {name}: {reason}; check that the parts' dimensions "
+                "fit together and that no mesh size is larger than the wall it has to fill"
+            ) from error
+    finally:
+        gmsh.finalize()

@@ -1,0 +1,327 @@
+"""The shaft: sections along x, built as one solid of revolution of its meridian profile."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from itertools import pairwise
+from typing import Any, NamedTuple, Self
+
+import gmsh
+from pydantic import Field, field_validator, model_validator
+
+from fe_drivetrain.errors import InputError
+
+from .part import LENGTH_TOLERANCE, Part, dimension
+
+
+class Segment(NamedTuple):
+    """One piece of a meridian, in (x, radius); an arc where `centre` is given."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    centre: tuple[float, float] | None = None
+
+
+class Section(Part):
+    """One length of shaft of constant diameter, or tapered."""
+
+    length: float = dimension(of="length along x", gt=0)
+    outer_diameter: float = dimension(of="outer diameter at the front", gt=0)
+    inner_diameter: float = dimension(0.0, of="bore diameter, 0 where solid", ge=0)
+    outer_diameter_end: float | None = dimension(
+        None, of="outer diameter at the rear where the section is tapered", gt=0
+    )
+    fillet: float = dimension(
+        0.0,
+        of="radius of the concave fillet at the foot of the step to the next section",
+        ge=0,
+    )
+
+    @model_validator(mode="after")
+    def _has_a_wall(self) -> Self:
+        thinnest = min(self.outer_diameter, self.end_diameter)
+        if self.inner_diameter >= thinnest - LENGTH_TOLERANCE:
+            raise InputError(
+                f"Section: inner_diameter is {self.inner_diameter:g} m but must be less than the "
+                f"outer diameter, {thinnest:g} m: make the bore smaller or the section thicker"
+            )
+        return self
+
+    @property
+    def end_diameter(self) -> float:
+        """Outer diameter at the rear end, m."""
+        return self.outer_diameter if self.outer_diameter_end is None else self.outer_diameter_end
+
+
+class Flange(Part):
+    """A disc at the front of the shaft, before its first section."""
+
+    outer_diameter: float = dimension(of="outer diameter", gt=0)
+    thickness: float = dimension(of="thickness along x", gt=0)
+    fillet: float = dimension(
+        0.0, of="radius of the concave fillet at the foot of the flange", ge=0
+    )
+
+
+class Shaft(Part):
+    """A shaft along x: an optional front flange, then the sections from front to rear."""
+
+    front: float = dimension(of="x of the front face")
+    sections: tuple[Section, ...] = Field(
+        min_length=1, description="sections from front to rear, at least one"
+    )
+    flange: Flange | None = Field(
+        default=None, description="front flange, before the first section"
+    )
+    material: str = Field(default="steel", description="name of the material")
+
+    @field_validator("sections", mode="before")
+    @classmethod
+    def _numbered(cls, value: Any) -> Any:
+        """Say which section is wrong, counting from one at the front."""
+        if not isinstance(value, list | tuple):
+            return value
+        sections = []
+        for number, item in enumerate(value, start=1):
+            try:
+                sections.append(Section.model_validate(item) if isinstance(item, Mapping) else item)
+            except InputError as error:
+                raise InputError(f"shaft section {number}: {error}") from None
+        return sections
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> Self:
+        for (one, two), x in zip(pairwise(self.pieces), self.stations[1:], strict=False):
+            bore = max(one.inner_diameter, two.inner_diameter)
+            outer = min(one.end_diameter, two.outer_diameter)
+            if bore >= outer - LENGTH_TOLERANCE:
+                raise InputError(
+                    f"shaft step at x = {x:g} m: the bore is {bore:g} m but must be less than the "
+                    f"outer diameter, {outer:g} m, of the section beside it, or the two fall "
+                    "apart: make the bore smaller or the section thicker"
+                )
+        self.outer_profile()
+        return self
+
+    @property
+    def length(self) -> float:
+        """Length from the front face (of the flange, if any) to the rear face, m."""
+        return math.fsum(piece.length for piece in self.pieces)
+
+    @property
+    def rear(self) -> float:
+        """x of the rear face, m."""
+        return self.front + self.length
+
+    @property
+    def pieces(self) -> tuple[Section, ...]:
+        """The flange, if any, as a section of its own, then the sections."""
+        if self.flange is None:
+            return self.sections
+        disc = Section(
+            length=self.flange.thickness,
+            outer_diameter=self.flange.outer_diameter,
+            inner_diameter=self.sections[0].inner_diameter,
+            fillet=self.flange.fillet,
+        )
+        return (disc, *self.sections)
+
+    @property
+    def stations(self) -> tuple[float, ...]:
+        """x of every end of a piece, from front to rear, m."""
+        xs = [self.front]
+        for piece in self.pieces:
+            xs.append(xs[-1] + piece.length)
+        return tuple(xs)
+
+    def outer_profile(self) -> tuple[Segment, ...]:
+        """Outline of the outer surface from front to rear, fillets included.
+
+        Raises
+        ------
+        InputError
+            A fillet without a step, larger than its step, or longer than its section.
+        """
+        pieces, xs = self.pieces, self.stations
+        path: list[tuple[tuple[float, float], tuple[float, float] | None]] = [
+            ((xs[0], pieces[0].outer_diameter / 2), None)
+        ]
+        # room taken by a fillet at either end of each piece
+        taken = [[0.0, 0.0] for _ in pieces]
+        for i, (piece, x) in enumerate(zip(pieces, xs[1:], strict=True)):
+            before = piece.end_diameter / 2
+            if i + 1 == len(pieces):
+                if piece.fillet > 0:
+                    raise InputError(
+                        f"shaft section at x = {xs[i]:g} m: fillet is {piece.fillet:g} m but must "
+                        "be 0 on the last section, which has no step behind it: remove it"
+                    )
+                path.append(((x, before), None))
+                break
+            after = pieces[i + 1].outer_diameter / 2
+            step = abs(after - before)
+            if piece.fillet == 0:
+                path.append(((x, before), None))
+                if step > LENGTH_TOLERANCE:
+                    path.append(((x, after), None))
+                continue
+            low, thin = (i, piece) if before < after else (i + 1, pieces[i + 1])
+            rise = (thin.end_diameter - thin.outer_diameter) / 2
+            away = -1.0 if low == i else 1.0
+            slant = math.hypot(thin.length, rise)
+            u = (away * thin.length / slant, away * rise / slant)
+            half = math.acos(u[1]) / 2
+            reach = piece.fillet / math.tan(half)
+            if reach > step + LENGTH_TOLERANCE:
+                raise InputError(
+                    f"shaft step at x = {x:g} m: fillet is {piece.fillet:g} m but must be at most "
+                    f"{step * math.tan(half):g} m, what the step of {step:g} m in radius allows: "
+                    "reduce the fillet"
+                )
+            taken[low][1 if low == i else 0] = reach * abs(u[0])
+            if sum(taken[low]) > thin.length + LENGTH_TOLERANCE:
+                raise InputError(
+                    f"shaft step at x = {x:g} m: fillet is {piece.fillet:g} m but needs "
+                    f"{sum(taken[low]):g} m of a section {thin.length:g} m long (with the fillet "
+                    "at its other end): reduce the fillet or lengthen the section"
+                )
+            foot = (x, min(before, after))
+            on_thin = (foot[0] + reach * u[0], foot[1] + reach * u[1])
+            on_step = (foot[0], foot[1] + reach)
+            towards = (u[0], u[1] + 1.0)
+            scale = piece.fillet / math.sin(half) / math.hypot(*towards)
+            centre = (foot[0] + scale * towards[0], foot[1] + scale * towards[1])
+            if low == i:
+                path += [(on_thin, None), (on_step, centre), ((x, after), None)]
+            else:
+                path += [((x, before), None), (on_step, None), (on_thin, centre)]
+        segments = []
+        for (start, _), (end, centre_of_arc) in pairwise(path):
+            if math.dist(start, end) > LENGTH_TOLERANCE:
+                segments.append(Segment(start, end, centre_of_arc))
+        return tuple(segments)
+
+    def outer_radius(self, x: float) -> float:
+        """Largest outer radius at x, m (fillets left out: they only add material)."""
+        radii = []
+        for piece, x0, x1 in zip(self.pieces, self.stations, self.stations[1:], strict=False):
+            if x0 - LENGTH_TOLERANCE <= x <= x1 + LENGTH_TOLERANCE:
+                share = min(max((x - x0) / piece.length, 0.0), 1.0)
+                radii.append((piece.outer_diameter * (1 - share) + piece.end_diameter * share) / 2)
+        return max(radii, default=0.0)
+
+    def seat_diameter(self, x: float, width: float, name: str) -> float:
+        """Diameter of the shaft under a bearing.
+
+        Parameters
+        ----------
+        x, width
+            Centre and width of the seat, m.
+        name
+            Name of the bearing, for the message.
+
+        Returns
+        -------
+        float
+            Diameter, m.
+
+        Raises
+        ------
+        InputError
+            The seat does not lie on one cylindrical length of the shaft.
+        """
+        low, high = x - width / 2, x + width / 2
+        free = [
+            segment
+            for segment in self.outer_profile()
+            if segment.centre is None and segment.start[1] == segment.end[1]
+        ]
+        for segment in free:
+            if (
+                segment.start[0] <= low + LENGTH_TOLERANCE
+                and high <= segment.end[0] + LENGTH_TOLERANCE
+            ):
+                return 2 * segment.start[1]
+        allowed = ", ".join(f"{s.start[0]:g} to {s.end[0]:g}" for s in free) or "none"
+        raise InputError(
+            f"bearing {name!r}: its seat on the shaft is x = {low:g} to {high:g} m but must lie on "
+            f"one cylindrical length clear of steps, tapers and fillets ({allowed} m): move the "
+            "bearing, make it narrower, or lengthen that section"
+        )
+
+    def build(self, seats: Iterable[tuple[float, float]] = ()) -> int:
+        """Add the solid to the open gmsh model.
+
+        Parameters
+        ----------
+        seats
+            Intervals (low, high) of x, m, each to become a cylindrical face of its own.
+
+        Returns
+        -------
+        int
+            Tag of the volume.
+        """
+        cuts = sorted({x for seat in seats for x in seat})
+        outline = [piece for segment in self.outer_profile() for piece in split(segment, cuts)]
+        inner: list[tuple[float, float]] = []
+        for piece, x0, x1 in zip(self.pieces, self.stations, self.stations[1:], strict=False):
+            inner += [(x0, piece.inner_diameter / 2), (x1, piece.inner_diameter / 2)]
+        corners = [outline[-1].end, *reversed(inner), outline[0].start]
+        for start, end in pairwise(corners):
+            if math.dist(start, end) > LENGTH_TOLERANCE:
+                outline.append(Segment(start, end))
+        return revolve(outline)
+
+
+def split(segment: Segment, cuts: Iterable[float]) -> list[Segment]:
+    """Cut a straight segment at each x inside it (`cuts` ascending, segment running along +x)."""
+    if segment.centre is not None or segment.start[0] == segment.end[0]:
+        return [segment]
+    pieces = []
+    (x0, r0), (x1, r1) = start, end = segment.start, segment.end
+    for x in cuts:
+        if start[0] + LENGTH_TOLERANCE < x < end[0] - LENGTH_TOLERANCE:
+            share = (x - x0) / (x1 - x0)
+            pieces.append(Segment(start, (x, r0 + share * (r1 - r0))))
+            start = pieces[-1].end
+    return [*pieces, Segment(start, end)]
+
+
+def revolve(outline: Iterable[Segment]) -> int:
+    """Turn a closed meridian round the x axis into a solid of the open gmsh model.
+
+    Parameters
+    ----------
+    outline
+        Segments that follow one another and close, radii >= 0.
+
+    Returns
+    -------
+    int
+        Tag of the volume.
+    """
+    occ = gmsh.model.occ
+    tags: dict[tuple[float, float], int] = {}
+
+    def point(at: tuple[float, float]) -> int:
+        key = (round(at[0], 10), round(at[1], 10))
+        if key not in tags:
+            tags[key] = occ.addPoint(at[0], 0.0, at[1])
+        return tags[key]
+
+    curves = []
+    for segment in outline:
+        start, end = point(segment.start), point(segment.end)
+        if segment.centre is None:
+            curves.append(occ.addLine(start, end))
+        else:
+            centre = occ.addPoint(segment.centre[0], 0.0, segment.centre[1])
+            curves.append(occ.addCircleArc(start, centre, end))
+            occ.remove([(0, centre)])
+    face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
+    swept = occ.revolve([(2, face)], 0, 0, 0, 1, 0, 0, 2 * math.pi)
+    (solid,) = (tag for dim, tag in swept if dim == 3)
+    occ.remove([(2, face)], recursive=True)
+    return int(solid)

@@ -1,0 +1,55 @@
+"""Scenes that several test modules solve: coarse, and built once a session."""
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.mesh import Mesh
+from fe_drivetrain.model import Model, build_model, mesh_scene
+from fe_drivetrain.response import Response, unit_load_response
+from fe_drivetrain.scene import Scene, change_scene, library_scene
+
+#: A short, coarse main bearing: thesis proportions, a tenth of the unknowns.
+COARSE = {
+    "mesh.shaft": 0.3,
+    "mesh.bearing": 0.1,
+    "mesh.housing": 0.1,
+    "shaft.front": -1.0,
+    "shaft.sections.0.length": 2.2,
+}
+
+
+def coarse_scene(kind: str, **changes: object) -> Scene:
+    """The library's main bearing, made small."""
+    return change_scene(library_scene(f"main_bearing_{kind}"), COARSE | changes)
+
+
+@pytest.fixture(scope="session")
+def spherical_mesh() -> Mesh:
+    return mesh_scene(coarse_scene("spherical"))
+
+
+@pytest.fixture(scope="session")
+def bonded_model() -> Model:
+    scene = coarse_scene("bonded")
+    return build_model(scene, mesh_scene(scene))
+
+
+@pytest.fixture(scope="session")
+def bonded_response(bonded_model: Model) -> Response:
+    return unit_load_response(bonded_model)
+
+
+@pytest.fixture(scope="session")
+def spherical_responses(spherical_mesh: Mesh) -> dict[str, tuple[Model, Response]]:
+    """Model and response for each form of the spherical joint."""
+    found = {}
+    for form in ("sliding", "averaged", "rigid"):
+        scene = change_scene(coarse_scene("spherical"), {"bearing_units.0.interface": form})
+        model = build_model(scene, spherical_mesh)
+        found[form] = model, unit_load_response(model)
+    return found
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(1)

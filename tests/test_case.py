@@ -1,0 +1,199 @@
+"""A result folder appears whole or not at all, and says what was computed."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from fe_drivetrain import case as case_module
+from fe_drivetrain.case import Case, Run, find_case, run_case
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.results import (
+    AssumptionRow,
+    Chart,
+    Environment,
+    Image,
+    Results,
+    Section,
+    Table,
+    Text,
+    judge,
+    read_results,
+)
+
+
+def results_of(run: Run, *items: Text | Table | Chart | Image, computed: float = 1.01) -> Results:
+    return Results(
+        case="group/tiny",
+        title="A tiny case",
+        source="nobody",
+        summary=["The answer is one."],
+        verdicts=[
+            judge("one", computed, 1.0, tolerance=0.05, reason="none", source="counting", unit="m")
+        ],
+        sections=[Section(title="Only one", items=list(items))],
+        assumptions=[AssumptionRow(name="two", value=2, unit="-", source="assumed")],
+        times=dict(run.times),
+        environment=Environment(
+            date="2026-01-01", python="3", platform="any", versions={}, settings=dict(run.settings)
+        ),
+    )
+
+
+def tiny(run: Run) -> Results:
+    with run.step("count"):
+        (run.folder / "one.txt").write_text("1")
+    return results_of(run)
+
+
+def tiny_case(work: object = tiny) -> Case:
+    return Case("group/tiny", "A tiny case", "nobody", work)  # type: ignore[arg-type]
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Every file at or below a folder, hidden ones included."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_run_writes_what_it_returns(tmp_path: Path) -> None:
+    out = tmp_path / "new" / "folder"
+    results = run_case(tiny_case(), out, {"a": [1, "b"]})
+    assert read_results(out / "results.json") == results
+    assert results.environment.settings == {"a": [1, "b"]}
+    assert set(contents(out)) == {"results.json", "report.html", "one.txt"}
+    assert [path.name for path in out.parent.iterdir()] == ["folder"]
+
+
+def test_every_kind_of_item_survives_the_round_trip(tmp_path: Path) -> None:
+    items = (
+        Text(text="text with <b>, \u2028 and \\u0000 in it"),
+        Table(caption="c", columns=["a", "b"], rows=[[1, 2.5], ["x", None], [True, 1e-300]]),
+        Chart(caption="c", figure={"data": [{"y": [1, 2.5, None]}], "layout": {}}),
+    )
+    run_case(tiny_case(lambda run: results_of(run, *items)), tmp_path / "out")
+    (section,) = read_results(tmp_path / "out" / "results.json").sections
+    assert tuple(section.items) == items
+
+
+def test_a_nan_is_a_failed_check_and_not_an_unreadable_file(tmp_path: Path) -> None:
+    work = tiny_case(lambda run: results_of(run, computed=float("nan")))
+    assert not run_case(work, tmp_path / "out").passed
+    (verdict,) = read_results(tmp_path / "out" / "results.json").verdicts
+    assert verdict.computed != verdict.computed
+    assert not verdict.passed
+
+
+def test_steps_are_reported_and_timed(tmp_path: Path) -> None:
+    seen: list[str] = []
+    results = run_case(tiny_case(), tmp_path / "out", report=seen.append)
+    assert seen == ["count", "report"]
+    assert list(results.times) == ["count"]
+    assert results.times["count"] > 0
+
+
+def test_quick_and_settings_reach_the_case(tmp_path: Path) -> None:
+    got: list[Run] = []
+
+    def work(run: Run) -> Results:
+        got.append(run)
+        return results_of(run)
+
+    run_case(tiny_case(work), tmp_path / "out", {"k": 3}, quick=True)
+    assert got[0].quick
+    assert got[0].settings == {"k": 3}
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt, SystemExit, InputError])
+def test_a_run_that_fails_leaves_the_earlier_results(
+    tmp_path: Path, error: type[BaseException]
+) -> None:
+    run_case(tiny_case(), tmp_path / "out")
+    before = contents(tmp_path)
+
+    def work(run: Run) -> Results:
+        (run.folder / "half.txt").write_text("written")
+        raise error("midway")
+
+    with pytest.raises(error, match="midway"):
+        run_case(tiny_case(work), tmp_path / "out")
+    assert contents(tmp_path) == before
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_page_that_fails_leaves_the_earlier_results(tmp_path: Path) -> None:
+    run_case(tiny_case(), tmp_path / "out")
+    before = contents(tmp_path)
+    image = Image(caption="not there", file="missing.png")
+    with pytest.raises(InputError, match=r"missing\.png"):
+        run_case(tiny_case(lambda run: results_of(run, image)), tmp_path / "out")
+    assert contents(tmp_path) == before
+
+
+def test_ctrl_c_between_the_two_renames_puts_the_earlier_results_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run_case(tiny_case(), tmp_path / "out")
+    before = contents(tmp_path)
+    rename, calls = os.rename, []
+
+    def interrupted(source: object, target: object) -> None:
+        calls.append(target)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        rename(source, target)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(os, "rename", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run_case(tiny_case(), tmp_path / "out")
+    assert contents(tmp_path) == before
+
+
+def test_a_new_run_replaces_the_whole_folder(tmp_path: Path) -> None:
+    run_case(tiny_case(), tmp_path / "out")
+    run_case(tiny_case(results_of), tmp_path / "out")
+    assert set(contents(tmp_path / "out")) == {"results.json", "report.html"}
+
+
+def test_an_empty_folder_is_used_and_a_foreign_one_refused(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    run_case(tiny_case(), out)
+    foreign = tmp_path / "thesis"
+    foreign.mkdir()
+    (foreign / "chapter.tex").write_text("years of work")
+    with pytest.raises(InputError, match="not results"):
+        run_case(tiny_case(), foreign)
+    assert contents(foreign) == {"chapter.tex": b"years of work"}
+
+
+def test_a_file_or_a_folder_below_a_file_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_text("x")
+    for out in (file, file / "below", file / "far" / "below"):
+        with pytest.raises(InputError, match="folder"):
+            run_case(tiny_case(), out)
+    assert contents(tmp_path) == {"file": b"x"}
+
+
+def test_a_case_is_found_by_its_name_or_its_last_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("a/one", "a/two", "b/two")
+    cases = {name: Case(name, "t", "s", results_of) for name in names}
+    monkeypatch.setattr(case_module, "all_cases", lambda: cases)
+    assert find_case("a/two").name == "a/two"
+    assert find_case("one").name == "a/one"
+    with pytest.raises(InputError, match="ambiguous"):
+        find_case("two")
+    with pytest.raises(InputError, match=r"unknown.*a/one"):
+        find_case("three")
+
+
+def test_every_case_of_the_package_is_named_after_its_place() -> None:
+    cases = case_module.all_cases()
+    assert cases
+    for name, found in cases.items():
+        assert found.name == name
+        assert found.run.__module__ == f"fe_drivetrain.cases.{name.replace('/', '.')}"

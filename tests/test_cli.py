@@ -1,0 +1,428 @@
+"""What the command line prints and returns, with cases that only count."""
+
+import errno
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fe_drivetrain import case as case_module
+from fe_drivetrain import cli
+from fe_drivetrain.case import Case, Run
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.results import Environment, Results, judge, read_results
+
+# a script of a case, as under cases/, that counts to one or does what --set work says
+SCRIPT = """
+import sys, time
+from fe_drivetrain.case import Case
+from fe_drivetrain.cli import main_of_case
+from fe_drivetrain.results import Environment, Results, judge
+
+def run(run):
+    with run.step("work"):
+        (run.folder / "half.txt").write_text("half")
+        if run.settings.get("work") == "forever":
+            time.sleep(600)
+    return Results(
+        case="group/tiny", title="T\u00eft\u2082e", source="s", summary=["\u2208 one"],
+        verdicts=[judge("one", 1.0, 1.0, tolerance=0.1, reason="r", source="s")], sections=[],
+        environment=Environment(date="", python="", platform="", versions={}, settings={}),
+    )
+
+if __name__ == "__main__":
+    main_of_case(Case("group/tiny", "Title", "s", run))
+"""
+
+
+def count(run: Run, computed: float = 1.01) -> Results:
+    with run.step("count to one"):
+        pass
+    return Results(
+        case="group/tiny",
+        title="A tiny case",
+        source="nobody",
+        summary=["The answer is one.", "Second.", "Third.", "Fourth."],
+        verdicts=[
+            judge("one", computed, 1.0, tolerance=0.05, reason="r", source="s", unit="N m/rad"),
+            judge("ratio", 2.0, 2.0, tolerance=0.0, reason="r", source="s", relative=False),
+        ],
+        sections=[],
+        environment=Environment(
+            date="", python="", platform="", versions={}, settings=dict(run.settings)
+        ),
+    )
+
+
+Result = tuple[int, str, str]
+
+
+@pytest.fixture
+def invoke(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., Result]:
+    """Run the command in an empty folder, with one case that does the given work."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str, work: Any = count, main: Callable[[], None] = cli.main) -> Result:
+        cases = {
+            "group/tiny": Case("group/tiny", "A tiny case", "nobody", work),
+            "group/other": Case("group/other", "Another [bold] case", "nobody", work),
+            "next/third": Case("next/third", "A third", "nobody", work),
+        }
+        monkeypatch.setattr(case_module, "all_cases", lambda: dict(sorted(cases.items())))
+        monkeypatch.setattr(sys, "argv", ["fe-drivetrain", *arguments])
+        with pytest.raises(SystemExit) as end:
+            main()
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.out + printed.err
+        code = end.value.code
+        return (0 if code is None else int(code)), printed.out, printed.err
+
+    return run
+
+
+def test_a_passing_case_exits_0_and_says_where_to_read(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    status, out, err = invoke("run", "tiny")
+    assert status == 0
+    lines = out.splitlines()
+    assert lines[0].startswith("pass  one: computed 1.01 N m/rad, reference 1 N m/rad")
+    assert "tolerance 5 %" in lines[0]
+    assert lines[1].startswith("pass  ratio: computed 2, reference 2, tolerance 0")
+    assert "The answer is one." in lines
+    assert "Fourth." not in lines
+    assert lines[-1] == "2 of 2 checks pass: reports/group/tiny/report.html"
+    assert (tmp_path / "reports/group/tiny/report.html").is_file()
+    assert err.startswith("count to one ... ")
+    assert [line.split(" ... ")[0] for line in err.splitlines()] == ["count to one", "report"]
+    assert all(line.endswith(" s") for line in err.splitlines())
+
+
+def test_a_failing_check_exits_1(invoke: Callable[..., Result], tmp_path: Path) -> None:
+    status, out, _ = invoke("run", "group/tiny", work=lambda run: count(run, 1.2))
+    assert status == 1
+    assert out.startswith("FAIL  one: computed 1.2")
+    assert "1 of 2 checks pass" in out
+    # a failed check is a result, and is kept
+    assert not read_results(tmp_path / "reports/group/tiny/results.json").passed
+
+
+def test_a_nan_fails(invoke: Callable[..., Result]) -> None:
+    status, out, _ = invoke("run", "tiny", work=lambda run: count(run, float("nan")))
+    assert status == 1
+    assert "FAIL  one: computed nan" in out
+
+
+def test_options_reach_the_case(invoke: Callable[..., Result], tmp_path: Path) -> None:
+    got: list[Run] = []
+
+    def work(run: Run) -> Results:
+        got.append(run)
+        return count(run)
+
+    settings = ["--set", "gearbox.weight=1e6", "--set", "a=[1, x]"]
+    assert invoke("run", "tiny", "--quick", "--out", "here/there", *settings, work=work)[0] == 0
+    assert got[0].quick
+    assert got[0].settings == {"gearbox.weight": 1e6, "a": [1, "x"]}
+    stored = json.loads((tmp_path / "here/there/results.json").read_text())
+    assert stored["environment"]["settings"] == got[0].settings
+
+
+def test_a_link_stays_and_the_folder_that_it_leads_to_is_replaced(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    assert invoke("run", "tiny", "--out", "real")[0] == 0
+    (tmp_path / "link").symlink_to("real")
+    assert invoke("run", "tiny", "--out", "link", "--set", "k=2")[0] == 0
+    assert (tmp_path / "link").is_symlink()
+    assert read_results(tmp_path / "real/results.json").environment.settings == {"k": 2}
+
+
+def test_the_current_folder_can_be_the_result_folder(
+    invoke: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert invoke("run", "tiny", "--out", ".")[0] == 0
+    assert (tmp_path / "here/report.html").is_file()
+
+
+def test_a_script_of_a_case_has_the_same_options(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    case = Case("group/tiny", "A tiny case", "nobody", count)
+    status, out, _ = invoke("--out", "x", "--set", "k=1", main=lambda: cli.main_of_case(case))
+    assert status == 0
+    assert out.endswith("x/report.html\n")
+    assert (tmp_path / "x/report.html").is_file()
+    assert invoke("--set", "k", main=lambda: cli.main_of_case(case))[0] == 2
+    assert "A tiny case" in invoke("--help", main=lambda: cli.main_of_case(case))[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "hint"),
+    [
+        (("run", "nothing"), "group/tiny"),
+        (("run", "tiny", "--set", "novalue"), "KEY=VALUE"),
+        (("run", "tiny", "--set", "=1"), "KEY=VALUE"),
+        (("run", "tiny", "--set", "k=[1"), "YAML"),
+        (("run", "tiny", "--set", "k={a: 1}"), "one by one"),
+        (("run", "tiny", "--set", "k=!!python/name:os.system ''"), "YAML"),
+        (("run", "tiny", "--set", "k=&a [*a]"), "YAML"),
+        (("run", "tiny", "--out", "file"), "folder"),
+        (("run", "tiny", "--out", "file/below"), "folder"),
+        (("run", "tiny", "--out", "full"), "not results"),
+        (("run", "tiny", "--out", "x" * 300), "folder"),
+        (("run", "tiny", "--out", "loop/x"), "folder"),
+        (("run",), "Missing"),
+        (("walk",), "No such command"),
+        (("run", "tiny", "--fast"), "No such option"),
+    ],
+)
+def test_mistakes_exit_2_with_a_hint(
+    invoke: Callable[..., Result], tmp_path: Path, arguments: tuple[str, ...], hint: str
+) -> None:
+    (tmp_path / "file").write_text("x")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis.tex").write_text("x")
+    (tmp_path / "loop").symlink_to("loop")
+    before = sorted(tmp_path.rglob("*"))
+    status, out, err = invoke(*arguments)
+    assert status == 2
+    assert hint in err
+    assert out == ""
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_mistake_is_told_in_one_line(invoke: Callable[..., Result], tmp_path: Path) -> None:
+    def work(run: Run) -> Results:
+        with run.step("read"):
+            raise InputError("shaft: length is -1 but must be greater than 0: give a length")
+
+    status, _, err = invoke("run", "tiny", work=work)
+    assert status == 2
+    assert err.splitlines()[-1] == (
+        "fe-drivetrain: shaft: length is -1 but must be greater than 0: give a length"
+    )
+    assert not any((tmp_path / "reports").rglob("*.json"))
+
+
+def test_a_full_disk_exits_2(invoke: Callable[..., Result]) -> None:
+    def work(run: Run) -> Results:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "big.vtu")
+
+    status, _, err = invoke("run", "tiny", work=work)
+    assert status == 2
+    assert "big.vtu: No space left" in err
+
+
+def test_a_missing_system_library_is_named(invoke: Callable[..., Result]) -> None:
+    def work(run: Run) -> Results:
+        raise OSError("libGLU.so.1: cannot open shared object file: No such file or directory")
+
+    status, _, err = invoke("run", "tiny", work=work)
+    assert status == 2
+    assert "libGLU.so.1" in err
+    assert "libglu1-mesa" in err
+
+
+def test_our_own_faults_are_not_blamed_on_the_user(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def work(run: Run) -> Results:
+        raise FileNotFoundError(errno.ENOENT, "no such file", "template")
+
+    case = Case("group/tiny", "t", "s", work)
+    monkeypatch.setattr(sys, "argv", ["tiny.py", "--out", str(tmp_path / "out")])
+    with pytest.raises(FileNotFoundError):
+        cli.main_of_case(case)
+
+
+def test_ctrl_c_exits_130_and_keeps_the_earlier_results(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    def work(run: Run) -> Results:
+        with run.step("long"):
+            raise KeyboardInterrupt
+
+    assert invoke("run", "tiny")[0] == 0
+    before = (tmp_path / "reports/group/tiny/results.json").read_bytes()
+    status, out, err = invoke("run", "tiny", work=work)
+    assert (status, out) == (130, "")
+    assert "stopped" in err
+    assert (tmp_path / "reports/group/tiny/results.json").read_bytes() == before
+    assert os.listdir(tmp_path / "reports/group") == ["tiny"]
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Path:
+    path = tmp_path / "tiny.py"
+    path.write_text(SCRIPT, "utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_leaves_nothing_behind(
+    script: Path, tmp_path: Path, sent: signal.Signals, status: int
+) -> None:
+    command = [sys.executable, str(script), "--out", "out/x", "--set", "work=forever"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        assert process.stderr.read(len("work ... ")) == "work ... "
+        (hidden,) = (tmp_path / "out").iterdir()
+        assert hidden.name.startswith(".x-")
+        process.send_signal(sent)
+        err = process.stderr.read()
+        assert process.wait(60) == status
+    assert "Traceback" not in err
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [["--out", "x"], ["--help"]])
+def test_a_reader_that_goes_away_is_no_error(
+    script: Path, tmp_path: Path, arguments: list[str]
+) -> None:
+    command = [sys.executable, str(script), *arguments]
+    read, write = os.pipe()
+    os.close(read)
+    try:
+        done = subprocess.run(
+            command, cwd=tmp_path, stdout=write, stderr=subprocess.PIPE, text=True, check=False
+        )
+    finally:
+        os.close(write)
+    assert "Traceback" not in done.stderr
+    assert "BrokenPipe" not in done.stderr
+    if arguments != ["--help"]:
+        assert done.returncode == 0
+        assert (tmp_path / "x" / "report.html").is_file()
+
+
+def test_progress_nobody_reads_does_not_stop_a_run(script: Path, tmp_path: Path) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    try:
+        done = subprocess.run(
+            [sys.executable, str(script), "--out", "x"],
+            cwd=tmp_path,
+            stdout=subprocess.PIPE,
+            stderr=write,
+            text=True,
+            check=False,
+        )
+    finally:
+        os.close(write)
+    assert done.returncode == 0
+    assert "1 of 1 checks pass" in done.stdout
+
+
+def test_a_narrow_encoding_is_no_error(script: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, str(script), "--out", "x"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        check=False,
+    )
+    assert done.returncode == 0
+    assert b"? one" in done.stdout
+
+
+def test_list_groups_the_cases(invoke: Callable[..., Result]) -> None:
+    status, out, _ = invoke("list")
+    assert status == 0
+    assert [line.split() for line in out.splitlines()] == [
+        ["group"],
+        ["group/other", "Another", "[bold]", "case"],
+        ["group/tiny", "A", "tiny", "case"],
+        [],
+        ["next"],
+        ["next/third", "A", "third"],
+    ]
+
+
+def test_version_is_the_installed_one(invoke: Callable[..., Result]) -> None:
+    from importlib.metadata import version
+
+    status, out, _ = invoke("--version")
+    assert (status, out) == (0, f"fe-drivetrain {version('fe-drivetrain')}\n")
+
+
+@pytest.mark.parametrize("argument", ["--help", "--version"])
+def test_help_imports_nothing_heavy(argument: str) -> None:
+    heavy = ["numpy", "scipy", "gmsh", "skfem", "pyvista", "plotly", "pydantic", "jinja2", "PIL"]
+    program = (
+        "import sys\n"
+        f"sys.argv = ['fe-drivetrain', {argument!r}]\n"
+        "from fe_drivetrain.cli import main\n"
+        "try:\n"
+        "    main()\n"
+        "finally:\n"
+        f"    print([m for m in {heavy} if m in sys.modules], file=sys.stderr)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert done.stderr.strip() == "[]"
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1e6", 1e6),
+        ("-2.5E-3", -2.5e-3),
+        ("4", 4),
+        (".5", 0.5),
+        ("010", 10.0),
+        ("true", True),
+        ("null", None),
+        ("", None),
+        ("rigid", "rigid"),
+        ("'1e6'", "1e6"),
+        ("a=b", "a=b"),
+        ("12:30", "12:30"),
+        ("2026-01-31", "2026-01-31"),
+        ("runs/*.outb", "runs/*.outb"),
+        ("[4e6, 8e7, rigid, [0]]", [4e6, 8e7, "rigid", [0]]),
+    ],
+)
+def test_settings_are_numbers_words_and_lists(text: str, value: object) -> None:
+    parsed = cli.parse_settings([f"key.0.name={text}"])
+    assert parsed == {"key.0.name": value}
+    assert isinstance(parsed["key.0.name"], type(value))
+
+
+def test_a_step_that_counts_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    with cli._plain_steps() as report:
+        report("part")
+        report("loads (1 of 2)")
+        report("loads (2 of 2)")
+        report("last")
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(" ... ")[0] for line in lines] == ["part", "loads", "last"]
+
+
+def test_on_a_terminal_steps_end_as_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("TERM", "xterm")
+    with cli._progress() as report:
+        report("part [bold]")
+        report("loads (1 of 2)")
+        report("loads (2 of 2)")
+    shown = terminal.getvalue()
+    assert "part [bold] ... " in shown
+    assert shown.count("loads ... ") == 1

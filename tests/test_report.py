@@ -1,0 +1,326 @@
+"""The page shows the results, all of them, and does nothing else."""
+
+import base64
+import hashlib
+import json
+import math
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image as Pixels
+
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.report import error_text, formatted, tolerance_text, write_page
+from fe_drivetrain.results import (
+    AssumptionRow,
+    Chart,
+    Environment,
+    Image,
+    Results,
+    Section,
+    Table,
+    Text,
+    Verdict,
+    judge,
+)
+
+HOSTILE = (
+    "</script><script>document.title='taken'</script><img src=x onerror=\"document.title='t'\">"
+)
+
+
+class Page(HTMLParser):
+    """What a browser would find: elements with their attributes, and the text in each."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[tuple[str, str]] = []
+        self.open: list[str] = []
+        self.scripts: list[tuple[dict[str, str | None], str]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in ("meta", "link", "img", "br"):
+            self.open.append(tag)
+        if tag == "script":
+            self.scripts.append((dict(attrs), ""))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] == "script":
+            attributes, before = self.scripts[-1]
+            self.scripts[-1] = attributes, before + data
+        elif data.strip():
+            self.texts.append((self.open[-1] if self.open else "", data.strip()))
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+    def text(self) -> str:
+        return "\n".join(text for tag, text in self.texts if tag != "style")
+
+
+def verdict(computed: float = 1.0, **changes: object) -> Verdict:
+    given = {"tolerance": 0.01, "reason": "because", "source": "book", "unit": "N"} | changes
+    return judge("force", computed, 1.0, **given)  # type: ignore[arg-type]
+
+
+def results(string: str = "plain", **changes: object) -> Results:
+    """Results with everything in them, and one string wherever a string can stand."""
+    figure = {
+        "data": [{"type": "scatter", "name": string, "x": [1, 2], "y": [3.5, None]}],
+        "layout": {"xaxis": {"title": {"text": string}}, "width": 5000},
+    }
+    content: dict[str, object] = {
+        "case": string,
+        "title": string,
+        "source": string,
+        "summary": [string],
+        "verdicts": [
+            judge(string, 1.0, 1.0, tolerance=0.1, reason=string, source=string, unit=string),
+            judge("worse", 2.0, 1.0, tolerance=0.1, reason=string, source=string),
+        ],
+        "sections": [
+            Section(
+                title=string,
+                items=[
+                    Text(text=string),
+                    Table(caption=string, columns=[string, "n"], rows=[[string, 392280.0]]),
+                    Chart(caption=string, figure=figure),
+                    Image(caption=string, file="model.png"),
+                ],
+            )
+        ],
+        "assumptions": [AssumptionRow(name=string, value=string, unit=string, source=string)],
+        "times": {string: 1.5},
+        "environment": Environment(
+            date=string,
+            python=string,
+            platform=string,
+            versions={string: string},
+            settings={string: string},
+        ),
+    }
+    return Results.model_validate(content | changes)
+
+
+def page_of(folder: Path, content: Results) -> str:
+    Pixels.new("RGB", (8, 5), "teal").save(folder / "model.png")
+    (folder / "results.json").write_text(content.model_dump_json(), "utf-8")
+    return write_page(folder).read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (0.2, "0.2"),
+        (1.54, "1.54"),
+        (392280.0, "392\u202f280"),
+        (12345.678, "12\u202f346"),
+        (0.0012345678, "0.0012346"),
+        (80e6, "80\u00a0×\u00a010⁶"),
+        (392.04e6, "392.04\u00a0×\u00a010⁶"),
+        (999999.9, "1\u00a0×\u00a010⁶"),
+        (-1.5e-7, "\u2212150\u00a0×\u00a010⁻⁹"),
+        (1728000, "1\u202f728\u202f000"),
+        (-3, "\u22123"),
+        (True, "yes"),
+        (None, "–"),
+        (math.nan, "not a number"),
+        (-math.inf, "\u2212∞"),
+        ("0.10", "0.10"),
+    ],
+)
+def test_numbers_are_written_for_engineers(
+    value: float | int | str | bool | None, text: str
+) -> None:
+    assert formatted(value) == text
+
+
+@given(st.floats(-1e307, 1e307), st.integers(3, 8))
+def test_a_formatted_number_is_the_number_to_its_digits(value: float, digits: int) -> None:
+    text = formatted(value, digits).replace("\u202f", "").replace("\u2212", "-")
+    mantissa, _, power = text.partition("\u00a0×\u00a010")
+    plain = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+    read = float(f"{mantissa}e{power.translate(plain) or 0}")
+    # denormal numbers have fewer digits than asked for
+    assert abs(read - value) <= 0.5001 * 10.0 ** (1 - digits) * abs(value) + 1e-322
+    assert len(mantissa) <= digits + 5
+
+
+def test_errors_and_tolerances_are_relative_or_in_the_unit() -> None:
+    assert error_text(verdict(1.02)) == "+2\u00a0%"
+    assert tolerance_text(verdict(1.02)) == "±1\u00a0%"
+    assert error_text(verdict(0.98, relative=False)) == "\u22120.02\u00a0N"
+    assert tolerance_text(verdict(0.98, relative=False)) == "±0.01\u00a0N"
+    zero = judge("z", 0.5, 0.0, tolerance=0.1, reason="", source="", unit="m")
+    assert error_text(zero) == "+0.5\u00a0m"
+
+
+def test_the_page_says_what_the_results_say(tmp_path: Path) -> None:
+    text = Page(page_of(tmp_path, results("A plain string"))).text()
+    assert "1 of 2 checks pass, 1 fails" in text
+    assert "392\u202f280" in text
+    # everywhere but in the chart's JSON and in attributes
+    assert text.count("A plain string") >= 18
+
+
+def test_failed_checks_are_marked(tmp_path: Path) -> None:
+    page = Page(page_of(tmp_path, results()))
+    assert [row.get("class") for row in page.all("tr")].count("failed") == 1
+    assert [t for tag, t in page.texts if tag == "td" and t in ("pass", "FAIL")] == ["pass", "FAIL"]
+    passing = Page(page_of(tmp_path, results(verdicts=[verdict()])))
+    assert "1 of 1 check passes" in passing.text()
+    assert "FAIL" not in passing.text()
+    assert "outcome pass" in [p.get("class") for p in passing.all("p")]
+
+
+def test_a_page_without_checks_claims_none(tmp_path: Path) -> None:
+    page = Page(page_of(tmp_path, results(verdicts=[])))
+    assert "No checks" in page.text()
+    assert "outcome pass" not in [p.get("class") for p in page.all("p")]
+
+
+def test_hostile_strings_stay_strings(tmp_path: Path) -> None:
+    plain = Page(page_of(tmp_path, results("x" * len(HOSTILE))))
+    hostile = Page(page_of(tmp_path, results(HOSTILE)))
+    assert [tag for tag, _ in hostile.elements] == [tag for tag, _ in plain.elements]
+    assert [sorted(a) for _, a in hostile.elements] == [sorted(a) for _, a in plain.elements]
+    assert HOSTILE in hostile.text()
+    assert {"title", "h1", "th", "td", "figcaption"} <= {
+        tag for tag, text in hostile.texts if text == HOSTILE
+    }
+
+
+def test_a_figure_comes_through_whatever_it_says(tmp_path: Path) -> None:
+    strings = (HOSTILE, "<!-- <script>", "]]>&amp;\u2028\u2029", "\\u003c")
+    for string in strings:
+        page = Page(page_of(tmp_path, results(string)))
+        ((_, text),) = [s for s in page.scripts if s[0].get("type") == "application/json"]
+        figure = json.loads(text)
+        assert figure["data"][0]["name"] == string
+        assert figure["data"][0]["y"] == [3.5, None]
+        assert "width" not in figure["layout"]
+        assert "<" not in text
+
+
+def test_figures_need_no_webgl_and_no_finite_numbers(tmp_path: Path) -> None:
+    figure = {"data": [{"type": "scattergl", "y": [1.0, math.nan, math.inf]}]}
+    section = Section(title="s", items=[Chart(caption="c", figure=figure)])
+    page = Page(page_of(tmp_path, results(sections=[section])))
+    ((_, text),) = [s for s in page.scripts if s[0].get("type") == "application/json"]
+    (trace,) = json.loads(text)["data"]
+    assert trace == {"type": "scatter", "y": [1.0, None, None]}
+
+
+def test_the_policy_allows_the_scripts_of_the_page_and_nothing_else(tmp_path: Path) -> None:
+    page = Page(page_of(tmp_path, results(HOSTILE)))
+    (policy,) = [m["content"] for m in page.all("meta") if "http-equiv" in m]
+    assert policy is not None
+    run = [text for attributes, text in page.scripts if "type" not in attributes]
+    digests = [hashlib.sha256(script.encode()).digest() for script in run]
+    allowed = " ".join(f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests)
+    assert len(run) == 2
+    assert f"script-src {allowed};" in policy
+    assert "default-src 'none'" in policy
+
+
+def test_the_page_refers_to_nothing_outside_itself(tmp_path: Path) -> None:
+    page = Page(page_of(tmp_path, results("https://example.org/x.png")))
+    for _, attributes in page.elements:
+        for name in ("src", "href", "srcset", "action", "data", "poster"):
+            assert (attributes.get(name) or "#").startswith(("data:", "#"))
+    (style,) = [text for tag, text in page.texts if tag == "style"]
+    assert "url(" not in style
+    assert "@import" not in style
+
+
+def test_plotly_is_embedded_once_and_only_for_charts(tmp_path: Path) -> None:
+    section = Section(title="s", items=[Chart(caption="c", figure={})] * 3)
+    several = Page(page_of(tmp_path, results(sections=[section])))
+    assert len([1 for attributes, _ in several.scripts if "type" not in attributes]) == 2
+    none = page_of(tmp_path, results(sections=[]))
+    assert "<script" not in none
+    (policy,) = [m["content"] for m in Page(none).all("meta") if "http-equiv" in m]
+    assert "script-src 'none'" in str(policy)
+
+
+def test_images_are_embedded_whole_and_described(tmp_path: Path) -> None:
+    page = Page(page_of(tmp_path, results("the caption")))
+    (image,) = page.all("img")
+    assert image["alt"] == "the caption"
+    head, _, data = (image["src"] or "").partition(",")
+    assert head == "data:image/png;base64"
+    assert base64.b64decode(data) == (tmp_path / "model.png").read_bytes()
+
+
+@pytest.mark.parametrize("file", ["missing.png", "../secret.png", "text.png", "link.png", ""])
+def test_an_image_must_be_a_png_in_the_folder(tmp_path: Path, file: str) -> None:
+    Pixels.new("RGB", (2, 2)).save(tmp_path / "secret.png")
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / "text.png").write_text("no picture")
+    (folder / "link.png").symlink_to(tmp_path / "secret.png")
+    section = Section(title="s", items=[Image(caption="c", file=file)])
+    with pytest.raises(InputError, match="image"):
+        page_of(folder, results(sections=[section]))
+
+
+def test_contents_lead_to_every_section(tmp_path: Path) -> None:
+    sections = [Section(title=f"Part {k}", items=[]) for k in range(3)]
+    page = Page(page_of(tmp_path, results(sections=sections)))
+    links = [(a["href"] or "").removeprefix("#") for a in page.all("a")]
+    ids = [s["id"] for s in page.all("section")]
+    assert links == [i for i in ids if i != "summary"]
+    assert len(links) > 4
+
+
+def test_tables_have_headers_and_the_page_a_language(tmp_path: Path) -> None:
+    page = Page(page_of(tmp_path, results()))
+    assert page.all("html") == [{"lang": "en"}]
+    assert all(head.get("scope") in ("col", "row") for head in page.all("th"))
+    assert len(page.all("thead")) == len(page.all("table"))
+    assert all(chart["aria-label"] for chart in page.all("div") if chart.get("role") == "img")
+
+
+def test_the_same_results_make_the_same_page(tmp_path: Path) -> None:
+    assert page_of(tmp_path, results()) == page_of(tmp_path, results())
+
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+def test_a_browser_draws_the_chart_and_runs_nothing_hostile(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    folder.mkdir()
+    page_of(folder, results(HOSTILE))
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+    done = subprocess.run(
+        [
+            str(CHROMIUM),
+            *options,
+            f"--user-data-dir={tmp_path / 'profile'}",
+            "--virtual-time-budget=5000",
+            "--dump-dom",
+            (folder / "report.html").as_uri(),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    assert 'class="main-svg"' in done.stdout
+    head = done.stdout.partition("<title>")[2].partition("</title>")[0]
+    assert "taken" in head  # the whole string is the title, escaped
+    assert head.startswith("&lt;/script&gt;")

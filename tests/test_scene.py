@@ -1,0 +1,115 @@
+"""Scenes from YAML: what is read, what is refused, and that a file cannot do anything."""
+
+import pytest
+
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.scene import change_scene, library_scene, parse_scene, read_scene
+
+TEXT = """
+title: small
+shaft: {front: -1.0, sections: [{length: 2.0, outer_diameter: 0.4}]}
+bearing_units:
+  - {bearing: {name: main_bearing}, housing: {}, interface: sliding}
+gearbox: {stiffness: [4e6, 8e7, 8e7, rigid, 0, 0], weight: 1000}
+"""
+
+
+def test_reads_numbers_as_engineers_write_them():
+    scene = parse_scene(TEXT)
+    assert scene.gearbox.stiffness == (4e6, 8e7, 8e7, "rigid", 0.0, 0.0)
+    assert scene.bearing_unit("main_bearing").interface == "sliding"
+
+
+@pytest.mark.parametrize("name", ["main_bearing_spherical", "main_bearing_bonded"])
+def test_library_scenes_are_table_3_1(name):
+    scene = library_scene(name)
+    assert -scene.shaft.front == pytest.approx(2.145)
+    assert scene.shaft.rear == pytest.approx(2.615)
+    assert scene.shaft.sections[0].outer_diameter == 0.4
+    assert scene.gearbox.stiffness[:3] == (4e6, 8e7, 8e7)
+    assert scene.gearbox.weight == 392280
+
+
+def test_round_trip_through_a_change():
+    scene = parse_scene(TEXT)
+    assert change_scene(scene, {}) == scene
+    thinner = change_scene(scene, {"bearing_units.main_bearing.housing.wall": 0.07})
+    assert thinner.bearing_units[0].housing.wall == 0.07
+    assert (
+        change_scene(thinner, {"bearing_units.0.housing.wall": scene.bearing_units[0].housing.wall})
+        == scene
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"shaft.sections.0.outer_diameter": -0.4}, "outer_diameter.*-0.4"),
+        ({"shaft.sections.0.length": 0}, "length.* 0"),
+        ({"shaft.sections.0.inner_diameter": 0.4}, "inner"),
+        ({"shaft.sections.0.inner_diameter": 0.5}, "inner"),
+        ({"shaft.colour": "red"}, "Shaft has no 'colour': use one of front, sections"),
+        ({"colour": "red"}, "colour.*unknown key.*gearbox"),
+        ({"shaft.material": "cheese"}, "material 'cheese' of shaft is unknown: use one of steel"),
+        ({"bearing_units.0.housing.material": "chees"}, "'chees' of main_bearing.housing"),
+        ({"gearbox.stiffness": [1, 2, 3]}, "gearbox.stiffness"),
+        ({"gearbox.stiffness": [-1, 0, 0, 0, 0, 0]}, "from 0 on, or 'rigid'"),
+        ({"gearbox.stiffness": [".nan", 0, 0, 0, 0, 0]}, "gearbox.stiffness"),
+        ({"gearbox.weight": -1}, "gearbox.weight = -1"),
+        ({"bearing_units.0.interface": "glued"}, "interface = 'glued'.*bonded"),
+        ({"bearing_units.0.bearing.kind": "ring"}, "cannot have the spherical-joint interface"),
+        ({"bearing_units.7.interface": "bonded"}, "there is no '7'"),
+        ({"materials": {"m": {"youngs_modulus": 0, "poisson_ratio": 0.3, "density": 1}}}, "youngs"),
+        (
+            {"materials": {"m": {"youngs_modulus": 1, "poisson_ratio": 0.5, "density": 1}}},
+            "poisson",
+        ),
+    ],
+)
+def test_refuses_with_one_sentence(changes, message):
+    with pytest.raises(InputError, match=message) as caught:
+        parse_scene(TEXT, changes)
+    assert "\n" not in str(caught.value)
+    assert "Traceback" not in str(caught.value)
+
+
+def test_own_material_is_taken():
+    scene = parse_scene(
+        TEXT,
+        {
+            "materials.alloy": {"youngs_modulus": "7e10", "poisson_ratio": 0.33, "density": 2700},
+            "shaft.material": "alloy",
+        },
+    )
+    assert scene.material_of("shaft").youngs_modulus == 7e10
+    assert scene.material_of("main_bearing.housing").density == 7100
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("!!python/object/apply:os.system ['echo hacked > /tmp/hacked']", "not plain YAML"),
+        ("a: &a [1]\nb: *a", "anchors and aliases are not allowed"),
+        ("[" * 3000 + "]" * 3000, "nested deeper|not plain YAML"),
+        ("{" * 30 + "}" * 30, "nested deeper|not plain YAML"),
+        ("just text", "must be a mapping"),
+        ("a: [1, 2", "not plain YAML"),
+        ("", "must be a mapping"),
+    ],
+)
+def test_hostile_or_broken_yaml_runs_nothing(text, message):
+    with pytest.raises(InputError, match=message):
+        parse_scene(text)
+
+
+def test_file_limits_and_absence(tmp_path):
+    with pytest.raises(InputError, match="cannot read scene file"):
+        read_scene(tmp_path / "none.yaml")
+    big = tmp_path / "big.yaml"
+    big.write_text("# " + "x" * 1_000_001)
+    with pytest.raises(InputError, match="at most 1000000"):
+        read_scene(big)
+    binary = tmp_path / "binary.yaml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="cannot read"):
+        read_scene(binary)
