@@ -20,7 +20,7 @@ CAD_TOLERANCE = 1e-6
 """Two positions of CAD entities closer than this (m) are the same; bounding boxes err by 1e-7."""
 
 GROWTH = 0.4
-"""How much larger an element may be for each metre of distance from a tightly curved face, m."""
+"""Growth of the element size with the distance from a tightly curved face, m per m."""
 
 MOST_ELEMENTS = 3e6
 """More elements than this in one part are taken for a slip of the pen in its mesh size."""
@@ -35,6 +35,9 @@ class MeshSizes(Part):
     shaft: float = dimension(0.12, of="element size in the shaft", gt=0)
     bearing: float = dimension(0.05, of="element size in the bearings and on their seats", gt=0)
     housing: float = dimension(0.06, of="element size in the housings", gt=0)
+    bearing_edge: float = dimension(
+        0.03, of="element size along the edges of the bearings, where stress is singular", gt=0
+    )
     elements_per_turn: int = Field(
         default=12,
         ge=6,
@@ -48,6 +51,7 @@ class MeshSizes(Part):
             shaft=self.shaft * factor,
             bearing=self.bearing * factor,
             housing=self.housing * factor,
+            bearing_edge=self.bearing_edge * factor,
             elements_per_turn=self.elements_per_turn,
         )
 
@@ -402,9 +406,31 @@ def _apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str,
             if limit < size:
                 fields.append(field.add("MathEval"))
                 field.setString(fields[-1], "F", f"{limit:.9f} + {GROWTH} * {_distance(face)}")
+        if size_name(name) == "bearing":
+            fields.append(_finer_along_edges(tag, sizes.bearing_edge))
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", fields)
     field.setAsBackgroundMesh(least)
+
+
+def _finer_along_edges(tag: int, size: float) -> int:
+    """A field of small elements along the edges of a bearing, growing away from them.
+
+    Where the side of a bearing meets shaft and housing, stress is singular: that is what holds
+    up the convergence of the stiffness.
+    """
+    field = gmsh.model.mesh.field
+    distance = field.add("Distance")
+    circles = [
+        curve
+        for curve in _boundary([(2, face) for face in _boundary([(3, tag)])])
+        if gmsh.model.getType(1, curve) != "Line"
+    ]
+    field.setNumbers(distance, "CurvesList", circles)
+    field.setNumber(distance, "Sampling", 200)
+    growing = field.add("MathEval")
+    field.setString(growing, "F", f"{size:.9f} + {GROWTH} * F{distance}")
+    return int(growing)
 
 
 def _parameters(face: int) -> list[list[float]]:

@@ -13,6 +13,7 @@ COARSE = {
     "mesh.shaft": 0.3,
     "mesh.bearing": 0.1,
     "mesh.housing": 0.1,
+    "mesh.bearing_edge": 0.1,
     "shaft.front": -1.0,
     "shaft.sections.0.length": 2.2,
 }

@@ -390,6 +390,31 @@ def test_bearing_unit_and_shaft_can_stand_alone():
     )
 
 
+def test_details_far_smaller_than_the_mesh_size_fold_nothing():
+    # a step of half a millimetre in radius: straight edges on its two circles would cross
+    low_step = Shaft(
+        front=0,
+        sections=(
+            Section(length=0.5, outer_diameter=0.458),
+            Section(length=0.5, outer_diameter=0.459),
+        ),
+    )
+    mesh = generate(low_step, sizes=COARSE)
+    assert quality(mesh).inverted == 0
+    exact = math.pi / 8 * (0.458**2 + 0.459**2)
+    assert volume(mesh) == pytest.approx(exact, rel=SHAPE_ERROR)
+    # a housing two millimetres wider than its bearing on either side
+    ring = Bearing(kind="ring", raceway_diameter=0.6, width=0.146)
+    rim = generate(plain_shaft(), [ring], {ring.name: Housing(width=0.15)}, COARSE)
+    assert quality(rim).inverted == 0
+
+
+def test_finer_sizes_leave_the_other_kinds_alone():
+    finer = COARSE.finer({"housing"}, 1.5)
+    assert finer == COARSE.model_copy(update={"housing": COARSE.housing / 1.5})
+    assert COARSE.finer({"shaft"}, 1.5).elements_per_turn == 18
+
+
 def test_scaled_sizes_make_a_coarser_mesh(joint):
     bearing = Bearing()
     housings = {bearing.name: Housing()}
