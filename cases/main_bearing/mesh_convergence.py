@@ -71,8 +71,15 @@ def run(run: Run) -> Any:
         caption="Difference from the finest mesh",
         figure={
             "data": [
-                study.line(unknowns[:-1], np.maximum(d, 1e-6), q, mode="lines+markers")
-                for q, d in finest.items()
+                study.line(
+                    unknowns[:-1],
+                    np.maximum(d, 1e-6),
+                    q.partition(" [")[0],
+                    mode="lines+markers",
+                    marker={"symbol": k, "size": 9},
+                    line={"dash": "solid" if q.startswith("K_R") else "dot"},
+                )
+                for k, (q, d) in enumerate(finest.items())
             ],
             "layout": {
                 "xaxis": {"title": {"text": "unknowns"}, "type": "log"},

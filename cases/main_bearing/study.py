@@ -334,8 +334,9 @@ def assumptions(scene: Scene) -> list[AssumptionRow]:
         ("clearance, friction, damping", "none", "", "as in the thesis: quasi-static, linear"),
     ]
     for unit in scene.bearing_units:
-        for part in (unit.bearing, unit.housing):
-            rows += [tuple(row) for row in part.assumptions()]
+        name = unit.bearing.name
+        for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.housing)):
+            rows += [(f"{owner}: {row[0]}", *row[1:]) for row in part.assumptions()]
     for name in _parts(scene):
         material = scene.material_of(name)
         rows.append(
