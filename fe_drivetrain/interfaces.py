@@ -9,13 +9,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
+from scipy import linalg, sparse
 from scipy.sparse.linalg import splu
 
 from fe_drivetrain.elasticity import Floats, Ints, rigid_motions
 from fe_drivetrain.errors import InputError
 
 AXES = ("x", "y", "z")
+
+_BLOCK = 256  # columns that are dense at a time while constraints are eliminated
 
 
 @dataclass(frozen=True)
@@ -195,13 +197,13 @@ def rigid_face(name: str, nodes: Ints, points: Floats, point: ReferencePoint) ->
 def equal_translations(name: str, first: ReferencePoint, second: ReferencePoint) -> Constraint:
     """Two reference points move together and turn freely."""
     rows = (first.motion[:3] - second.motion[:3]).tocsr()
-    return Constraint(name, rows, _largest_columns(rows))
+    return Constraint(name, rows, _pivots(rows))
 
 
 def held(name: str, point: ReferencePoint, components: Sequence[int]) -> Constraint:
     """Motions of a reference point (0-2 displacements, 3-5 rotations) that are zero."""
     rows = point.motion[list(components)].tocsr()
-    return Constraint(name, rows, _largest_columns(rows))
+    return Constraint(name, rows, _pivots(rows))
 
 
 def rigid_point(name: str, position: Floats, first_freedom: int, n_freedoms: int) -> ReferencePoint:
@@ -299,8 +301,12 @@ def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination
         # Pivots may stand in other rows too, so the (small, sparse) pivot block is solved; only
         # for the columns that are not empty.
         columns = np.flatnonzero(np.diff(right.indptr))
-        solved = splu(C[:, pivots]).solve(right[:, columns].toarray())
-        dependent = sparse.csr_array(solved) @ _selection(columns, free.size).T
+        factor = splu(C[:, pivots])
+        solved = [
+            sparse.csc_array(factor.solve(right[:, some].toarray()))
+            for some in np.array_split(columns, len(columns) // _BLOCK + 1)
+        ]
+        dependent = sparse.hstack(solved, format="csr") @ _selection(columns, free.size).T
         T = (T + _selection(pivots, n_freedoms) @ dependent).tocsr()
     return Elimination(T, tuple(constraints))
 
@@ -325,11 +331,8 @@ def _rows(coefficients: Floats, columns: Ints, n_freedoms: int) -> sparse.csr_ar
     )
 
 
-def _largest_columns(rows: sparse.csr_array) -> Ints:
-    """For each row the column of its largest coefficient that no earlier row has taken."""
-    taken: list[int] = []
-    for k in range(rows.shape[0]):
-        row = rows[[k]].tocoo()
-        order = np.argsort(-np.abs(row.data))
-        taken.append(next(int(c) for c in row.coords[1][order] if int(c) not in taken))
-    return np.array(taken, dtype=np.int64)
+def _pivots(rows: sparse.csr_array) -> Ints:
+    """One column for each row, so that the block of these columns is far from singular."""
+    columns = np.unique(rows.indices)
+    order = linalg.qr(rows[:, columns].toarray(), mode="r", pivoting=True)[1]
+    return np.asarray(columns[order[: rows.shape[0]]])

@@ -62,11 +62,6 @@ class Model:
     n_freedoms: int
 
     @property
-    def held_gearbox(self) -> list[int]:
-        """The gearbox motions (0-2 displacements, 3-5 rotations) that are rigidly held."""
-        return [c for c, k in enumerate(self.scene.gearbox.stiffness) if k == "rigid"]
-
-    @property
     def stiffness(self) -> sparse.csr_array:
         """Stiffness of all parts and springs, before any constraint [N/m]."""
         total = sum(self.part_stiffness.values())
@@ -161,7 +156,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         base = f"{name}.housing.base"
         constraints.append(interfaces.fixed(base, mesh.face_nodes(base), n_freedoms))
 
-    rigid = [c for c, k in enumerate(scene.gearbox.stiffness) if k == "rigid"]
+    rigid = scene.gearbox.held
     if rigid:
         constraints.append(interfaces.held("gearbox reaction", points["gearbox"], rigid))
     k = np.diag([0.0 if k == "rigid" else float(k) for k in scene.gearbox.stiffness])

@@ -7,7 +7,7 @@ import numpy as np
 
 from fe_drivetrain.elasticity import Floats, Ints
 from fe_drivetrain.interfaces import eliminate, freedoms
-from fe_drivetrain.model import LOADS, Model
+from fe_drivetrain.model import COMPONENTS, LOADS, Model
 from fe_drivetrain.solvers import Method, solve
 
 #: Standard gravity [m/s^2] (CGPM 1901).
@@ -55,6 +55,17 @@ class Response:
     method: str
     seconds: float
     n_unknowns: int
+
+    def reaction_matrix(self) -> tuple[list[str], Floats]:
+        """All reactions as one matrix.
+
+        Returns
+        -------
+        labels, matrix
+            "NAME Fx" to "NAME Mz" for each reaction, and (n_labels, 10).
+        """
+        labels = [f"{name} {c}" for name in self.reactions for c in COMPONENTS]
+        return labels, np.vstack(list(self.reactions.values()))
 
     def history(
         self,
@@ -190,7 +201,7 @@ def _reactions(
     for point, k in model.springs:
         total += k @ (point.motion @ U)
     if "gearbox reaction" in multipliers:
-        total[model.held_gearbox] -= multipliers["gearbox reaction"]
+        total[model.scene.gearbox.held] -= multipliers["gearbox reaction"]
     reactions["gearbox"] = total
     return reactions
 

@@ -51,6 +51,13 @@ class Gearbox(_Part):
     weight: float = Field(default=0.0, ge=0, allow_inf_nan=False, description="[N], along -z")
     coupling: Coupling = "averaged"
 
+    @field_validator("stiffness", mode="before")
+    @classmethod
+    def _no_booleans(cls, value: Any) -> Any:
+        if isinstance(value, list | tuple) and any(isinstance(k, bool) for k in value):
+            raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
+        return value
+
     @field_validator("stiffness")
     @classmethod
     def _not_negative(
@@ -60,6 +67,11 @@ class Gearbox(_Part):
             if k != "rigid" and not 0 <= k < float("inf"):
                 raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
         return value
+
+    @property
+    def held(self) -> list[int]:
+        """The motions (0-2 displacements, 3-5 rotations) that are rigidly held."""
+        return [c for c, k in enumerate(self.stiffness) if k == "rigid"]
 
 
 class Scene(_Part):
@@ -129,11 +141,11 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
     """
     path = Path(path)
     try:
-        if path.stat().st_size > _MAX_BYTES:
-            raise InputError(
-                f"{path} has {path.stat().st_size} bytes; a scene file has at most {_MAX_BYTES}"
-            )
-        text = path.read_text(encoding="utf-8")
+        with path.open("rb") as file:
+            content = file.read(_MAX_BYTES + 1)
+        if len(content) > _MAX_BYTES:
+            raise InputError(f"{path} is larger than {_MAX_BYTES} bytes, the most of a scene file")
+        text = content.decode("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"cannot read scene file {path}: {error}") from error
     return parse_scene(text, changes, source=str(path))
@@ -235,8 +247,10 @@ def _step(target: Any, part: str, key: str) -> Any:
     if isinstance(target, list):
         if part.isdigit() and int(part) < len(target):
             return target[int(part)]
+        default = Bearing.model_fields["name"].default
         for unit in target:
-            if isinstance(unit, dict) and unit.get("bearing", {}).get("name") == part:
+            bearing = unit.get("bearing") if isinstance(unit, dict) else None
+            if isinstance(bearing, dict) and bearing.get("name", default) == part:
                 return unit
     raise InputError(f"key {key!r}: there is no {part!r}")
 
@@ -255,3 +269,10 @@ class _PlainLoader(yaml.SafeLoader):
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        keys = [key.value for key, _ in node.value]
+        twice = {key for key in keys if keys.count(key) > 1}
+        if twice:
+            raise yaml.YAMLError(f"key {sorted(twice)[0]!r} stands twice in one mapping")
+        return super().construct_mapping(node, deep)

@@ -5,6 +5,8 @@ Symmetric positive definite systems only: interfaces are eliminated before, and 
 
 import importlib.util
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,6 +18,8 @@ from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 
 Method = Literal["auto", "superlu", "pardiso"]
+
+_SINGULAR = "the stiffness matrix is singular: the scene is not held everywhere"
 
 
 @dataclass(frozen=True)
@@ -67,42 +71,43 @@ def solve(K: sparse.csr_array, F: Floats, method: Method = "auto") -> Solution:
             "or choose 'superlu'"
         )
     start = time.perf_counter()
-    apply = _pardiso(K) if method == "pardiso" else _superlu(K)
-    x = apply(F)
-    # One step of refinement: slender solids are ill-conditioned and lose digits in the factor.
-    x = x + apply(F - K @ x)
+    with _factor(K, method) as apply:
+        x = apply(F)
+        # One step of refinement: slender solids are ill-conditioned and lose digits in the factor.
+        x = x + apply(F - K @ x)
     if not np.isfinite(x).all():
-        raise InputError("the stiffness matrix is singular: the scene is not held everywhere")
+        raise InputError(_SINGULAR)
     size = np.linalg.norm(F, axis=0)
     size[size == 0.0] = 1.0
     residual = float((np.linalg.norm(K @ x - F, axis=0) / size).max())
     return Solution(x, residual, method, time.perf_counter() - start)
 
 
-def _superlu(K: sparse.csr_array):  # type: ignore[no-untyped-def]
+@contextmanager
+def _factor(K: sparse.csr_array, method: str) -> Iterator[Callable[[Floats], Floats]]:
+    """A function that solves with the factor of K; the factor's memory is freed afterwards."""
     try:
-        factor = splu(
-            K.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        if method == "superlu":
+            factor = splu(
+                K.tocsc(),
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
+            yield factor.solve
+            return
+        from pypardiso import PyPardisoSolver
+        from pypardiso.pardiso_wrapper import PyPardisoError
     except RuntimeError as error:  # SuperLU: "Factor is exactly singular"
-        raise InputError(
-            "the stiffness matrix is singular: the scene is not held everywhere"
-        ) from error
-    return factor.solve
-
-
-def _pardiso(K: sparse.csr_array):  # type: ignore[no-untyped-def]
-    from pypardiso import PyPardisoSolver
+        raise InputError(_SINGULAR) from error
 
     upper = sparse.csr_matrix(sparse.triu(K, format="csr"))
     upper.sort_indices()
     solver = PyPardisoSolver(mtype=2)  # real, symmetric, positive definite
-    solver.factorize(upper)
-
-    def apply(F: Floats) -> Floats:
-        return np.asarray(solver.solve(upper, np.asfortranarray(F))).reshape(F.shape)
-
-    return apply
+    try:
+        solver.factorize(upper)
+        yield lambda F: np.asarray(solver.solve(upper, np.asfortranarray(F))).reshape(F.shape)
+    except (PyPardisoError, ValueError) as error:
+        raise InputError(_SINGULAR) from error
+    finally:
+        solver.free_memory(everything=True)

@@ -77,6 +77,11 @@ def tilt_stiffness(
     InputError
         The gearbox still carries part of the load.
     """
+    if len(model.scene.bearing_units) != 1:
+        raise InputError(
+            f"tilt stiffness needs a scene with one bearing, not {len(model.scene.bearing_units)}: "
+            "a second one carries part of the moment; take it out of the scene"
+        )
     if any(k != 0 for k in model.scene.gearbox.stiffness):
         raise InputError(
             "tilt stiffness needs a scene without gearbox stiffness, else the bearing does not "
@@ -122,8 +127,16 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
         bearing and housing (the seat's mean displacement holds the shaft's curvature over the
         seat, which is as large as what the housing gives).
     """
+    others = [name for name in response.reactions if "." not in name and name != bearing]
     wrench = response.reactions[bearing][:, :6]
     if np.abs(wrench[3:]).max() > 1e-6:  # carries moments
+        for other in others:
+            if np.abs(response.reactions[other][:, :6]).max() > 1e-6:
+                raise InputError(
+                    f"the stiffness of bonded bearing {bearing!r} needs a scene in which it "
+                    f"carries everything, but {other!r} carries a part: take away the gearbox "
+                    "stiffness and other bearings"
+                )
         to_rear = np.eye(6)
         to_rear[:3] = rigid_motions(
             response.positions["gearbox"][None], response.positions[bearing]

@@ -13,6 +13,9 @@ from fe_drivetrain.errors import InputError
 from .part import LENGTH_TOLERANCE, Part, dimension
 from .shaft import Segment, revolve, split
 
+RESERVED = ("shaft", "hub", "gearbox")
+"""Names that something else in a scene has."""
+
 
 class Bearing(Part):
     """Inner ring and rollers as one solid body, up to the raceway of the outer ring.
@@ -48,10 +51,10 @@ class Bearing(Part):
 
     @model_validator(mode="after")
     def _can_be_built(self) -> Self:
-        if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", self.name) or self.name == "shaft":
+        if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", self.name) or self.name in RESERVED:
             raise InputError(
                 f"Bearing: name is {self.name!r} but must be letters, digits, '_' and '-', begin "
-                "with a letter and not be 'shaft': rename the bearing"
+                f"with a letter and not be one of {', '.join(RESERVED)}: rename the bearing"
             )
         if self.kind == "spherical" and self.width >= self.raceway_diameter:
             raise InputError(

@@ -95,6 +95,13 @@ def test_joint_forms_bound_each_other(spherical_responses):
     assert compliance["rigid"] < compliance["averaged"]
 
 
+def test_all_reactions_stand_in_one_matrix(bonded_response):
+    labels, matrix = bonded_response.reaction_matrix()
+    assert matrix.shape == (len(labels), len(LOADS))
+    row = labels.index("gearbox Fz")
+    np.testing.assert_array_equal(matrix[row], bonded_response.reactions["gearbox"][2])
+
+
 def test_history_is_the_sum_of_unit_responses(bonded_response, rng):
     hub = rng.standard_normal((5, 7, 6))
     history = bonded_response.history("main_bearing", hub, gearbox_weight=3.0, gravity=GRAVITY)

@@ -30,6 +30,12 @@ def test_library_scenes_are_table_3_1(name):
     assert scene.gearbox.weight == 392280
 
 
+def test_a_bearing_goes_by_its_default_name():
+    text = TEXT.replace("{name: main_bearing}", "{width: 0.18}")
+    scene = parse_scene(text, {"bearing_units.main_bearing.housing.wall": 0.07})
+    assert scene.bearing_units[0].housing.wall == 0.07
+
+
 def test_round_trip_through_a_change():
     scene = parse_scene(TEXT)
     assert change_scene(scene, {}) == scene
@@ -56,6 +62,9 @@ def test_round_trip_through_a_change():
         ({"gearbox.stiffness": [-1, 0, 0, 0, 0, 0]}, "from 0 on, or 'rigid'"),
         ({"gearbox.stiffness": [".nan", 0, 0, 0, 0, 0]}, "gearbox.stiffness"),
         ({"gearbox.weight": -1}, "gearbox.weight = -1"),
+        ({"gearbox.stiffness": [True, 0, 0, 0, 0, 0]}, "gearbox.stiffness"),
+        ({"bearing_units.0.bearing.name": "gearbox"}, "not be one of shaft, hub, gearbox"),
+        ({"bearing_units": [{"bearing": "ring"}], "bearing_units.x.housing.wall": 1}, "no 'x'"),
         ({"bearing_units.0.interface": "glued"}, "interface = 'glued'.*bonded"),
         ({"bearing_units.0.bearing.kind": "ring"}, "cannot have the spherical-joint interface"),
         ({"bearing_units.7.interface": "bonded"}, "there is no '7'"),
@@ -92,6 +101,7 @@ def test_own_material_is_taken():
         ("a: &a [1]\nb: *a", "anchors and aliases are not allowed"),
         ("[" * 3000 + "]" * 3000, "nested deeper|not plain YAML"),
         ("{" * 30 + "}" * 30, "nested deeper|not plain YAML"),
+        ("a: 1\nb: {c: 1, c: 2}", "'c' stands twice"),
         ("just text", "must be a mapping"),
         ("a: [1, 2", "not plain YAML"),
         ("", "must be a mapping"),
@@ -107,7 +117,7 @@ def test_file_limits_and_absence(tmp_path):
         read_scene(tmp_path / "none.yaml")
     big = tmp_path / "big.yaml"
     big.write_text("# " + "x" * 1_000_001)
-    with pytest.raises(InputError, match="at most 1000000"):
+    with pytest.raises(InputError, match="larger than 1000000 bytes"):
         read_scene(big)
     binary = tmp_path / "binary.yaml"
     binary.write_bytes(b"\xff\xfe\x00")

@@ -1,5 +1,7 @@
 """K_R and the condensed stiffness of a bearing unit."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -25,6 +27,23 @@ def free(bonded_model):
 def test_gearbox_must_be_off(bonded_model, bonded_response):
     with pytest.raises(InputError, match="without gearbox stiffness"):
         tilt_stiffness(bonded_model, bonded_response, "main_bearing", VERTICAL)
+
+
+def test_a_bonded_unit_that_shares_its_load_is_refused(bonded_response):
+    with pytest.raises(InputError, match="'gearbox' carries a part"):
+        bearing_unit_stiffness(bonded_response, "main_bearing")
+
+
+def test_two_bearings_have_no_tilt_stiffness(bonded_model, bonded_response):
+    scene = bonded_model.scene
+    unit = scene.bearing_units[0]
+    other = unit.model_copy(
+        update={"bearing": unit.bearing.model_copy(update={"name": "second", "x": 0.7})}
+    )
+    two = without_gearbox(scene).model_copy(update={"bearing_units": (unit, other)})
+    model = dataclasses.replace(bonded_model, scene=two)
+    with pytest.raises(InputError, match="one bearing, not 2"):
+        tilt_stiffness(model, bonded_response, "main_bearing", VERTICAL)
 
 
 def test_estimators_agree_in_size_and_order(free):

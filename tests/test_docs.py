@@ -1,0 +1,52 @@
+"""The documentation says what the program does."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from fe_drivetrain.geometry import Bearing, Flange, Housing, MeshSizes, Section, Shaft
+
+from fe_drivetrain.materials import Material
+from fe_drivetrain.model import mesh_scene
+from fe_drivetrain.scene import BearingUnit, Gearbox, Hub, Scene, parse_scene
+
+ROOT = Path(__file__).parents[1]
+SCENE_DOC = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
+MODELS = (
+    Scene,
+    Shaft,
+    Section,
+    Flange,
+    BearingUnit,
+    Bearing,
+    Housing,
+    Hub,
+    Gearbox,
+    MeshSizes,
+    Material,
+)
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda m: m.__name__)
+def test_every_key_of_a_scene_is_documented(model):
+    for key in model.model_fields:
+        assert re.search(rf"`([a-z_]+\.)?{key}`", SCENE_DOC), f"{model.__name__}.{key}"
+
+
+def test_the_example_scene_is_valid_and_can_be_meshed():
+    text = re.search(r"```yaml\n(.*?)```", SCENE_DOC, re.DOTALL).group(1)
+    changes = {"mesh.shaft": 0.3, "mesh.bearing": 0.12, "mesh.housing": 0.12}
+    changes |= {"mesh.bearing_edge": 0.12, "mesh.elements_per_turn": 8}
+    mesh = mesh_scene(parse_scene(text, changes))
+    assert set(mesh.part_names) == {"shaft", "main_bearing", "main_bearing.housing"}
+
+
+def test_the_library_example_of_the_readme_runs():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    code = re.search(r"```python\n(.*?)```", readme, re.DOTALL).group(1)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    equilibrium, superposition = (float(x) for x in done.stdout.splitlines()[-1].split())
+    assert max(equilibrium, superposition) < 1e-8
