@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.model import Model, build_model, mesh_scene
     from fe_drivetrain.response import Response, unit_load_response
     from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
+    from fe_drivetrain.scene_beam import beam_of_scene
     from fe_drivetrain.stiffness import bearing_unit_stiffness, tilt_stiffness, without_gearbox
     from fe_drivetrain.surrogate import hub_load_set
 
@@ -25,6 +26,7 @@ _HOME = {
     "Model": "model",
     "Response": "response",
     "Scene": "scene",
+    "beam_of_scene": "scene_beam",
     "bearing_unit_stiffness": "stiffness",
     "build_model": "model",
     "change_scene": "scene",
@@ -49,6 +51,7 @@ __all__ = [
     "Model",
     "Response",
     "Scene",
+    "beam_of_scene",
     "bearing_unit_stiffness",
     "build_model",
     "change_scene",

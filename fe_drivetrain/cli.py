@@ -181,7 +181,9 @@ def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
                 f"--set {text!r} must be KEY=VALUE: write it as in --set gearbox.weight=4e5"
             )
         try:
-            parsed = yaml.load(value, Loader=loader)
+            # To YAML an asterisk begins an alias; in a file pattern it is a letter.
+            is_pattern = value.lstrip().startswith("*")
+            parsed = value if is_pattern else yaml.load(value, Loader=loader)
             plain = _is_plain(parsed)
         except (yaml.YAMLError, ValueError, RecursionError) as error:
             reason = " ".join(str(getattr(error, "problem", None) or error).split())

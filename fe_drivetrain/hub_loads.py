@@ -34,6 +34,9 @@ from fe_drivetrain.errors import InputError
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
+LARGEST_LOAD = 1e12
+"""A hub load beyond this (N, N m) is a slip of the pen or of the unit."""
+
 MIN_SAMPLES = 3
 """Two samples of any two signals correlate perfectly, so three is the fewest for which a mean
 error, an RMSE and a correlation all say something."""
@@ -520,6 +523,13 @@ def _require_sound(
             raise InputError(
                 f"{source}: {name} is {values[bad[0]]} at {at(bad[0])}, one of {bad.size} such "
                 "samples; a finite number is needed, so repair it or cut the history there"
+            )
+    for name, values in columns.items():
+        huge = np.flatnonzero(np.abs(values) > LARGEST_LOAD)
+        if huge.size:
+            raise InputError(
+                f"{source}: {name} is {values[huge[0]]:.3g} N or N m at {at(huge[0])}; a load must "
+                f"be at most {LARGEST_LOAD:.0e}, so check the unit in the column's heading"
             )
     steps = np.diff(time)
     back = np.flatnonzero(steps <= 0.0)

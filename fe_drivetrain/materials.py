@@ -10,9 +10,11 @@ class Material(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    youngs_modulus: Annotated[float, Field(gt=0, allow_inf_nan=False, description="E [Pa]")]
+    youngs_modulus: Annotated[
+        float, Field(ge=1e6, le=1e13, description="E [Pa], as in 2.1e11 for steel")
+    ]
     poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, description="nu [-]")]
-    density: Annotated[float, Field(ge=0, allow_inf_nan=False, description="rho [kg/m^3]")]
+    density: Annotated[float, Field(ge=0, le=1e5, description="rho [kg/m^3]")]
 
     @property
     def shear_modulus(self) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.elasticity import Floats, Ints
+from fe_drivetrain.errors import InputError
 from fe_drivetrain.interfaces import eliminate, freedoms
 from fe_drivetrain.model import COMPONENTS, LOADS, Model
 from fe_drivetrain.solvers import Method, solve
@@ -91,7 +92,14 @@ class Response:
         -------
         reaction
             (..., 6) [N, N m].
+
+        Raises
+        ------
+        InputError
+            There is no reaction of that name.
         """
+        if name not in self.reactions:
+            raise InputError(f"no reaction {name!r}: use one of {', '.join(self.reactions)}")
         R = self.reactions[name]
         constant = gearbox_weight * R[:, 9] - gravity * R[:, 8]
         result = hub_loads @ R[:, :6].T

@@ -19,6 +19,7 @@ Coupling = Literal["averaged", "rigid"]
 
 _MAX_BYTES = 1_000_000
 _MAX_DEPTH = 20
+_STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -64,8 +65,10 @@ class Gearbox(_Part):
         cls, value: tuple[float | Literal["rigid"], ...]
     ) -> tuple[float | Literal["rigid"], ...]:
         for k in value:
-            if k != "rigid" and not 0 <= k < float("inf"):
-                raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
+            if k != "rigid" and not 0 <= k <= _STIFFEST:
+                raise ValueError(
+                    f"{k:g} must be a number from 0 to {_STIFFEST:g} [N/m, N m/rad], or 'rigid'"
+                )
         return value
 
     @property
@@ -188,19 +191,49 @@ def validated(model: type[_Model], data: Any, source: str) -> _Model:
     """Validate data against a model; the first fault as an InputError in one sentence."""
     try:
         return model.model_validate(data)
+    except InputError as error:  # from a part, which speaks for itself
+        raise InputError(f"{source}: {error}") from error
     except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
+        # A misspelt key first: what is missing is often the same key, spelt right.
+        faults = error.errors(include_url=False)
+        fault = min(faults, key=lambda f: f["type"] != "extra_forbidden")
         where = ".".join(str(part) for part in fault["loc"] if not _is_type_tag(part))
-        message = fault["msg"].removeprefix("Value error, ")
-        if fault["type"] == "extra_forbidden":
-            message = f"unknown key; known here: {', '.join(_known_keys(model, fault['loc']))}"
-        value = fault["input"]
-        shown = f" = {value!r}" if isinstance(value, int | float | str) else ""
-        more = error.error_count() - 1
-        rest = f" (and {more} more)" if more else ""
-        raise InputError(
-            f"{source}: {where}{shown}: {message}{rest}".replace(": :", ":")
-        ) from error
+        raise InputError(f"{source}: {_sentence(where, fault, model)}") from error
+
+
+_WORDS = {
+    "missing": "is missing: add it",
+    "greater_than": "must be greater than {gt}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than": "must be less than {lt}",
+    "less_than_equal": "must be at most {le}",
+    "literal_error": "must be {expected}",
+    "float_parsing": "must be a number, in SI and without its unit",
+    "float_type": "must be a number, in SI and without its unit",
+    "string_type": "must be a text",
+    "too_short": "must have at least {min_length} values, not {actual_length}",
+    "too_long": "must have at most {max_length} values, not {actual_length}",
+    "model_type": "must be a mapping of keys to values",
+    "dict_type": "must be a mapping of keys to values",
+    "tuple_type": "must be a list",
+}
+
+
+def _sentence(where: str, fault: Any, model: type[BaseModel]) -> str:
+    """One fault of pydantic's as object, value, allowed range, mend."""
+    if fault["type"] == "extra_forbidden":
+        return f"{where}: unknown key; known here: {', '.join(_known_keys(model, fault['loc']))}"
+    shown = fault["input"]
+    value = f" = {shown!r}" if isinstance(shown, int | float | str) else ""
+    words = _WORDS.get(fault["type"])
+    if words is None:
+        message = str(fault["msg"]).removeprefix("Value error, ")
+        return f"{where}{value}: {message}".removeprefix(": ")
+    if "rigid" in fault["loc"] or where.startswith("gearbox.stiffness."):
+        words = "must be a number or 'rigid'"
+    return f"{where}{value if fault['type'] != 'missing' else ''} " + words.format(
+        **fault.get("ctx", {})
+    )
 
 
 def _is_type_tag(part: object) -> bool:
@@ -238,7 +271,7 @@ def _set(data: Any, key: str, value: Any) -> None:
     elif isinstance(target, list) and last.isdigit() and int(last) < len(target):
         target[int(last)] = value
     else:
-        raise InputError(f"key {key!r}: there is no {last!r} to set")
+        raise InputError(f"key {key!r}: there is no {last!r} to set{_choices(target)}")
 
 
 def _step(target: Any, part: str, key: str) -> Any:
@@ -252,7 +285,12 @@ def _step(target: Any, part: str, key: str) -> Any:
             bearing = unit.get("bearing") if isinstance(unit, dict) else None
             if isinstance(bearing, dict) and bearing.get("name", default) == part:
                 return unit
-    raise InputError(f"key {key!r}: there is no {part!r}")
+    raise InputError(f"key {key!r}: there is no {part!r}{_choices(target)}")
+
+
+def _choices(target: Any) -> str:
+    """What a list offers, for a message."""
+    return f"; there are 0 to {len(target) - 1}" if isinstance(target, list) and target else ""
 
 
 class _PlainLoader(yaml.SafeLoader):

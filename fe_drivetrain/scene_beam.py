@@ -115,6 +115,10 @@ def main_bearing_beam(scene: Scene, tilt: float = 0.0, yaw: float = 0.0) -> Main
         reason = f"{len(scene.bearing_units)} bearing units where the closed forms have one"
     elif not uniform:
         reason = "a shaft of several diameters where the closed forms have one"
+    elif any(k != 0 for k in scene.gearbox.stiffness[4:]):
+        reason = "gearbox stiffness about y or z where the closed forms have none"
+    elif 0 in radial:
+        reason = "no radial gearbox stiffness (gearbox.stiffness along y and z)"
     elif radial[0] != radial[1]:
         reason = "different gearbox stiffness along y and z where the closed forms have one K1"
     else:

@@ -77,7 +77,9 @@ _RANGES = {
 
 def _sentence(owner: str, fields: dict[str, FieldInfo], error: ValidationError) -> str:
     """First complaint of pydantic, as one sentence: object, value, allowed range, mend."""
-    first = error.errors(include_url=False)[0]
+    # A misspelt key first: what is missing is often the same key, spelt right.
+    faults = error.errors(include_url=False)
+    first = min(faults, key=lambda fault: fault["type"] != "extra_forbidden")
     path = ".".join(str(step) for step in first["loc"])
     name = str(first["loc"][0]) if first["loc"] else ""
     field = fields.get(name)

@@ -426,3 +426,11 @@ def test_on_a_terminal_steps_end_as_lines(monkeypatch: pytest.MonkeyPatch) -> No
     shown = terminal.getvalue()
     assert "part [bold] ... " in shown
     assert shown.count("loads ... ") == 1
+
+
+def test_a_file_pattern_is_a_word() -> None:
+    """To YAML a leading asterisk is an alias; to a user it is all files."""
+    assert cli.parse_settings(["loads=*.csv", "mesh.shaft=1e-1"]) == {
+        "loads": "*.csv",
+        "mesh.shaft": 0.1,
+    }

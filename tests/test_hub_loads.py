@@ -475,3 +475,11 @@ def test_missing_file_and_unknown_suffix_are_refused(tmp_path: Path) -> None:
             read_hub_loads(tmp_path / name)
     with pytest.raises(InputError, match=r"suffix '\.mat' is not one of \.out, \.outb"):
         read_hub_loads(tmp_path / "loads.mat")
+
+
+def test_a_load_beyond_reason_is_a_wrong_unit(tmp_path):
+    path = tmp_path / "loads.csv"
+    rows = "\n".join(f"{t}, 1e15, 1, 1, 1, 1, 1" for t in range(4))
+    path.write_text("time [s], Fx [N], Fy [N], Fz [N], Mx [N m], My [N m], Mz [N m]\n" + rows)
+    with pytest.raises(InputError, match=r"Fx is 1e\+15 .* at line 2 .*check the unit"):
+        read_csv(path)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import COARSE
 
@@ -83,6 +84,16 @@ def test_stiffness_file_is_valid(reports, name):
     assert content.matrices[0].reference_point == (0.0, 0.0, 0.0)
 
 
+def test_reactions_of_own_histories_are_written(reports):
+    """What the user's hub loads do to the bearing stands in a file of its own."""
+    table = np.loadtxt(
+        reports / "rmse" / "reactions_spherical_loads.csv", delimiter=",", skiprows=1
+    )
+    assert table.shape == (40, 7)
+    # Statics of the short shaft: Fz on the bearing is ((L1 + L2) Fz + My) / L2.
+    np.testing.assert_allclose(table[0, 3], (2.2 * -370e3 + 600e3 - 90e3) / 1.2, rtol=1e-6)
+
+
 def test_meshes_are_written(reports):
     import meshio
 
@@ -114,6 +125,7 @@ def load_text(times, value="1"):
         ("rmse", {"loads": load_text([0, 0.1, 0.2, 0.3], "nan")}, "Fy"),
         ("rmse", {"loads": load_text([0, 0.1, 0.2, 0.3, 0.9, 1.0])}, "0.9|0.3"),
         ("rmse", {"loads": load_text([0])}, "sample"),
+        ("rmse", {"loads": load_text([0, 0.2, 0.4]).replace(", 1", ", 0")}, "zero"),
         ("rmse", {"loads": "time [s], Fx [kN]\n0, 1\n1, 1\n2, 1\n"}, "Fy"),
     ],
 )

@@ -62,7 +62,7 @@ def test_held_scene_has_none(bonded_model):
 
 def test_a_spring_of_any_size_holds(spherical_mesh):
     """Whether something is held is a question of geometry, not of stiffness."""
-    for k in (1e-6, 1e20):
+    for k in (1e-6, 1e15):
         scene = change_scene(coarse_scene("spherical"), {"gearbox.stiffness": [0, k, k, k, 0, 0]})
         model = build_model(scene, spherical_mesh)
         assert find_mechanisms(model.mesh, model.constraints, model.springs) == []

@@ -13,7 +13,8 @@ from fe_drivetrain.case import Run
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.hub_loads import read_hub_loads
-from fe_drivetrain.results import Chart
+from fe_drivetrain.model import COMPONENTS
+from fe_drivetrain.results import Chart, Table
 from fe_drivetrain.surrogate import Condition, hub_load_set, surrogate_grid
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
@@ -100,9 +101,12 @@ def _read(pattern: str) -> HubLoads:
                 f"{file} has {len(history.time)} samples and {files[0]} has {len(first.time)}: "
                 "cut the histories to one length"
             )
+    loads = np.stack([history.loads for history in histories])
+    if not loads.any():
+        raise InputError(f"loads = {pattern!r}: all hub loads are zero: give histories with loads")
     return HubLoads(
         np.asarray(first.time),
-        np.stack([history.loads for history in histories]),
+        loads,
         tuple(history.name for history in histories),
         (),
         f"Hub loads: {len(files)} file{'s' if len(files) > 1 else ''} of your own, "
@@ -110,6 +114,36 @@ def _read(pattern: str) -> HubLoads:
         [],
         None,
     )
+
+
+def load_table(hub: HubLoads) -> Table:
+    """Range of each component, where a wrong sign or unit shows."""
+    flat = hub.loads.reshape(-1, 6)
+    rows: list[list[Any]] = []
+    for k, component in enumerate(COMPONENTS):
+        values = flat[:, k] / 1e3
+        unit = "kN" if k < 3 else "kN\u00a0m"
+        numbers = (values.min(), values.mean(), values.max(), values.std())
+        rows.append([f"{component} [{unit}]", *(float(v) for v in numbers)])
+    return Table(
+        caption="Hub loads over all histories, in the non-rotating shaft frame at the hub",
+        columns=["component", "least", "mean", "largest", "standard deviation"],
+        rows=rows,
+    )
+
+
+def write_reactions(folder: Path, hub: HubLoads, fe: Mapping[str, Floats]) -> None:
+    """FE reactions of the user's own histories as CSV, one file a history and bearing type."""
+    for kind, reaction in fe.items():
+        for name, history in zip(hub.names, reaction, strict=True):
+            np.savetxt(
+                folder / f"reactions_{kind}_{Path(name).stem}.csv",
+                np.column_stack([hub.time, history]),
+                delimiter=",",
+                fmt="%.9g",
+                header="time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]",
+                comments="",
+            )
 
 
 def rmse_charts(
@@ -165,10 +199,11 @@ def rmse_charts(
 def series_charts(
     hub: HubLoads, fe: Mapping[str, Floats], pairs: Pairs, seconds: float = 60.0
 ) -> list[Chart]:
-    """A minute of one history, FE and beams, per plane."""
+    """The beginning of one history, FE and beams, per plane."""
     chosen = len(hub.names) // 2
     shown = hub.time - hub.time[0] <= seconds
     charts = []
+    shown_seconds = min(seconds, float(hub.time[-1] - hub.time[0]))
     for plane, quantity, component in _PLANES:
         for kind in ("spherical", "bonded"):
             traces = [
@@ -196,7 +231,7 @@ def series_charts(
             charts.append(
                 Chart(
                     caption=f"Load on the {kind} main bearing, {plane} plane ({quantity}): first "
-                    f"minute of {hub.names[chosen]}",
+                    f"{shown_seconds:.0f} s of {hub.names[chosen]}",
                     figure={
                         "data": traces,
                         "layout": {

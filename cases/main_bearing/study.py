@@ -325,38 +325,47 @@ def write_mesh_files(run: Run, solved: Solved, name: str) -> None:
 
 def assumptions(scene: Scene) -> list[AssumptionRow]:
     """Everything that the thesis does not give."""
+    unit = scene.bearing_units[0]
+    torque = scene.gearbox.stiffness[3]
+    base = {
+        "fixed": "the whole underside of the housing is fixed, as in the thesis",
+        "bolted": "four washer footprints are fixed; in the thesis the whole underside",
+    }[unit.housing.base]
     rows: list[tuple[Any, ...]] = [
-        ("material of the shaft", scene.shaft.material, "", "assumed: the thesis gives no E or nu"),
         (
             "gearbox torque reaction",
-            "rigid about x" if scene.gearbox.stiffness[3] == "rigid" else "spring about x",
-            "",
-            "assumed: a spherical joint lets the shaft spin, so the gearbox must react torque; "
-            "the thesis's gearbox has three translational springs only",
+            torque if torque == "rigid" else float(torque),
+            "" if torque == "rigid" else "N m/rad",
+            "a spherical joint lets the shaft spin, so the gearbox must react torque; the thesis "
+            "names three translational springs only",
         ),
         (
-            "gearbox and hub coupling",
-            f"{scene.gearbox.coupling}, {scene.hub.coupling}",
+            "coupling of hub and gearbox",
+            f"{scene.hub.coupling}, {scene.gearbox.coupling}",
             "",
-            "loads and springs act on the mean motion of the shaft's end faces (RBE3) unless the "
-            "scene says rigid",
+            "averaged: loads and springs act on the mean motion of the shaft's end face (RBE3)",
         ),
-        ("bedplate", "rigid", "", "as in the thesis: the housing's base is fixed"),
+        ("bedplate", "rigid", "", base),
         ("clearance, friction, damping", "none", "", "as in the thesis: quasi-static, linear"),
     ]
     for unit in scene.bearing_units:
         name = unit.bearing.name
         for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.housing)):
-            rows += [(f"{owner}: {row[0]}", *row[1:]) for row in part.assumptions()]
+            rows += [
+                (f"{owner}: {row[0]}", *row[1:])
+                for row in part.assumptions()
+                if unit.housing.base == "bolted" or not row[0].startswith(("bolt_", "washer_"))
+            ]
     for name in _parts(scene):
         material = scene.material_of(name)
+        own = material in scene.materials.values()
         rows.append(
             (
                 f"{name}: E, nu, density",
                 f"{material.youngs_modulus / 1e9:g} GPa, {material.poisson_ratio:g}, "
                 f"{material.density:g} kg/m³",
                 "",
-                "assumed: the thesis names no material",
+                "given by the scene" if own else "assumed: the thesis names no material",
             )
         )
     return [AssumptionRow(name=n, value=v, unit=u, source=s) for n, v, u, s in rows]
