@@ -29,7 +29,7 @@ class Response:
         (springs and torque reaction), and the interfaces "NAME.seat" (shaft on bearing) and
         "NAME.outer" (bearing on housing).
     positions
-        (3,) by the same names: the point that the moments are about [m].
+        (3,) by the same names: the point that the moments are about [m]; and "hub".
     motions
         (6, 10) by reference point: "hub", "gearbox", "NAME.seat".
     strain_energy
@@ -143,6 +143,7 @@ def unit_load_response(model: Model, method: Method = "auto", seed: int = 0) -> 
         ].position
         for name in reactions
     }
+    positions["hub"] = model.points["hub"].position
     U = U[:, :-1]
     n = len(model.mesh.points)
     return Response(

@@ -124,8 +124,7 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
         (6, 6) symmetric, from displacements and rotations at the bearing's centre to forces and
         moments on the housing, in the global frame [N/m, N, N m/rad]. Zero for the rotations
         that a spherical joint leaves free; its translations come from the strain energy of
-        bearing and housing (the seat's mean displacement holds the shaft's curvature over the
-        seat, which is as large as what the housing gives).
+        bearing and housing under a pure force at the centre.
     """
     others = [name for name in response.reactions if "." not in name and name != bearing]
     wrench = response.reactions[bearing][:, :6]
@@ -145,8 +144,11 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
         compliance = motion @ np.linalg.inv(wrench)
     else:
         energy = response.strain_energy[bearing] + response.strain_energy[f"{bearing}.housing"]
-        load = np.linalg.inv(wrench[:3, :3])
-        compliance = load.T @ energy[:3, :3] @ load
+        # Hub loads that make a pure force at the bearing's centre: with a bending moment there,
+        # the ring would store more energy by stiffening the shaft than all else by its give.
+        arm = response.positions["hub"] - response.positions[bearing]
+        load = np.vstack([np.eye(3), -np.cross(arm, np.eye(3)).T])
+        compliance = load.T @ energy[:6, :6] @ load
     n = len(compliance)
     inverse = np.linalg.inv(0.5 * (compliance + compliance.T))
     stiffness = np.zeros((6, 6))

@@ -104,6 +104,19 @@ def test_spherical_unit_has_no_rotational_stiffness(spherical_responses):
     assert np.linalg.eigvalsh(K[:3, :3]).min() > 0
 
 
+@pytest.mark.parametrize("form", ["sliding", "averaged", "rigid"])
+def test_spherical_unit_gives_the_seat_its_motion(spherical_responses, form):
+    """Energy against motion: a pure force at the centre moves the seat by what the energy says."""
+    response = spherical_responses[form][1]
+    K = bearing_unit_stiffness(response, "main_bearing")[:3, :3]
+    arm = response.positions["hub"] - response.positions["main_bearing"]
+    load = np.vstack([np.eye(3), -np.cross(arm, np.eye(3)).T])
+    reaction = response.reactions["main_bearing"][:, :6] @ load
+    np.testing.assert_allclose(reaction[1:3, 1:], np.eye(3)[1:3, 1:], atol=1e-8)
+    seat = (response.motions["main_bearing.seat"][:3, :6] @ load).diagonal()
+    np.testing.assert_allclose(1.0 / seat, K.diagonal(), rtol=0.35)
+
+
 def test_rigid_joint_is_the_stiffest(spherical_responses):
     """Along x and z the rigid form bounds the other two from above."""
     K = {
