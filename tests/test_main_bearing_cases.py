@@ -30,7 +30,6 @@ CASES = (
 NEEDS_REAL_SCENE = (
     "torsional-spring beam",
     "DTRB, 50 % wall: mean change",
-    "change between the two finest",
     "between the bare beam",
 )
 
