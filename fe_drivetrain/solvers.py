@@ -86,20 +86,21 @@ def solve(K: sparse.csr_array, F: Floats, method: Method = "auto") -> Solution:
 @contextmanager
 def _factor(K: sparse.csr_array, method: str) -> Iterator[Callable[[Floats], Floats]]:
     """A function that solves with the factor of K; the factor's memory is freed afterwards."""
-    try:
-        if method == "superlu":
+    if method == "superlu":
+        try:
             factor = splu(
                 K.tocsc(),
                 permc_spec="MMD_AT_PLUS_A",
                 diag_pivot_thresh=0.0,
                 options={"SymmetricMode": True},
             )
-            yield factor.solve
-            return
-        from pypardiso import PyPardisoSolver
-        from pypardiso.pardiso_wrapper import PyPardisoError
-    except RuntimeError as error:  # SuperLU: "Factor is exactly singular"
-        raise InputError(_SINGULAR) from error
+        except RuntimeError as error:  # SuperLU: "Factor is exactly singular"
+            raise InputError(_SINGULAR) from error
+        yield factor.solve
+        return
+
+    from pypardiso import PyPardisoSolver
+    from pypardiso.pardiso_wrapper import PyPardisoError
 
     upper = sparse.csr_matrix(sparse.triu(K, format="csr"))
     upper.sort_indices()

@@ -137,7 +137,7 @@ def write_reactions(folder: Path, hub: HubLoads, fe: Mapping[str, Floats]) -> No
     for kind, reaction in fe.items():
         for name, history in zip(hub.names, reaction, strict=True):
             np.savetxt(
-                folder / f"reactions_{kind}_{Path(name).stem}.csv",
+                folder / f"reactions_{kind}_{name}.csv",
                 np.column_stack([hub.time, history]),
                 delimiter=",",
                 fmt="%.9g",

@@ -52,7 +52,7 @@ def run(run: Run) -> Any:
 
     unknowns = [s.response.n_unknowns for s in solutions.values()]
     # Stress is singular along the bearings' sharp edges, so convergence is taken as first order,
-    # the slowest that it can be: f(h) = f(0) + c h from the two finest meshes.
+    # as the series shows nearly: f(h) = f(0) + c h from the two finest meshes.
     last, least = factors[-2], factors[-1]
     limits = {q: v[-1] - (v[-2] - v[-1]) / (last / least - 1.0) for q, v in values.items()}
     errors = {q: [100.0 * (x / limits[q] - 1.0) for x in v] for q, v in values.items()}
