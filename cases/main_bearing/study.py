@@ -260,9 +260,10 @@ def mesh_table(solutions: dict[str, Solved]) -> Table:
 def reaction_table(caption: str, reaction: Floats) -> Table:
     """A (6, 10) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
     size = np.abs(reaction).max(axis=0)
-    shown = np.where(np.abs(reaction) < 1e-4 * size, 0.0, reaction)
+    # A column may hold nothing but round-off: the bearing feels no torque, no gearbox weight.
+    shown = np.where(np.abs(reaction) < np.maximum(1e-4 * size, 1e-6), 0.0, reaction)
     return Table(
-        caption=caption + ". Entries below 0.01 % of the largest of their column are shown as 0",
+        caption=f"{caption}. Entries below 0.01 % of their column's largest, or 1e-6, are shown as 0",
         columns=["reaction", *(f"{c} [per {_unit(c)}]" for c in LOADS)],
         rows=[
             [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *(float(v) for v in shown[i])]
