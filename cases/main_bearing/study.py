@@ -263,7 +263,7 @@ def reaction_table(caption: str, reaction: Floats) -> Table:
     # A column may hold nothing but round-off: the bearing feels no torque, no gearbox weight.
     shown = np.where(np.abs(reaction) < np.maximum(1e-4 * size, 1e-6), 0.0, reaction)
     return Table(
-        caption=f"{caption}. Entries below 0.01 % of their column's largest, or 1e-6, are shown as 0",
+        caption=f"{caption}. Below 0.01 % of their column's largest, or 1e-6, entries show as 0",
         columns=["reaction", *(f"{c} [per {_unit(c)}]" for c in LOADS)],
         rows=[
             [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *(float(v) for v in shown[i])]
