@@ -1,4 +1,4 @@
-"""The command line: list the cases, run one, and say what came out.
+"""The command line: list the cases, run them, and say what came out.
 
 Exit status: 0 when every check passes, 1 when one fails, 2 for what the user can mend, 130 when
 stopped with Ctrl-C. Nothing heavy is imported before a case is looked for, so help is quick.
@@ -11,8 +11,9 @@ import os
 import re
 import signal
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TextIO
@@ -20,11 +21,15 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.parallel import hold_threads
 
 if TYPE_CHECKING:
     from types import FrameType
 
+    from rich.progress import TaskID
+
     from fe_drivetrain.case import Case
+    from fe_drivetrain.parallel import Report
     from fe_drivetrain.results import Results, Verdict
 
 PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
@@ -41,6 +46,7 @@ _USERS_ERRORS = {
 }
 
 _SUMMARY_SENTENCES = 3
+_KEPT = "results of an earlier run are as they were"
 
 _app = typer.Typer(
     add_completion=False,
@@ -55,7 +61,8 @@ _OutOption = Annotated[
         "--out",
         metavar="DIR",
         help="Result folder: new, empty, or with results of an earlier run, which it replaces. "
-        "Left out, reports/GROUP/NAME below the current folder.",
+        "Left out, reports/GROUP/NAME below the current folder. Of several cases, the folder above "
+        "theirs: DIR/GROUP/NAME.",
     ),
 ]
 _SetOption = Annotated[
@@ -138,25 +145,43 @@ def _list() -> None:
 
 @_app.command("run")
 def _run_named(
-    case: Annotated[
-        str, typer.Argument(metavar="CASE", help="GROUP/NAME, or NAME where it is unique.")
-    ],
+    cases: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="CASE", help="GROUP/NAME, or NAME where it is unique."),
+    ] = None,
+    all_: Annotated[bool, typer.Option("--all", help="Run every case.")] = False,
     out: _OutOption = None,
     set_: _SetOption = None,
     quick: _QuickOption = False,
 ) -> None:
-    """Run a validation case and write its report.
+    """Run validation cases and write their reports.
+
+    Several cases run in processes side by side, as many as there are cores, but those that measure
+    time: these come last, one by one. An index.html lists them.
 
     The exit status is 0 when every check passes, 1 when one fails, 2 for a wrong option or
     setting, and 130 when stopped.
     """
+    names = cases or []
 
-    def found() -> Case:
+    def one() -> Case:
         from fe_drivetrain.case import find_case
 
-        return find_case(case)
+        return find_case(names[0])
 
-    raise typer.Exit(_run(found, out, set_ or (), quick))
+    def several() -> list[Case]:
+        from fe_drivetrain.case import all_cases, find_case
+
+        if all_ and names:
+            raise InputError(f"--all runs {', '.join(names)} too: leave out either")
+        if not all_ and not names:
+            raise InputError("Missing CASE: name one or more, or give --all")
+        found = list(all_cases().values()) if all_ else [find_case(name) for name in names]
+        return list({case.name: case for case in found}.values())
+
+    if len(names) == 1 and not all_:
+        raise typer.Exit(_run(one, out, set_ or (), quick))
+    raise typer.Exit(_run_several(several, out, set_ or (), quick))
 
 
 def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
@@ -229,6 +254,7 @@ def _run(find: Callable[[], Case], out: Path | None, settings: Sequence[str], qu
     """Run a case; the exit status."""
 
     def work() -> int:
+        hold_threads()
         parsed = parse_settings(settings)
         case = find()
         from fe_drivetrain.case import run_case
@@ -244,14 +270,66 @@ def _run(find: Callable[[], Case], out: Path | None, settings: Sequence[str], qu
         return _guarded(work)
 
 
-def _guarded(work: Callable[[], int]) -> int:
+def _run_several(
+    find: Callable[[], list[Case]], out: Path | None, settings: Sequence[str], quick: bool
+) -> int:
+    """Run cases side by side; the exit status."""
+
+    def work() -> int:
+        hold_threads()
+        parsed = parse_settings(settings)
+        cases = find()
+        from fe_drivetrain.results import read_results
+        from fe_drivetrain.suite import result_folder, run_cases
+
+        folder = Path("reports") if out is None else out
+        with _progress() as report:
+            problems = run_cases(cases, folder.resolve(), parsed, quick, report)
+        results = {
+            case.name: read_results(result_folder(folder, case) / "results.json")
+            for case in cases
+            if case.name not in problems
+        }
+        _write(sys.stdout, _outcome_of_several(cases, results, problems, folder / "index.html"))
+        if problems:
+            return MISTAKE
+        return PASSED if all(found.passed for found in results.values()) else FAILED
+
+    with _stopped_by_terminate():
+        return _guarded(work, f"what was finished is kept, {_KEPT}")
+
+
+def _outcome_of_several(
+    cases: Sequence[Case],
+    results: Mapping[str, Results],
+    problems: Mapping[str, str],
+    page: Path,
+) -> str:
+    """What the user sees at the end: a line for each case, and what failed in it."""
+    lines = []
+    for case in cases:
+        if case.name in problems:
+            lines.append(f"none  {case.name}: {problems[case.name]}")
+            continue
+        found = results[case.name]
+        failed = [verdict for verdict in found.verdicts if not verdict.passed]
+        checks = f"{len(found.verdicts) - len(failed)} of {len(found.verdicts)} checks pass"
+        seconds = sum(found.times.values())
+        lines.append(f"{'FAIL' if failed else 'pass'}  {case.name}: {checks}, {seconds:.1f} s")
+        lines += [f"      {_line(verdict)}" for verdict in failed]
+    passed = sum(found.passed for found in results.values())
+    lines += ["", f"{passed} of {len(cases)} cases pass: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _guarded(work: Callable[[], int], kept: str = _KEPT) -> int:
     """Do the work; a user's mistake becomes one sentence and its exit status."""
     try:
         return work()
     except InputError as error:
         message, status = str(error), MISTAKE
     except KeyboardInterrupt:
-        message, status = "stopped; results of an earlier run are as they were", STOPPED
+        message, status = f"stopped; {kept}", STOPPED
     except OSError as error:
         sentence = _sentence(error)
         if sentence is None:
@@ -299,8 +377,8 @@ def _line(verdict: Verdict) -> str:
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[str], None]]:
-    """Show steps as they begin: a live line on a terminal, plain lines elsewhere."""
+def _progress() -> Iterator[Report]:
+    """Show steps as they begin: live lines on a terminal, plain lines elsewhere."""
     shown = _live_steps() if sys.stderr.isatty() else _plain_steps()
     with shown as report:
         yield report
@@ -312,7 +390,8 @@ def _without_count(step: str) -> str:
 
 
 @contextmanager
-def _live_steps() -> Iterator[Callable[[str], None]]:
+def _live_steps() -> Iterator[Report]:
+    """A live line for each lane; the line of a step that has ended stays above them."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -322,51 +401,75 @@ def _live_steps() -> Iterator[Callable[[str], None]]:
         TextColumn("{task.description}", markup=False),
         TimeElapsedColumn(),
     )
+    lock = threading.Lock()  # steps come from the threads of other processes, too
     with Progress(*columns, console=console, transient=True) as display:
+        tasks: dict[int, TaskID] = {}
 
-        def finish() -> None:
-            for task in display.tasks:
+        def finish(lane: int) -> None:
+            if lane in tasks:
+                (task,) = (task for task in display.tasks if task.id == tasks[lane])
                 line = f"{_without_count(task.description)} ... {task.elapsed or 0.0:.1f} s"
                 console.print(line, markup=False, soft_wrap=True)
-                display.remove_task(task.id)
+                display.remove_task(tasks.pop(lane))
 
-        def report(step: str) -> None:
-            for task in display.tasks:
-                if _without_count(step) == _without_count(task.description):
-                    display.update(task.id, description=step)
-                    return
-            finish()
-            display.add_task(step, total=None)
+        def report(step: str, lane: int = 0) -> None:
+            with lock:
+                for task in display.tasks:
+                    if task.id == tasks.get(lane) and _without_count(step) == _without_count(
+                        task.description
+                    ):
+                        display.update(task.id, description=step)
+                        return
+                finish(lane)
+                if step:
+                    tasks[lane] = display.add_task(step, total=None)
 
         yield report
-        finish()
+        for lane in list(tasks):
+            finish(lane)
 
 
 @contextmanager
-def _plain_steps() -> Iterator[Callable[[str], None]]:
-    began: float | None = None
-    current = ""
+def _plain_steps() -> Iterator[Report]:
+    """A line for each step: begun at once for this process, at its end for others beside it."""
+    lock = threading.Lock()  # steps come from the threads of other processes, too
+    current: dict[int, tuple[str, float]] = {}
+    is_open = False  # a line that waits for its time
 
-    def finish() -> None:
-        if began is not None:
-            _write(sys.stderr, f"{time.perf_counter() - began:.1f} s\n")
-
-    def report(step: str) -> None:
-        nonlocal began, current
-        name = _without_count(step)
-        if began is not None and name == current:
+    def finish(lane: int) -> None:
+        nonlocal is_open
+        if lane not in current:
             return
-        finish()
-        began, current = time.perf_counter(), name
-        _write(sys.stderr, f"{name} ... ")
+        name, began = current.pop(lane)
+        begun = lane == 0 and is_open
+        if is_open and not begun:
+            _write(sys.stderr, "\n")
+        is_open = False
+        prefix = "" if begun else f"{name} ... "
+        _write(sys.stderr, f"{prefix}{time.perf_counter() - began:.1f} s\n")
+
+    def report(step: str, lane: int = 0) -> None:
+        nonlocal is_open
+        name = _without_count(step)
+        with lock:
+            if lane in current and name == current[lane][0]:
+                return
+            finish(lane)
+            if name:
+                current[lane] = name, time.perf_counter()
+                if len(current) == 1 and lane == 0:
+                    _write(sys.stderr, f"{name} ... ")
+                    is_open = True
 
     try:
         yield report
     except BaseException:
-        if began is not None:
-            _write(sys.stderr, "not finished\n")
+        for lane, (name, _) in current.items():
+            prefix = "" if lane == 0 and is_open else f"{name} ... "
+            _write(sys.stderr, f"{prefix}not finished\n")
         raise
-    finish()
+    for lane in list(current):
+        finish(lane)
 
 
 @contextmanager

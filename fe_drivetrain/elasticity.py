@@ -1,24 +1,118 @@
-"""The elastic operator: stiffness and mass integrals of ten-node tetrahedra, in 3x3 node blocks.
+"""The elastic operator: stiffness of tetrahedra and hexahedra, straight into 3x3 node blocks.
 
-scikit-fem's shape functions and quadrature, but an assembly of its own: an element's stiffness
-follows from the one product H = G W G^T of all shape-function gradients at all quadrature points,
-and goes straight into node blocks. Checked against scikit-fem's generic assembly in the tests.
+scikit-fem's shape functions and quadrature, but an assembly of its own: sparsity first, then each
+element adds its blocks in place. Tetrahedra with straight edges take one reference tensor, only the
+curved ones are integrated. Checked against scikit-fem's generic assembly in the tests.
 """
+
+from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from skfem import ElementTetP2, ElementTriP2
+from skfem import (
+    ElementHex1,
+    ElementHex2,
+    ElementHexS2,
+    ElementTetP1,
+    ElementTetP2,
+    ElementTriP2,
+)
 from skfem.element import Element
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
+
+from fe_drivetrain import kernels
+from fe_drivetrain.errors import InputError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _CHUNK = 4096  # elements at a time: keeps the work arrays inside the cache and memory bounded
-_STRAIGHT = 1e-10  # an edge node this close to the middle of its edge (per edge length) is on it
+_STRAIGHT = 2e-13  # an edge node this close to the middle of its edge (per edge length) is on it
 _EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
+
+# VTK's hexahedron on the unit cube: corners, then mid-sides of the edges, faces (the mean of these
+# four corners) and the centre.
+_HEX_CORNERS = np.array(
+    [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+)
+_HEX_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
+_HEX_EDGES += [(0, 4), (1, 5), (2, 6), (3, 7)]
+_HEX_FACES = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)]
+_HEX_MEANS = [*_HEX_EDGES, *_HEX_FACES, tuple(range(8))]
+
+
+@dataclass(frozen=True)
+class ElementKind:
+    """An element, known by its number of nodes.
+
+    Attributes
+    ----------
+    name
+        As meshio and VTK call it.
+    element
+        The scalar Lagrange element of scikit-fem.
+    order
+        scikit-fem's number of each of VTK's nodes.
+    corner
+        The linear element on the same corners.
+    degree
+        Of the quadrature when the element is curved: two Gauss points a direction for linear, three
+        for quadratic hexahedra; for tetrahedra what scikit-fem takes.
+    """
+
+    name: str
+    element: Element
+    order: Ints
+    corner: Element
+    degree: int
+
+    @property
+    def n_corners(self) -> int:
+        """4 or 8."""
+        return int(self.corner.doflocs.shape[0])
+
+    def corner_weights(self) -> Floats:
+        """(n_nodes, n_corners): the linear shape functions at the nodes."""
+        kind = element_kind(self.n_corners)
+        positions = self.element.doflocs[self.order].T
+        return shape_functions(kind.corner, positions)[0][:, kind.order]
+
+    def table(self, degree: int) -> tuple[Floats, Floats]:
+        """Reference gradients (n_q, 3, n_nodes), nodes in VTK's order, and weights (n_q,)."""
+        X, W = get_quadrature(self.element.refdom, degree)
+        gradients = shape_functions(self.element, X)[1][:, :, self.order]
+        return np.ascontiguousarray(gradients), W
+
+
+@cache
+def element_kind(n_nodes: int) -> ElementKind:
+    """The element with so many nodes: tetrahedra with 4 and 10, hexahedra with 8, 20 and 27.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    if n_nodes in (4, 10):
+        element = ElementTetP1() if n_nodes == 4 else ElementTetP2()
+        name = "tetra" if n_nodes == 4 else "tetra10"
+        return ElementKind(name, element, np.arange(n_nodes), ElementTetP1(), 2 * (n_nodes > 4) + 2)
+    elements = {8: ElementHex1, 20: ElementHexS2, 27: ElementHex2}
+    if n_nodes not in elements:
+        raise InputError(
+            f"no element has {n_nodes} nodes: use tetrahedra of 4 or 10, or hexahedra of 8, 20 or "
+            "27 nodes"
+        )
+    element = elements[n_nodes]()
+    means = np.array([_HEX_CORNERS[list(corners)].mean(axis=0) for corners in _HEX_MEANS])
+    positions = np.vstack([_HEX_CORNERS, means])[:n_nodes]
+    distance = np.abs(positions[:, None] - element.doflocs[None]).max(axis=2)
+    name = "hexahedron" if n_nodes == 8 else f"hexahedron{n_nodes}"
+    degree = 3 if n_nodes == 8 else 4
+    return ElementKind(name, element, distance.argmin(axis=1), ElementHex1(), degree)
 
 
 def shape_functions(element: Element, points: Floats) -> tuple[Floats, Floats]:
@@ -77,56 +171,43 @@ def jacobian(points: Floats, cells: Ints, gradients: Floats) -> tuple[Floats, Fl
     return physical, determinant
 
 
-def element_stiffness(points: Floats, cells: Ints, lame: tuple[float, float]) -> Floats:
-    """Stiffness of ten-node tetrahedra, curved or straight.
+@dataclass(frozen=True)
+class Pattern:
+    """Which nodes share a cell: stays as long as the cells do, whatever material or shape.
+
+    Attributes
+    ----------
+    indptr, indices
+        Block rows and columns, as in ``scipy.sparse.bsr_array``.
+    slots
+        (n_cells, k, k) the place in ``indices`` of each pair of a cell's nodes.
+    """
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    slots: NDArray[np.int32]
+
+
+def sparsity(cells: Ints, n_nodes: int) -> Pattern:
+    """The sparsity of the stiffness of these cells.
 
     Parameters
     ----------
-    points
-        (n, 3) node coordinates [m].
     cells
-        (n_cells, 10) node numbers.
-    lame
-        Lame's constants (lambda, mu) [Pa].
-
-    Returns
-    -------
-    stiffness
-        (n_cells, 10, 10, 3, 3): block (a, b) couples nodes a and b [N/m].
+        (n_cells, k) node numbers in VTK's order.
+    n_nodes
+        Number of block rows.
     """
-    stiffness = np.empty((len(cells), 10, 10, 3, 3))
-    straight = is_straight(points, cells)
-    # Straight elements have linear strains: a rule of degree 2 is exact. Curved ones take the
-    # degree that scikit-fem takes.
-    for chosen, degree in ((straight, 2), (~straight, 4)):
-        X, W = get_quadrature(RefTet, degree)
-        gradients = shape_functions(ElementTetP2(), X)[1]
-        index = np.flatnonzero(chosen)
-        for start in range(0, len(index), _CHUNK):
-            part = index[start : start + _CHUNK]
-            stiffness[part] = _stiffness_chunk(points, cells[part], gradients, W, lame)
-    return stiffness
-
-
-def _stiffness_chunk(
-    points: Floats, cells: Ints, gradients: Floats, weights: Floats, lame: tuple[float, float]
-) -> Floats:
-    lam, mu = lame
-    physical, determinant = jacobian(points, cells, gradients)
-    m = len(cells)
-    G = physical.reshape(m, len(weights), 30)
-    WG = G * (np.abs(determinant) * weights)[..., None]
-    H = (G.transpose(0, 2, 1) @ WG).reshape(m, 3, 10, 3, 10).transpose(0, 2, 4, 1, 3)
-    trace = np.trace(H, axis1=3, axis2=4)
-    block = lam * H + mu * H.swapaxes(3, 4)
-    for i in range(3):
-        block[..., i, i] += mu * trace
-    return np.asarray(block)
+    return Pattern(*kernels.sparsity(np.ascontiguousarray(cells, dtype=np.int32), n_nodes))
 
 
 def assemble(
-    points: Floats, cells: Ints, lame: tuple[float, float], n_freedoms: int
-) -> sparse.csr_array:
+    points: Floats,
+    cells: Ints,
+    lame: tuple[float, float],
+    n_freedoms: int | None = None,
+    pattern: Pattern | None = None,
+) -> sparse.bsr_array:
     """Assemble the stiffness of the given elements.
 
     Parameters
@@ -134,38 +215,41 @@ def assemble(
     points
         (n, 3) node coordinates [m].
     cells
-        (n_cells, 10) node numbers in VTK order.
+        (n_cells, k) node numbers in VTK's order; tetrahedra of 4 or 10, hexahedra of 8, 20 or 27
+        nodes.
     lame
         Lame's constants (lambda, mu) [Pa].
     n_freedoms
-        Order of the matrix; freedom 3 i + k is displacement k of node i, what comes after
-        3 n belongs to reference points and is left empty.
+        Order of the matrix, a multiple of three; freedom 3 i + k is displacement k of node i, what
+        comes after 3 n belongs to reference points and is left empty. 3 n where not given.
+    pattern
+        From `sparsity` for the same cells and n_freedoms / 3 nodes, to spare making it again.
 
     Returns
     -------
     stiffness
-        Symmetric (n_freedoms, n_freedoms) [N/m].
+        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
     """
-    stiffness = element_stiffness(points, cells, lame)
-    n = len(points)
-    incidence = sparse.csr_array(
-        (np.ones(cells.size), cells.ravel(), np.arange(0, cells.size + 1, cells.shape[1])),
-        shape=(len(cells), n),
+    n_blocks = len(points) if n_freedoms is None else n_freedoms // 3
+    kind = element_kind(cells.shape[1])
+    pattern = pattern or sparsity(cells, n_blocks)
+    nodes = np.ascontiguousarray(cells, dtype=np.int32)
+    data = np.zeros((len(pattern.indices), 3, 3))
+    if kind.n_corners == 4:
+        affine = is_straight(points, cells) if kind.name == "tetra10" else np.full(len(cells), True)
+        # The gradients of straight elements are linear at most: a rule of degree 2 is exact.
+        gradients, weights = kind.table(2)
+        reference = np.einsum("q,qpa,qrb->abpr", weights, gradients, gradients)
+        chosen = np.flatnonzero(affine)
+        kernels.add_affine(points, nodes, chosen, reference, *lame, pattern.slots, data)
+    else:
+        affine = np.full(len(cells), False)
+    gradients, weights = kind.table(kind.degree)
+    chosen = np.flatnonzero(~affine)
+    kernels.add_curved(points, nodes, chosen, gradients, weights, *lame, pattern.slots, data)
+    return sparse.bsr_array(
+        (data, pattern.indices, pattern.indptr), shape=(3 * n_blocks, 3 * n_blocks)
     )
-    pattern = (incidence.T @ incidence).tocsr()
-    pattern.sort_indices()
-    row_of_block = np.repeat(np.arange(n, dtype=np.int64), np.diff(pattern.indptr))
-    keys = row_of_block * n + pattern.indices
-    pairs = (cells[:, :, None].astype(np.int64) * n + cells[:, None, :]).ravel()
-    position = np.searchsorted(keys, pairs)
-    scatter = sparse.csc_array(
-        (np.ones(pairs.size), position, np.arange(pairs.size + 1)), shape=(keys.size, pairs.size)
-    )
-    blocks = (scatter @ stiffness.reshape(-1, 9)).reshape(-1, 3, 3)
-    matrix = sparse.bsr_array((blocks, pattern.indices, pattern.indptr), shape=(3 * n, 3 * n))
-    matrix = matrix.tocsr()
-    matrix.resize((n_freedoms, n_freedoms))
-    return matrix
 
 
 def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:

@@ -7,3 +7,6 @@ class InputError(Exception):
     The message is one sentence that names the object, the value, the allowed range and the mend.
     The command line prints it without a traceback and exits with status 2.
     """
+
+
+SINGULAR = "the stiffness matrix is singular: the scene is not held everywhere"

@@ -20,9 +20,7 @@ from __future__ import annotations
 import csv
 import os
 import re
-import uuid
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -30,6 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.files import atomic_path
 
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
@@ -560,14 +559,3 @@ def _existing(path: str | os.PathLike[str]) -> Path:
     if not file.is_file():
         raise InputError(f"hub loads '{file}': no such file; check the path")
     return file
-
-
-@contextmanager
-def atomic_path(target: Path) -> Iterator[Path]:
-    """Hand out a temporary path beside ``target`` and put it in place only if all went well."""
-    temporary = target.with_name(f".{target.name}.{uuid.uuid4().hex}.tmp")
-    try:
-        yield temporary
-        os.replace(temporary, target)
-    finally:
-        temporary.unlink(missing_ok=True)

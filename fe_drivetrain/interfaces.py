@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import linalg, sparse
 from scipy.sparse.linalg import splu
 
@@ -246,12 +247,15 @@ class Elimination:
     Attributes
     ----------
     T
-        (n_freedoms, n_free).
+        (n_freedoms, n_freedoms); the columns of eliminated freedoms are empty.
+    free
+        (n_freedoms,) which freedoms are left.
     constraints
         What was eliminated.
     """
 
     T: sparse.csr_array
+    free: NDArray[np.bool_]
     constraints: tuple[Constraint, ...]
 
     def multipliers(self, residual: Floats) -> dict[str, Floats]:
@@ -294,7 +298,8 @@ def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination
             )
         owner[constraint.pivots] = number
     free = np.flatnonzero(owner < 0)
-    T = _selection(free, n_freedoms)
+    keep = _selection(free, n_freedoms)
+    T = keep
     if constraints:
         C, pivots = _stack(constraints)
         right = -C[:, free]
@@ -308,7 +313,7 @@ def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination
         ]
         dependent = sparse.hstack(solved, format="csr") @ _selection(columns, free.size).T
         T = (T + _selection(pivots, n_freedoms) @ dependent).tocsr()
-    return Elimination(T, tuple(constraints))
+    return Elimination((T @ keep.T).tocsr(), owner < 0, tuple(constraints))
 
 
 def _stack(constraints: Sequence[Constraint]) -> tuple[sparse.csc_array, Ints]:

@@ -73,6 +73,8 @@ class Mesh:
         part whose name the face's name begins with.
     named_points
         Node id of each named point.
+    kept
+        Whether it was taken from the cache instead of made.
     """
 
     points: Floats
@@ -81,6 +83,7 @@ class Mesh:
     part_names: tuple[str, ...]
     faces: dict[str, Ints]
     named_points: dict[str, int]
+    kept: bool = False
 
     def part_cells(self, name: str) -> Ints:
         """Indices of the cells of a part, ascending."""
@@ -323,6 +326,9 @@ EIGHTHS = _TEN[
 """Corners of the eight tetrahedra that halve the edges of one, (8, 4, 4), barycentric."""
 
 
+_BLOCK = 4096  # cells
+
+
 def jacobians(points: Floats, cells: Ints, at: Floats = CUBIC) -> Floats:
     """Determinant of the Jacobian of each cell.
 
@@ -339,12 +345,19 @@ def jacobians(points: Floats, cells: Ints, at: Floats = CUBIC) -> Floats:
     -------
     (ne, q) determinants, m3; six times the volume for an element with straight edges.
     """
-    gradients = shape_gradients(at)
+    gradients = shape_gradients(at).transpose(1, 2, 0).reshape(10, -1)
     blocks = []
     # in blocks, so that the Jacobians of a large mesh never stand in memory all at once
-    for start in range(0, len(cells), 20_000):
-        block = np.einsum("eai,qak->eqik", points[cells[start : start + 20_000]], gradients)
-        blocks.append(np.linalg.det(block))
+    for start in range(0, len(cells), _BLOCK):
+        nodes = points[cells[start : start + _BLOCK]].transpose(0, 2, 1)
+        # one product for all, far faster than many small ones: rows x, y, z, three derivatives each
+        rows = (nodes.reshape(-1, 10) @ gradients).reshape(len(nodes), 3, 3, len(at))
+        x, y, z = rows.transpose(1, 2, 0, 3)
+        blocks.append(
+            x[0] * (y[1] * z[2] - y[2] * z[1])
+            + x[1] * (y[2] * z[0] - y[0] * z[2])
+            + x[2] * (y[0] * z[1] - y[1] * z[0])
+        )
     return np.concatenate(blocks) if blocks else np.empty((0, len(at)))
 
 

@@ -12,7 +12,8 @@ from fe_drivetrain.elasticity import Floats, Ints, assemble, face_weights, volum
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.interfaces import Constraint, ReferencePoint
 from fe_drivetrain.mechanisms import refuse_mechanisms
-from fe_drivetrain.mesh import Mesh, generate
+from fe_drivetrain.mesh import Mesh
+from fe_drivetrain.mesh_cache import cached_mesh
 from fe_drivetrain.scene import BearingUnit, Scene
 
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
@@ -54,7 +55,7 @@ class Model:
 
     scene: Scene
     mesh: Mesh
-    part_stiffness: Mapping[str, sparse.csr_array]
+    part_stiffness: Mapping[str, sparse.bsr_array]
     part_mass: Mapping[str, Floats]
     points: Mapping[str, ReferencePoint]
     constraints: tuple[Constraint, ...]
@@ -62,12 +63,13 @@ class Model:
     n_freedoms: int
 
     @property
-    def stiffness(self) -> sparse.csr_array:
+    def stiffness(self) -> sparse.bsr_array:
         """Stiffness of all parts and springs, before any constraint [N/m]."""
         total = sum(self.part_stiffness.values())
         for point, k in self.springs:
-            total = total + point.motion.T @ sparse.csr_array(k) @ point.motion
-        return total.tocsr()
+            spring = point.motion.T @ sparse.csr_array(k) @ point.motion
+            total = total + spring.tobsr((3, 3))
+        return total
 
     @property
     def mass(self) -> Floats:
@@ -94,8 +96,11 @@ class Model:
 
 
 def mesh_scene(scene: Scene) -> Mesh:
-    """Build and mesh the parts of a scene; bonded bearings share nodes with their housings."""
-    return generate(
+    """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
+
+    A mesh that was made before comes from the cache, see `fe_drivetrain.cache`.
+    """
+    return cached_mesh(
         scene.shaft,
         [unit.bearing for unit in scene.bearing_units],
         {unit.bearing.name: unit.housing for unit in scene.bearing_units},

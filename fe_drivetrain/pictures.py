@@ -310,6 +310,8 @@ def _plotter(view: _View) -> Iterator[Any]:
     width, height = (_OVERSAMPLING * pixels for pixels in SIZE)
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[width, height])
     try:
+        # The larger picture is smoothed when it is scaled down: more samples change nothing there.
+        plotter.render_window.SetMultiSamples(0)
         plotter.set_background("white")
         plotter.enable_parallel_projection()
         plotter.camera.focal_point = tuple(view.centre)
@@ -553,7 +555,7 @@ class _Canvas:
         self.taken: list[tuple[float, float, float, float]] = []
 
     def save(self, path: Path) -> None:
-        self.image.resize(SIZE, Image.Resampling.LANCZOS).save(path, format="PNG", optimize=True)
+        self.image.resize(SIZE, Image.Resampling.LANCZOS).save(path, format="PNG")
 
     def line(self, points: _Points, colour: str = _INK, width: float = 1.4) -> None:
         flat = [tuple(p) for p in _OVERSAMPLING * np.asarray(points)]

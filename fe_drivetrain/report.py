@@ -12,6 +12,7 @@ import hashlib
 import json
 import math
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ import jinja2
 from markupsafe import Markup
 
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.files import atomic_path
 from fe_drivetrain.results import Chart, Image, Results, Table, Verdict, read_results
 
 DIGITS = 5
@@ -86,6 +88,72 @@ def write_page(folder: Path) -> Path:
     return page
 
 
+def write_index(folder: Path, problems: Mapping[str, str] | None = None) -> Path:
+    """Write a page that lists the results below a folder, with their verdicts and times.
+
+    Parameters
+    ----------
+    folder
+        Holds GROUP/NAME/results.json of any number of cases.
+    problems
+        Why a case has no results now, by its name; it is listed with that.
+
+    Returns
+    -------
+    page
+        Path of index.html in the same folder; it appears whole or not at all.
+    """
+    folder = Path(folder)
+    names = {"/".join(f.parts[-3:-1]) for f in folder.glob("*/*/results.json")}
+    rows = []
+    for name in sorted(names | set(problems or {})):
+        row: dict[str, Any] = {"name": name, "group": name.partition("/")[0], "passes": False}
+        try:
+            if problems and name in problems:
+                raise InputError(problems[name])
+            results = read_results(folder / name / "results.json")
+        except InputError as problem:
+            rows.append({**row, "problem": str(problem)})
+            continue
+        except (OSError, ValueError):  # of another version, say
+            rows.append({**row, "problem": "its results.json cannot be read: run it again"})
+            continue
+        rows.append(
+            {
+                **row,
+                "problem": "",
+                "title": results.title,
+                "passes": results.passed,
+                "passed": sum(verdict.passed for verdict in results.verdicts),
+                "total": len(results.verdicts),
+                "time": sum(results.times.values()),
+                "date": results.environment.date,
+            }
+        )
+    page = folder / "index.html"
+    template = _environment().get_template("index.html")
+    with atomic_path(page) as unfinished:
+        unfinished.write_text(template.render(rows=rows, style=_style()), encoding="utf-8")
+    return page
+
+
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_TEMPLATES),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["seconds"] = lambda s: f"{s:.3g}" if abs(s) < 1000 else f"{s:.0f}"
+    return environment
+
+
+def _style() -> Markup:
+    # only our own file: never a string of the results
+    return Markup((_TEMPLATES / "report.css").read_text(encoding="utf-8"))
+
+
 def render(results: Results, folder: Path) -> str:
     """The page as text; see `write_page`."""
     charts = [i for s in results.sections for i in s.items if isinstance(i, Chart)]
@@ -94,13 +162,7 @@ def render(results: Results, folder: Path) -> str:
         from plotly.offline import get_plotlyjs
 
         scripts = [get_plotlyjs(), (_TEMPLATES / "charts.js").read_text(encoding="utf-8")]
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(_TEMPLATES),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = _environment()
     environment.filters |= {
         "cell": formatted,
         "number": _is_number,
@@ -112,15 +174,13 @@ def render(results: Results, folder: Path) -> str:
         "tolerance": tolerance_text,
         "as_given": lambda settings: [(key, _as_given(settings[key])) for key in settings],
         "data_url": lambda image: _as_data_url(image, folder),
-        "seconds": lambda value: f"{value:.3g}" if value < 1000 else f"{value:.0f}",
     }
     passed = sum(verdict.passed for verdict in results.verdicts)
     return environment.get_template("report.html").render(
         results=results,
         passed=passed,
         contents=len(results.sections) + 4 >= _CONTENTS_FROM,
-        # only our own files: never a string of the results
-        style=Markup((_TEMPLATES / "report.css").read_text(encoding="utf-8")),
+        style=_style(),
         scripts=[Markup(script) for script in scripts],
         script_hashes=[_hash(script) for script in scripts],
     )

@@ -9,7 +9,8 @@ from fe_drivetrain.elasticity import Floats, Ints
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.interfaces import eliminate, freedoms
 from fe_drivetrain.model import COMPONENTS, LOADS, Model
-from fe_drivetrain.solvers import Method, solve
+from fe_drivetrain.reduction import reduce
+from fe_drivetrain.solvers import solve
 
 #: Standard gravity [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665
@@ -41,8 +42,8 @@ class Response:
     superposition_error
         Difference between the reactions to a random load, solved directly, and the superposed
         ones, relative to the largest reaction.
-    residual, method, seconds, n_unknowns
-        Diagnostics of the solve.
+    residual, energy_error, iterations, method, reason, seconds, solver_bytes, n_unknowns
+        Diagnostics of the solve, see `solvers.Solution`.
     """
 
     reactions: Mapping[str, Floats]
@@ -53,8 +54,12 @@ class Response:
     equilibrium_error: float
     superposition_error: float
     residual: float
+    energy_error: float
+    iterations: int
     method: str
+    reason: str
     seconds: float
+    solver_bytes: int
     n_unknowns: int
 
     def reaction_matrix(self) -> tuple[list[str], Floats]:
@@ -107,7 +112,7 @@ class Response:
         return np.asarray(result)
 
 
-def unit_load_response(model: Model, method: Method = "auto", seed: int = 0) -> Response:
+def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Response:
     """Solve a model for all unit loads, and check the result twice.
 
     Parameters
@@ -130,7 +135,8 @@ def unit_load_response(model: Model, method: Method = "auto", seed: int = 0) -> 
     K = model.stiffness
     elimination = eliminate(model.constraints, model.n_freedoms)
     T = elimination.T
-    solution = solve((T.T @ K @ T).tocsr(), T.T @ F, method)
+    system = reduce(model.mesh.points, model.mesh.cells, K, elimination)
+    solution = solve(system, T.T @ F, method)
     U = T @ solution.x
     reactions = _reactions(model, elimination.multipliers(K @ U - F), U, cases)
 
@@ -155,9 +161,13 @@ def unit_load_response(model: Model, method: Method = "auto", seed: int = 0) -> 
         equilibrium_error=_equilibrium_error(model, reactions, positions),
         superposition_error=float(np.abs(direct - superposed).max() / np.abs(direct).max()),
         residual=solution.residual,
+        energy_error=solution.energy_error,
+        iterations=solution.iterations,
         method=solution.method,
+        reason=solution.reason,
         seconds=solution.seconds,
-        n_unknowns=T.shape[1],
+        solver_bytes=solution.bytes,
+        n_unknowns=system.n_free,
     )
 
 

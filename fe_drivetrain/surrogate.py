@@ -14,21 +14,19 @@ machine the linear algebra may round differently, in single precision in the win
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
-import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import product
 from pathlib import Path
-from typing import overload
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fe_drivetrain.cache import Cache, user_cache
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.hub_loads import COMPONENTS, MIN_SAMPLES, Attribute, LoadHistory, atomic_path
+from fe_drivetrain.hub_loads import COMPONENTS, MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.rotor import (
     CUT_IN,
     CUT_OUT,
@@ -52,7 +50,6 @@ __all__ = [
     "Condition",
     "HubLoadSet",
     "assumptions",
-    "cache_directory",
     "hub_load_set",
     "hub_loads",
     "surrogate_grid",
@@ -62,6 +59,8 @@ Floats = NDArray[np.float64]
 
 VERSION = 2
 """Raise whenever a change alters the histories: kept ones of another version are not used."""
+
+_KIND: Literal["hub-loads"] = "hub-loads"
 
 WIND_SPEEDS = (10.0, 12.0, 16.0, 20.0)
 TURBULENCES = ("low", "medium", "high")
@@ -220,7 +219,7 @@ def hub_load_set(
     duration [s], rate [Hz], rotor
         As for ``hub_loads``.
     cache
-        Whether to keep histories in ``cache_directory()``, or another directory for them.
+        Whether to keep histories in the user's cache, or another folder for them.
     progress
         Called with the number done and the number of all.
 
@@ -233,9 +232,7 @@ def hub_load_set(
     grid = tuple(surrogate_grid() if conditions is None else conditions)
     time = _time(duration, rate)
     loads = np.empty((len(grid), time.size, len(COMPONENTS)))
-    directory = None
-    if cache is not False:
-        directory = cache_directory() if cache is True else Path(cache)
+    kept = _cache(cache)
     done = 0
 
     def report() -> None:
@@ -244,31 +241,37 @@ def hub_load_set(
         if progress is not None:
             progress(done, len(grid))
 
-    files = [_kept_file(directory, rotor, c, duration, rate) for c in grid]
     missing: dict[float, list[int]] = {}
-    for i, (condition, file) in enumerate(zip(grid, files, strict=True)):
-        kept = _load_kept(file, loads[i].shape)
-        if kept is None:
+    for i, condition in enumerate(grid):
+        history = _load(kept, rotor, condition, duration, rate, loads[i].shape)
+        if history is None:
             missing.setdefault(condition.wind_speed, []).append(i)
         else:
-            loads[i] = kept
+            loads[i] = history
             report()
 
     for wind_speed, indices in missing.items():
         state = _mean_state(rotor, wind_speed, duration, rate)
         for i in indices:
             loads[i] = _make(rotor, grid[i], time, state)
-            _keep(files[i], loads[i])
+            kept.keep(_KIND, _content(rotor, grid[i], duration, rate), {"loads": loads[i]})
             report()
     loads.setflags(write=False)
     return HubLoadSet(grid, time, loads)
 
 
-def cache_directory() -> Path:
-    """Where histories are kept: the user's cache, free to be deleted."""
-    from platformdirs import user_cache_path
-
-    return user_cache_path("fe-drivetrain") / "hub-loads"
+def not_kept(
+    conditions: Sequence[Condition],
+    duration: float = DURATION,
+    rate: float = RATE,
+    rotor: Rotor | None = None,
+) -> list[Condition]:
+    """Those that the user's cache does not hold; none where nothing can be kept."""
+    cache = user_cache()
+    if cache.folder is None:
+        return []
+    used = rotor or Rotor()
+    return [c for c in conditions if not cache.has(_KIND, _content(used, c, duration, rate))]
 
 
 # --- making --------------------------------------------------------------------------------------
@@ -326,44 +329,34 @@ def _history(condition: Condition, time: Floats, loads: Floats) -> LoadHistory:
 # --- keeping -------------------------------------------------------------------------------------
 
 
-def _kept_file(
-    directory: Path | None, rotor: Rotor, condition: Condition, duration: float, rate: float
-) -> Path | None:
-    """File of one history, named by a hash of all that it depends on."""
-    if directory is None:
-        return None
-    content = {
+def _cache(cache: bool | str | os.PathLike[str]) -> Cache:
+    if isinstance(cache, bool):
+        return user_cache() if cache else Cache(None)
+    return Cache(Path(cache))
+
+
+def _content(rotor: Rotor, condition: Condition, duration: float, rate: float) -> dict[str, object]:
+    """All that one history depends on."""
+    return {
         "version": VERSION,
         "rotor": asdict(rotor),
         "condition": asdict(condition),
         "duration": float(duration),
         "rate": float(rate),
     }
-    key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-    return directory / f"{key[:32]}.npz"
 
 
-def _load_kept(file: Path | None, shape: tuple[int, ...]) -> Floats | None:
+def _load(
+    cache: Cache,
+    rotor: Rotor,
+    condition: Condition,
+    duration: float,
+    rate: float,
+    shape: tuple[int, ...],
+) -> Floats | None:
     """A kept history, or None if it is not there or not sound."""
-    if file is None:
+    arrays = cache.load(_KIND, _content(rotor, condition, duration, rate))
+    loads = None if arrays is None else arrays.get("loads")
+    if loads is None or loads.shape != shape or loads.dtype != np.float64:
         return None
-    try:
-        # The zip container carries a checksum, which reading the array to its end verifies.
-        with np.load(file, allow_pickle=False) as archive:
-            loads = archive["loads"]
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        return None
-    sound = loads.shape == shape and loads.dtype == np.float64 and bool(np.isfinite(loads).all())
-    return loads if sound else None
-
-
-def _keep(file: Path | None, loads: Floats) -> None:
-    if file is None:
-        return
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with atomic_path(file) as temporary, temporary.open("wb") as stream:
-            np.savez(stream, loads=loads)
-    except OSError:
-        # A full or read-only disk must not stop the study; the history is in memory.
-        return
+    return loads if bool(np.isfinite(loads).all()) else None

@@ -1,8 +1,11 @@
 """Scenes that several test modules solve: coarse, and built once a session."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
+from fe_drivetrain import cache, parallel
 from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.model import Model, build_model, mesh_scene
 from fe_drivetrain.response import Response, unit_load_response
@@ -22,6 +25,15 @@ COARSE = {
 def coarse_scene(kind: str, **changes: object) -> Scene:
     """The library's main bearing, made small."""
     return change_scene(library_scene(f"main_bearing_{kind}"), COARSE | changes)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """A cache for the tests alone, and one process; tests of either set their own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(cache.VARIABLE, str(tmp_path_factory.mktemp("cache")))
+        patch.setenv(parallel.VARIABLE, "1")
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -184,6 +184,9 @@ def test_a_script_of_a_case_has_the_same_options(
         (("run", "tiny", "--out", "x" * 300), "folder"),
         (("run", "tiny", "--out", "loop/x"), "folder"),
         (("run",), "Missing"),
+        (("run", "tiny", "--all"), "leave out either"),
+        (("run", "tiny", "nothing"), "group/tiny"),
+        (("run", "tiny", "other", "--out", "file"), "folder"),
         (("walk",), "No such command"),
         (("run", "tiny", "--fast"), "No such option"),
     ],
@@ -337,6 +340,47 @@ def test_a_narrow_encoding_is_no_error(script: Path, tmp_path: Path) -> None:
     assert b"? one" in done.stdout
 
 
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (("tiny", "next/third", "tiny"), ["group/tiny", "next/third"]),
+        (("--all",), ["group/other", "group/tiny", "next/third"]),
+    ],
+)
+def test_several_cases_have_a_page_that_lists_them(
+    invoke: Callable[..., Result], tmp_path: Path, arguments: tuple[str, ...], names: list[str]
+) -> None:
+    status, out, err = invoke("run", *arguments, "--set", "k=2", "--quick")
+    assert status == 0
+    lines = out.splitlines()
+    assert [line.split()[:2] for line in lines[:-2]] == [["pass", f"{name}:"] for name in names]
+    assert lines[-1] == f"{len(names)} of {len(names)} cases pass: reports/index.html"
+    page = (tmp_path / "reports/index.html").read_text()
+    for name in names:
+        assert f"{name}/report.html" in page
+        assert read_results(tmp_path / "reports" / name / "results.json").environment.settings
+        assert f"{name}: count to one ... " in err
+
+
+def test_several_cases_exit_1_where_a_check_fails_and_2_where_one_cannot_run(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    status, out, _ = invoke("run", "--all", "--out", "x", work=lambda run: count(run, 1.2))
+    assert status == 1
+    assert out.splitlines()[0].startswith("FAIL  group/other: 1 of 2 checks pass")
+    assert "      FAIL  one: computed 1.2" in out
+    assert out.endswith("0 of 3 cases pass: x/index.html\n")
+
+    def work(run: Run) -> Results:
+        raise InputError("loads: no file is there: give one")
+
+    status, out, _ = invoke("run", "tiny", "other", "--out", "y", work=work)
+    assert status == 2
+    assert out.splitlines()[0] == "none  group/tiny: loads: no file is there: give one"
+    assert [path.name for path in (tmp_path / "y/group").iterdir()] == []
+    assert "loads: no file is there" in (tmp_path / "y/index.html").read_text()
+
+
 def test_list_groups_the_cases(invoke: Callable[..., Result]) -> None:
     status, out, _ = invoke("list")
     assert status == 0
@@ -357,9 +401,12 @@ def test_version_is_the_installed_one(invoke: Callable[..., Result]) -> None:
     assert (status, out) == (0, f"fe-drivetrain {version('fe-drivetrain')}\n")
 
 
-@pytest.mark.parametrize("argument", ["--help", "--version"])
-def test_help_imports_nothing_heavy(argument: str) -> None:
-    heavy = ["numpy", "scipy", "gmsh", "skfem", "pyvista", "plotly", "pydantic", "jinja2", "PIL"]
+@pytest.mark.parametrize("argument", ["--help", "--version", "list"])
+def test_help_and_list_import_nothing_heavy(argument: str) -> None:
+    heavy = ["numpy", "scipy", "gmsh", "skfem", "numba", "pyvista", "plotly", "jinja2", "PIL"]
+    heavy += ["fe_drivetrain.results", "fe_drivetrain.scene", "fe_drivetrain.mesh"]
+    if argument != "list":
+        heavy.append("pydantic")  # which typer uses itself to run a command
     program = (
         "import sys\n"
         f"sys.argv = ['fe-drivetrain', {argument!r}]\n"
@@ -411,6 +458,48 @@ def test_a_step_that_counts_is_one_line(capsys: pytest.CaptureFixture[str]) -> N
     assert [line.split(" ... ")[0] for line in lines] == ["part", "loads", "last"]
 
 
+def test_steps_side_by_side_are_whole_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    with cli._plain_steps() as report:
+        report("before")
+        report("")
+        report("one (1 of 2)", 1)
+        report("two", 2)
+        report("here")
+        report("one (2 of 2)", 1)
+        report("three", 1)
+        report("", 2)
+        report("", 1)
+        report("after")
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(" ... ")[0] for line in lines] == [
+        "before",
+        "one",
+        "two",
+        "three",
+        "here",
+        "after",
+    ]
+    assert all(line.endswith(" s") for line in lines)
+
+
+def test_a_line_that_is_open_is_not_written_into(capsys: pytest.CaptureFixture[str]) -> None:
+    def stopped() -> None:
+        with cli._plain_steps() as report:
+            report("here")
+            report("there", 1)
+            report("", 1)
+            report("there again", 1)
+            raise InputError("x")
+
+    with pytest.raises(InputError):
+        stopped()
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "here ... "
+    assert lines[1].startswith("there ... ")
+    assert lines[1].endswith(" s")
+    assert sorted(lines[2:]) == ["here ... not finished", "there again ... not finished"]
+
+
 def test_on_a_terminal_steps_end_as_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
@@ -423,7 +512,10 @@ def test_on_a_terminal_steps_end_as_lines(monkeypatch: pytest.MonkeyPatch) -> No
         report("part [bold]")
         report("loads (1 of 2)")
         report("loads (2 of 2)")
+        report("beside", 1)
+        report("", 1)
     shown = terminal.getvalue()
+    assert shown.count("beside ... ") == 1
     assert "part [bold] ... " in shown
     assert shown.count("loads ... ") == 1
 

@@ -35,9 +35,11 @@ def forms(sphere):
 @pytest.mark.parametrize("form", ["sliding", "averaged"])
 def test_elimination_fulfils_every_row(sphere, form, rng):
     constraints, n = forms(sphere)
-    T = interfaces.eliminate([constraints[form]], n).T
+    elimination = interfaces.eliminate([constraints[form]], n)
+    T = elimination.T
     q = rng.standard_normal(T.shape[1])
-    assert T.shape[1] == n - len(constraints[form].pivots)
+    assert elimination.free.sum() == n - len(constraints[form].pivots)
+    assert not elimination.free[constraints[form].pivots].any()
     assert np.abs(constraints[form].rows @ (T @ q)).max() < 1e-12 * np.abs(q).max()
 
 
@@ -104,9 +106,12 @@ def test_averaged_point_recovers_a_rigid_motion_and_balances_its_load(rng):
 def test_rigid_face_moves_with_its_point(rng):
     points = rng.standard_normal((20, 3))
     point = interfaces.rigid_point("p", CENTRE, 60, 66)
-    T = interfaces.eliminate([interfaces.rigid_face("p", np.arange(20), points, point)], 66).T
-    assert T.shape == (66, 6)
-    np.testing.assert_allclose(T.toarray()[:60], rigid_motions(points, CENTRE), atol=1e-13)
+    face = interfaces.rigid_face("p", np.arange(20), points, point)
+    elimination = interfaces.eliminate([face], 66)
+    assert np.flatnonzero(elimination.free).tolist() == [60, 61, 62, 63, 64, 65]
+    T = elimination.T.toarray()
+    assert np.abs(T[:, :60]).max() == 0.0
+    np.testing.assert_allclose(T[:60, 60:], rigid_motions(points, CENTRE), atol=1e-13)
 
 
 def test_held_point_of_a_face_does_not_turn(rng):

@@ -1,4 +1,4 @@
-"""Direct solves of systems whose answer is known."""
+"""Every solver behind one interface, on systems whose answer is known."""
 
 import importlib.util
 
@@ -6,57 +6,196 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from fe_drivetrain import cost, direct, multigrid
+from fe_drivetrain.elasticity import assemble, rigid_motions
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.solvers import solve
+from fe_drivetrain.interfaces import eliminate, fixed
+from fe_drivetrain.reduction import System, reduce
+from fe_drivetrain.solvers import METHODS, factorise, solve
 
-METHODS = [
-    "superlu",
+
+def missing(method):
+    return method in direct.PACKAGES and not direct.is_installed(method)
+
+
+EACH = [
     pytest.param(
-        "pardiso",
-        marks=pytest.mark.skipif(
-            importlib.util.find_spec("pypardiso") is None, reason="pypardiso is not installed"
-        ),
-    ),
+        method,
+        marks=pytest.mark.skipif(missing(method), reason=f"{method} is not installed"),
+    )
+    for method in METHODS
+    if method != "auto"
 ]
 
 
-@pytest.fixture
-def laplacian():
-    """Five-point Laplacian of a 30 x 30 grid: symmetric positive definite."""
-    one = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(30, 30))
-    eye = sparse.eye_array(30)
-    return (sparse.kron(one, eye) + sparse.kron(eye, one)).tocsr()
+def tetrahedra(cuts):
+    """A unit cube of linear tetrahedra."""
+    x = np.linspace(0.0, 1.0, cuts + 1)
+    points = np.array([(a, b, c) for c in x for b in x for a in x])
+    m = cuts + 1
+    i, j, k = np.meshgrid(*[np.arange(cuts)] * 3, indexing="ij")
+    first = (i + m * j + m * m * k).ravel()
+    corners = first[:, None] + np.array(
+        [0, 1, 1 + m, m, m * m, 1 + m * m, 1 + m + m * m, m + m * m]
+    )
+    split = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+    return points, np.concatenate([corners[:, list(s)] for s in split])
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_recovers_a_known_solution(laplacian, method, rng):
-    x = rng.standard_normal((900, 3))
-    solution = solve(laplacian, laplacian @ x, method)
-    np.testing.assert_allclose(solution.x, x, rtol=1e-10)
+@pytest.fixture(scope="module")
+def cube():
+    """Stiffness of a cube held at one face, as a system."""
+    points, cells = tetrahedra(6)
+    K = assemble(points, cells, (1.0, 1.0))
+    held = fixed("wall", np.flatnonzero(points[:, 0] == 0.0), points.size)
+    elimination = eliminate([held], points.size)
+    return reduce(points, cells, K, elimination), elimination
+
+
+def known(system, elimination, rng, columns=3):
+    x = rng.standard_normal((system.K.shape[0], columns)) * elimination.free[:, None]
+    return x, system.K @ x
+
+
+@pytest.mark.parametrize("method", EACH)
+def test_recovers_a_known_solution(cube, method, rng):
+    system, elimination = cube
+    x, F = known(system, elimination, rng)
+    solution = solve(system, F, method, tolerance=1e-12)
+    np.testing.assert_allclose(solution.x, x, atol=1e-9 * np.abs(x).max())
     assert solution.method == method
-    assert solution.residual < 1e-12
+    assert solution.reason == "as asked"
+    assert solution.residual < 1e-10
+    assert solution.energy_error < 1e-12
+    assert solution.bytes > 0
+    assert (solution.iterations > 0) == (method == "multigrid")
 
 
-def test_residual_is_the_true_one(laplacian, rng):
-    f = rng.standard_normal((900, 2))
-    solution = solve(laplacian, f)
-    true = np.linalg.norm(laplacian @ solution.x - f, axis=0) / np.linalg.norm(f, axis=0)
+@pytest.mark.parametrize("method", EACH)
+def test_set_up_once_and_solve_again(cube, method, rng):
+    system, elimination = cube
+    solver = factorise(system, method, tolerance=1e-12)
+    for columns in (1, 4):
+        x, F = known(system, elimination, rng, columns)
+        np.testing.assert_allclose(solver.solve(F).x, x, atol=1e-9 * np.abs(x).max())
+
+
+@pytest.mark.parametrize("method", EACH)
+def test_the_system_is_left_as_it_is(cube, method, rng):
+    system, elimination = cube
+    _, F = known(system, elimination, rng)
+    before, load = system.K.data.copy(), F.copy()
+    solve(system, F, method)
+    assert np.array_equal(system.K.data, before)
+    assert np.array_equal(F, load)
+
+
+@pytest.mark.parametrize("method", EACH)
+def test_residual_is_the_true_one(cube, method, rng):
+    system, elimination = cube
+    _, F = known(system, elimination, rng)
+    solution = solve(system, F, method, tolerance=1e-3)
+    true = np.linalg.norm(system.K @ solution.x - F, axis=0) / np.linalg.norm(F, axis=0)
     assert solution.residual == pytest.approx(true.max())
 
 
-def test_zero_load_is_no_division_by_zero(laplacian):
-    assert solve(laplacian, np.zeros((900, 1))).residual == 0.0
+@pytest.mark.parametrize("method", EACH)
+def test_zero_load_is_no_division_by_zero(cube, method):
+    system, _ = cube
+    solution = solve(system, np.zeros((system.K.shape[0], 1)), method)
+    assert solution.residual == 0.0
+    assert np.abs(solution.x).max() == 0.0
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [m for m in EACH if "multigrid" not in m.values])
 def test_singular_matrix_is_refused(method):
-    K = sparse.csr_array(np.array([[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))
+    points, cells = tetrahedra(2)
+    K = assemble(points, cells, (1.0, 1.0))
+    system = reduce(points, cells, K, eliminate([], points.size))
     with pytest.raises(InputError, match="singular"):
-        solve(K, np.array([[1.0], [0.0], [0.0]]), method)
+        solve(system, rigid_motions(points), method)
 
 
-def test_missing_pardiso_says_how_to_install(laplacian, monkeypatch):
+def test_multigrid_refuses_a_floating_body():
+    """No solution exists: it must not pass one off, and the direct solver behind it neither."""
+    points, cells = tetrahedra(3)
+    K = assemble(points, cells, (1.0, 1.0))
+    system = reduce(points, cells, K, eliminate([], points.size))
+    with pytest.raises(InputError, match="singular"):
+        solve(system, rigid_motions(points)[:, :1], "multigrid")
+
+
+def test_an_iteration_that_stalls_falls_back_and_says_so(cube, rng, monkeypatch):
+    system, elimination = cube
+    x, F = known(system, elimination, rng)
+    monkeypatch.setattr(multigrid, "MAX_ITERATIONS", 3)
+    solution = solve(system, F, "multigrid")
+    assert solution.method in direct.PACKAGES
+    assert "multigrid stopped after 3 iterations" in solution.reason
+    np.testing.assert_allclose(solution.x, x, atol=1e-9 * np.abs(x).max())
+
+
+def test_an_iteration_that_stalls_fails_where_no_factor_fits(cube, rng, monkeypatch):
+    system, elimination = cube
+    _, F = known(system, elimination, rng)
+    monkeypatch.setattr(multigrid, "MAX_ITERATIONS", 3)
+    monkeypatch.setattr(cost, "available_memory", lambda: 1000.0)
+    with pytest.raises(InputError, match=r"stopped after 3 iterations.*relative residual.*memory"):
+        solve(system, F, "multigrid")
+
+
+def test_auto_names_its_choice_and_the_others(cube, rng):
+    system, elimination = cube
+    _, F = known(system, elimination, rng)
+    solution = solve(system, F)
+    costs = cost.predict(system, F.shape[1])
+    assert solution.method == costs[0].method
+    for each in costs:
+        assert each.method in solution.reason
+    assert [c.seconds for c in costs] == sorted(c.seconds for c in costs)
+
+
+def test_auto_takes_no_factor_that_does_not_fit(cube, monkeypatch):
+    system, _ = cube
+    monkeypatch.setattr(cost, "available_memory", lambda: 1000.0)
+    assert not any(c.fits for c in cost.predict(system, 1))
+    monkeypatch.setattr(cost, "available_memory", lambda: 1e12)
+    assert all(c.fits for c in cost.predict(system, 1))
+
+
+def test_width_tells_a_rod_from_a_cube():
+    """A row of cubes has the cross-section of one, whatever its length."""
+    points, cells = tetrahedra(5)
+    rows = []
+    for copies in (1, 8):
+        moved, joined = [], []
+        for k in range(copies):
+            moved.append(points + np.array([k, 0, 0]))
+            joined.append(cells + k * len(points))
+        everywhere = np.round(np.vstack(moved), 9)
+        unique, number = np.unique(everywhere, axis=0, return_inverse=True)
+        rod = number[np.vstack(joined)]
+        rows.append(cost.width(assemble(unique, rod, (1.0, 1.0))))
+    assert 0.5 < rows[1] / rows[0] < 2.0
+
+
+def test_missing_solver_says_how_to_install(cube, monkeypatch):
+    system, _ = cube
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    assert solve(laplacian, np.ones((900, 1))).method == "superlu"
     with pytest.raises(InputError, match=r"pip install 'fe-drivetrain\[pardiso\]'"):
-        solve(laplacian, np.ones((900, 1)), "pardiso")
+        factorise(system, "pardiso")
+
+
+def test_unknown_solver_is_refused(cube):
+    with pytest.raises(InputError, match="use one of auto, superlu"):
+        factorise(cube[0], "gauss")
+
+
+def test_a_matrix_without_blocks_of_elements_is_solved(rng):
+    """The interface asks for a System only: here a chain of springs in three directions."""
+    one = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(40, 40))
+    K = sparse.kron(one, sparse.eye_array(3)).tobsr((3, 3))
+    motions = np.tile(np.eye(3), (40, 1))
+    system = System(K, None, motions, np.zeros(40, dtype=int), 120)
+    x = rng.standard_normal((120, 2))
+    np.testing.assert_allclose(solve(system, K @ x, "multigrid", 1e-12).x, x, atol=1e-9)

@@ -267,7 +267,7 @@ def test_kept_histories_are_used_again_and_equal(
     assert count_made == PAIR[1:]
     np.testing.assert_array_equal(first.loads[0], fresh.loads[0])
     np.testing.assert_array_equal(second.loads, fresh.loads)
-    assert all(file.suffix == ".npz" for file in tmp_path.iterdir())
+    assert all(file.suffix == ".npz" for file in (tmp_path / "hub-loads").iterdir())
 
 
 @pytest.mark.parametrize("damage", ["cut", "flip", "empty", "other", "short"])
@@ -275,7 +275,7 @@ def test_damaged_files_are_made_anew(
     tmp_path: Path, count_made: list[Condition], damage: str
 ) -> None:
     fresh = hub_load_set(PAIR, **SHORT, cache=tmp_path).loads
-    for file in tmp_path.iterdir():
+    for file in (tmp_path / "hub-loads").iterdir():
         content = bytearray(file.read_bytes())
         if damage == "cut":
             content = content[: len(content) // 2]

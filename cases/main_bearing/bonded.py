@@ -24,8 +24,15 @@ def run(run: Run) -> Any:
 
     scene = study.scene_of(run, "bonded")
     pinned_beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
-    solved = study.solve_scene(run, scene, "bonded")
-    tilt = study.solve_tilt(run, solved)
+    with run.side_by_side(2) as jobs:
+        meshed = study.mesh_of(run, scene, "bonded")
+        solving = jobs.start(study.solve_and_write, scene, "bonded", meshed, "mesh")
+        tilting = jobs.start(study.solve_tilt, scene, "without gearbox", meshed)
+        solved = solving.result()
+        load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
+        drawing = jobs.start(study.picture_section, solved, load_factors, "Fz = -100 kN at the hub")
+        tilt = tilting.result()
+        pictures = drawing.result()
     name = solved.bearing
     reaction = solved.response.reactions[name]
 
@@ -137,8 +144,6 @@ def run(run: Run) -> Any:
         solved.response.n_unknowns,
         tilt.by_plane,
     )
-    study.write_mesh_files(run, solved, "mesh")
-    load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
     return Results(
         case=CASE.name,
         title=CASE.title,
@@ -154,7 +159,7 @@ def run(run: Run) -> Any:
         ],
         verdicts=verdicts,
         sections=[
-            study.picture_section(run, solved, load_factors, "Fz = -100 kN at the hub"),
+            pictures,
             Section(
                 title="Reactions",
                 items=[

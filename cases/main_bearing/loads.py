@@ -9,13 +9,14 @@ import numpy as np
 from fe_drivetrain.cases.main_bearing.study import line, rounded
 
 from fe_drivetrain import compare
-from fe_drivetrain.case import Run
+from fe_drivetrain.cache import user_cache
+from fe_drivetrain.case import Jobs, Run
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.hub_loads import read_hub_loads
 from fe_drivetrain.model import COMPONENTS
 from fe_drivetrain.results import Chart, Table
-from fe_drivetrain.surrogate import Condition, hub_load_set, surrogate_grid
+from fe_drivetrain.surrogate import Condition, hub_load_set, not_kept, surrogate_grid
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
 QUICK_SEEDS = 2
@@ -55,18 +56,33 @@ class HubLoads:
     seed: int | None
 
 
-def hub_loads_of(run: Run) -> HubLoads:
-    """The user's files (``--set loads=FILE``, a folder, or a pattern), or the surrogate."""
-    if "loads" in run.settings:
+def own_hub_loads(run: Run) -> HubLoads | None:
+    """The user's files: ``--set loads=FILE``, a folder, or a pattern; None where not given."""
+    if "loads" not in run.settings:
+        return None
+    with run.step("hub loads"):
         return _read(str(run.settings["loads"]))
+
+
+def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
+    """Made hub loads; those that were not made before are made side by side."""
     from fe_drivetrain.rotor import assumptions
 
     grid = surrogate_grid()
     if run.quick:
         grid = [c for c in grid if c.seed <= QUICK_SEEDS]
-    histories = hub_load_set(
-        grid, progress=lambda done, of: run.report(f"hub loads ({done} of {of})")
-    )
+    groups: dict[float, list[Condition]] = {}
+    for condition in not_kept(grid):
+        groups.setdefault(condition.wind_speed, []).append(condition)
+    making = [jobs.start(_make, wind_speed, group) for wind_speed, group in groups.items()]
+    for job in making:
+        job.result()
+    with run.step("hub loads") as step:
+        histories = hub_load_set(
+            grid, progress=lambda done, of: run.report(f"hub loads ({done} of {of})")
+        )
+        if not groups and user_cache().folder is not None:
+            step.name += ", from the cache"
     return HubLoads(
         histories.time,
         histories.loads,
@@ -80,6 +96,13 @@ def hub_loads_of(run: Run) -> HubLoads:
         list(assumptions()),
         1,
     )
+
+
+def _make(run: Run, wind_speed: float, conditions: Sequence[Condition]) -> None:
+    """Make histories, which the cache keeps."""
+    name = f"hub loads, {wind_speed:g} m/s"
+    with run.step(name):
+        hub_load_set(conditions, progress=lambda done, of: run.report(f"{name} ({done} of {of})"))
 
 
 def _read(pattern: str) -> HubLoads:

@@ -27,10 +27,20 @@ def run(run: Run) -> Any:
 
     scene = study.scene_of(run, "spherical")
     beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
-    solved = {
-        form: study.solve_scene(run, study.with_interface(scene, form), form) for form in FORMS
-    }
-    main = solved["sliding"]
+    with run.side_by_side(len(FORMS)) as jobs:
+        meshed = study.mesh_of(run, scene, "all forms")  # which differ in their constraints only
+        scenes = {form: study.with_interface(scene, form) for form in FORMS}
+        solving = {
+            form: jobs.start(study.solve_and_write, scenes[form], form, meshed, "mesh")
+            if form == FORMS[0]
+            else jobs.start(study.solve_scene, scenes[form], form, meshed)
+            for form in FORMS
+        }
+        main = solving[FORMS[0]].result()
+        load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
+        drawing = jobs.start(study.picture_section, main, load_factors, "Fz = -100 kN at the hub")
+        solved = {form: job.result() for form, job in solving.items()}
+        pictures = drawing.result()
     name = main.bearing
     shaft = scene.shaft
     x_bearing = scene.bearing_units[0].bearing.x
@@ -195,10 +205,8 @@ def run(run: Run) -> Any:
         ],
         main.response.n_unknowns,
     )
-    study.write_mesh_files(run, main, "mesh")
-    load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
     sections = [
-        study.picture_section(run, main, load_factors, "Fz = -100 kN at the hub"),
+        pictures,
         Section(
             title="Reactions",
             items=[

@@ -1,6 +1,6 @@
 """What the main-bearing cases share: their scene, its solution, and how both are shown."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from fe_drivetrain.case import Run
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.mesh import MeshQuality, quality, write
+from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
 from fe_drivetrain.model import COMPONENTS, LOADS, Model, build_model, mesh_scene
 from fe_drivetrain.response import Response, unit_load_response
 from fe_drivetrain.results import (
@@ -21,6 +21,7 @@ from fe_drivetrain.results import (
     judge,
 )
 from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
+from fe_drivetrain.solvers import METHODS
 from fe_drivetrain.stiffness import (
     PLANES,
     bearing_unit_stiffness,
@@ -110,21 +111,49 @@ def with_interface(scene: Scene, interface: str) -> Scene:
 def solver(run: Run) -> Any:
     """The user's choice of solver."""
     method = run.settings.get("solver", "auto")
-    if method not in ("auto", "superlu", "pardiso"):
-        raise InputError(f"solver = {method!r}: use one of auto, superlu, pardiso")
+    if method not in METHODS:
+        raise InputError(f"solver = {method!r}: use one of {', '.join(METHODS)}")
     return method
 
 
-def solve_scene(run: Run, scene: Scene, label: str) -> Solved:
-    """Mesh, assemble and solve a scene, timing each step."""
-    with run.step(f"mesh ({label})"):
+Meshed = tuple[Mesh, MeshQuality]
+
+
+def mesh_of(run: Run, scene: Scene, label: str) -> Meshed:
+    """Mesh a scene, or take its mesh from the cache; the name of the step says which."""
+    with run.step(f"mesh ({label})") as step:
         mesh = mesh_scene(scene)
         mesh_quality = quality(mesh)
+        if mesh.kept:
+            step.name += ", from the cache"
+    return mesh, mesh_quality
+
+
+def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None) -> Solved:
+    """Mesh, assemble and solve a scene, timing each step.
+
+    The operators of the parts, by far the largest of what comes out, are not kept: what is solved
+    side by side travels between processes.
+
+    Parameters
+    ----------
+    meshed
+        The mesh, where there is one already.
+    """
+    mesh, mesh_quality = mesh_of(run, scene, label) if meshed is None else meshed
     with run.step(f"assembly ({label})"):
         model = build_model(scene, mesh)
     with run.step(f"solve 10 unit loads ({label})"):
         response = unit_load_response(model, solver(run))
-    return Solved(scene, model, response, mesh_quality)
+    run.report(f"{label}: {response.method}, {response.reason}")
+    return Solved(scene, replace(model, part_stiffness={}), response, mesh_quality)
+
+
+def solve_and_write(run: Run, scene: Scene, label: str, meshed: Meshed | None, file: str) -> Solved:
+    """`solve_scene` and `write_mesh_files`."""
+    solved = solve_scene(run, scene, label, meshed)
+    write_mesh_files(run, solved, file)
+    return solved
 
 
 @dataclass(frozen=True)
@@ -150,16 +179,31 @@ class Tilt:
         return self.by_plane["vertical"][estimator], self.by_plane["horizontal"][estimator]
 
 
-def solve_tilt(run: Run, solved: Solved) -> Tilt:
-    """K_R of a bonded bearing unit, as the thesis measures it: gearbox springs removed."""
-    with run.step("solve without gearbox springs (K_R)"):
-        model = build_model(without_gearbox(solved.scene), solved.model.mesh)
-        response = unit_load_response(model, solver(run))
-    free = Solved(model.scene, model, response, solved.quality)
+def solve_tilt(run: Run, scene: Scene, label: str, meshed: Meshed) -> Tilt:
+    """K_R of a bonded bearing unit, as the thesis measures it: gearbox springs removed.
+
+    Parameters
+    ----------
+    scene, meshed
+        With its gearbox springs, and its mesh.
+    label
+        Of the solution without them.
+    """
+    free = solve_scene(run, without_gearbox(scene), label, meshed)
     by_plane = {
-        plane.name: tilt_stiffness(model, response, solved.bearing, plane) for plane in PLANES
+        plane.name: tilt_stiffness(free.model, free.response, free.bearing, plane)
+        for plane in PLANES
     }
-    return Tilt(by_plane, bearing_unit_stiffness(response, solved.bearing), free)
+    return Tilt(by_plane, bearing_unit_stiffness(free.response, free.bearing), free)
+
+
+def solve_level(run: Run, scene: Scene, label: str) -> tuple[Solved, Tilt, float]:
+    """A scene solved with and without its gearbox, and the time that the first took [s]."""
+    meshed = mesh_of(run, scene, label)
+    before = sum(run.times.values())
+    solved = solve_scene(run, scene, label, meshed)
+    seconds = sum(run.times.values()) - before
+    return solved, solve_tilt(run, scene, f"{label}, without gearbox", meshed), seconds
 
 
 def spread(values: dict[str, float]) -> float:
@@ -233,14 +277,17 @@ def mesh_table(solutions: dict[str, Solved]) -> Table:
                 s.response.n_unknowns,
                 s.quality.minimum_scaled_jacobian,
                 s.response.method,
+                s.response.iterations or None,
                 s.response.seconds,
                 s.response.residual,
+                s.response.energy_error,
                 s.response.equilibrium_error,
                 s.response.superposition_error,
             ]
         )
     return Table(
-        caption="Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve",
+        caption="Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve. "
+        f"Solver {_choices(solutions)}",
         columns=[
             "model",
             "elements",
@@ -248,13 +295,23 @@ def mesh_table(solutions: dict[str, Solved]) -> Table:
             "unknowns",
             "minimum scaled Jacobian",
             "solver",
-            "factor and solve [s]",
+            "iterations",
+            "set-up and solve [s]",
             "relative residual",
+            "energy error",
             "equilibrium error",
             "superposition error",
         ],
         rows=rows,
     )
+
+
+def _choices(solutions: dict[str, Solved]) -> str:
+    """Which solver, and why, of each model that gives another reason."""
+    reasons: dict[str, str] = {}
+    for label, s in solutions.items():
+        reasons.setdefault(s.response.reason, label)
+    return "; ".join(f"({label}): {reason}" for reason, label in reasons.items())
 
 
 def reaction_table(caption: str, reaction: Floats) -> Table:

@@ -1,0 +1,309 @@
+"""Beams against FE over all hub-load histories: the figures of the study, as rows of its tables."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from fe_drivetrain.cases.main_bearing.loads import HubLoads
+from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt
+
+from fe_drivetrain import beams, compare, frame
+from fe_drivetrain.beams import MainBearingBeam
+from fe_drivetrain.case import Run
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.response import GRAVITY
+from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
+
+#: Mean error [%] and correlation of the resultant force over all histories (Stirling 2023, lines
+#: on Figures 3.6, 3.8 and 3.15), for other hub loads and another housing than here.
+PUBLISHED = {
+    "pinned beam against spherical FE": (1.54, 0.9996),
+    "pinned beam against bonded FE": (22.74, 0.7781),
+    "torsional-spring beam against bonded FE": (1.61, 0.9996),
+}
+SIXBYSIX = "beam on the 6x6 against bonded FE"
+QUANTITIES = ("Fy", "Fz", "My", "Mz")
+COMPONENT = {"Fy": 1, "Fz": 2, "My": 4, "Mz": 5}
+UNITS = {"Fy": "N", "Fz": "N", "My": "N m", "Mz": "N m"}
+
+Row = list[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A model of the load on the main bearing: every one, FE or beam, is linear in the hub loads.
+
+    Attributes
+    ----------
+    matrix
+        (6, 6): row i is what the hub load i puts on the bearing.
+    constant
+        (6,) what it carries without hub loads [N, N m].
+    """
+
+    matrix: Floats
+    constant: Floats
+
+    @classmethod
+    def of_fe(cls, solved: Solved, gravity: float = 0.0) -> Linear:
+        """The solid, with its gearbox weight and under gravity [m/s^2]."""
+        weight = solved.scene.gearbox.weight
+        constant = solved.response.history(solved.bearing, np.zeros(6), weight, gravity)
+        return cls(solved.response.history(solved.bearing, np.eye(6)), constant)
+
+    @classmethod
+    def of_beam(
+        cls, model: Callable[[Floats, MainBearingBeam], Floats], beam: MainBearingBeam
+    ) -> Linear:
+        """A closed form of `beams`."""
+        constant = model(np.zeros(6), beam)
+        # loads as large as the weight in the constant, which would swallow digits of a unit load's
+        size = 1e6
+        return cls((model(size * np.eye(6), beam) - constant) / size, constant)
+
+    def reaction(self, loads: Floats) -> Floats:
+        """(..., 6) reactions [N, N m] to (..., 6) hub loads."""
+        result = loads @ self.matrix
+        result += self.constant
+        return result
+
+    def radial(self, loads: Floats) -> Floats:
+        """(...) resultant radial force [N]."""
+        return compare.resultant(
+            loads @ self.matrix[:, 1] + self.constant[1],
+            loads @ self.matrix[:, 2] + self.constant[2],
+        )
+
+    def without(self, component: int) -> Linear:
+        """The same, blind to one component of the hub loads."""
+        matrix = self.matrix.copy()
+        matrix[component] = 0.0
+        return Linear(matrix, self.constant)
+
+    def ahead(self, arm: float) -> Linear:
+        """The same, for loads that act an arm [m] in front of the hub."""
+        matrix = self.matrix.copy()
+        matrix[2] += arm * self.matrix[4]
+        matrix[1] -= arm * self.matrix[5]
+        return Linear(matrix, self.constant)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What the study found.
+
+    Attributes
+    ----------
+    fe
+        (m, n, 6) reactions of the main bearing [N, N m] by kind, "spherical" and "bonded".
+    pairs
+        The kind of FE that each comparison is with, and the beam's (m, n, 6) reactions.
+    mean_error, correlation
+        Of the resultant radial force, by comparison [%] and [-].
+    headline, quantities, estimators, causes
+        Rows of tables.
+    with_their_stiffness
+        Mean error of the pinned beam against the closed form with the thesis's own K_R [%].
+    seconds
+        Wall time of turning all load steps into FE reactions [s].
+    """
+
+    fe: dict[str, Floats]
+    pairs: dict[str, tuple[str, Floats]]
+    mean_error: dict[str, float]
+    correlation: dict[str, float]
+    headline: list[Row]
+    quantities: list[Row]
+    estimators: list[Row]
+    causes: list[Row]
+    with_their_stiffness: float
+    seconds: float
+
+
+def compared(
+    run: Run,
+    hub: HubLoads,
+    pinned_beam: MainBearingBeam,
+    spherical: Solved,
+    bonded: Solved,
+    tilt: Tilt,
+) -> Comparison:
+    """Compare four pairs of beam and FE over all histories."""
+    name, scene = bonded.bearing, bonded.scene
+    solids = {"spherical": Linear.of_fe(spherical), "bonded": Linear.of_fe(bonded)}
+    start = time.perf_counter()
+    with run.step("reactions of all histories"):
+        fe = {kind: solid.reaction(hub.loads) for kind, solid in solids.items()}
+    seconds = time.perf_counter() - start
+
+    springs = {
+        estimator: Linear.of_beam(
+            beams.torsional_spring_model, main_bearing_beam(scene, *tilt.both(estimator))
+        )
+        for estimator in ESTIMATORS
+    }
+    unit = frame.unit_load_response(
+        beam_of_scene(scene, {name: tilt.matrix}, shear=False),
+        [scene.shaft.front, scene.shaft.rear],
+    )
+    down = np.array([0.0, 0.0, -scene.gearbox.weight, 0.0, 0.0, 0.0])
+    first, second, third = PUBLISHED
+    on_matrix = Linear(
+        unit.reaction_matrix(name)[:, 0, :].T,
+        unit.solution([np.zeros(6), down]).reaction(name),
+    )
+    with run.step("beam models"):
+        pinned = Linear.of_beam(beams.pinned_model, pinned_beam).reaction(hub.loads)
+        pairs = {
+            first: ("spherical", pinned),
+            second: ("bonded", pinned),
+            third: ("bonded", springs["averaged seat"].reaction(hub.loads)),
+            SIXBYSIX: ("bonded", on_matrix.reaction(hub.loads)),
+        }
+
+    with run.step("comparison"):
+        force = {kind: _radial(reaction) for kind, reaction in fe.items()}
+        beam_force = {label: _radial(model) for label, (_, model) in pairs.items()}
+        error = {
+            label: _mean_error(force[kind], beam_force[label]) for label, (kind, _) in pairs.items()
+        }
+        correlation = {
+            label: float(compare.correlation(force[kind], beam_force[label]).mean())
+            for label, (kind, _) in pairs.items()
+        }
+        headline: list[Row] = [
+            [
+                label,
+                error[label],
+                100.0 * float(compare.relative_error(force[kind], beam_force[label]).mean()),
+                100.0 * float(compare.excluded_share(force[kind]).mean()),
+                f"{correlation[label]:.6f}",
+                *PUBLISHED.get(label, (None, None)),
+            ]
+            for label, (kind, _) in pairs.items()
+        ]
+        quantities = [
+            row
+            for label, (kind, model) in pairs.items()
+            for row in _by_quantity(label, fe[kind], model)
+        ]
+        estimators = [
+            _by_estimator(estimator, tilt, fe["bonded"], force["bonded"], model, hub.loads)
+            for estimator, model in springs.items()
+        ]
+        theirs = Linear.of_beam(
+            beams.torsional_spring_model, main_bearing_beam(scene, 145e6, 392e6)
+        )
+        with_their_stiffness = _mean_error(theirs.radial(hub.loads), beam_force[first])
+    with run.step("causes of the difference"):
+        causes = _causes(hub.loads, spherical, bonded, springs["averaged seat"], beam_force, force)
+    return Comparison(
+        fe,
+        pairs,
+        error,
+        correlation,
+        headline,
+        quantities,
+        estimators,
+        causes,
+        with_their_stiffness,
+        seconds,
+    )
+
+
+def _radial(reaction: Floats) -> Floats:
+    """(m, n) resultant radial force [N] of (m, n, 6) reactions."""
+    return compare.resultant(reaction[..., 1], reaction[..., 2])
+
+
+def _mean_error(reference: Floats, found: Floats) -> float:
+    """The thesis's metric, mean over the histories [%]."""
+    return float(compare.mean_percentage_error(reference, found).mean())
+
+
+def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Row]:
+    """Usable as a model uncertainty: means over all histories, one row a quantity."""
+    columns = [COMPONENT[q] for q in QUANTITIES]
+    result = compare.compare(
+        reference[..., columns],
+        model[..., columns],
+        QUANTITIES,
+        [UNITS[q] for q in QUANTITIES],
+        # A spherical joint carries no moment: what stands there is rounding.
+        negligible=(1.0, 1.0, 1.0, 1.0),
+    )
+    rows: list[Row] = []
+    for k, quantity in enumerate(QUANTITIES):
+        if np.isnan(result.correlation[:, k]).any():
+            continue
+        rows.append(
+            [
+                label,
+                f"{quantity} [k{UNITS[quantity]}]".replace("N m", "N\u00a0m"),
+                float(result.reference_rms[:, k].mean()) / 1e3,
+                float(result.rmse[:, k].mean()) / 1e3,
+                float(result.bias[:, k].mean()) / 1e3,
+                100.0 * float(result.relative_scatter[:, k].mean()),
+                float(result.slope[:, k].mean()),
+                float(result.cov[:, k].mean()),
+                f"{float(result.correlation[:, k].mean()):.6f}",
+            ]
+        )
+    return rows
+
+
+def _by_estimator(
+    estimator: str, tilt: Tilt, reference: Floats, force: Floats, model: Linear, loads: Floats
+) -> Row:
+    """The torsional-spring beam with K_R of one estimator against bonded FE."""
+    fy, fz = (loads @ model.matrix[:, k] + model.constant[k] for k in (1, 2))
+    found = compare.resultant(fy, fz)
+    return [
+        estimator,
+        *(k / 1e6 for k in tilt.both(estimator)),
+        _mean_error(force, found),
+        f"{float(compare.correlation(force, found).mean()):.6f}",
+        float(compare.rmse(reference[..., 1], fy).mean()) / 1e3,
+        float(compare.rmse(reference[..., 2], fz).mean()) / 1e3,
+    ]
+
+
+def _causes(
+    loads: Floats,
+    spherical: Solved,
+    bonded: Solved,
+    spring: Linear,
+    beam_force: dict[str, Floats],
+    force: dict[str, Floats],
+) -> list[Row]:
+    """Beam against FE with one load at a time taken out or put in."""
+    first, _, third = PUBLISHED
+    plain = "all hub loads, no self-weight"
+    heavy = "self-weight of shaft, bearing and housing in FE, none in the beam"
+    ahead = "FE loads 50 mm in front of the shaft"
+    of_first = [
+        (plain, force["spherical"]),
+        (heavy, Linear.of_fe(spherical, GRAVITY).radial(loads)),
+        (ahead, Linear.of_fe(spherical).ahead(0.05).radial(loads)),
+    ]
+    cases = [(first, what, reference, beam_force[first]) for what, reference in of_first]
+    cases.append((third, plain, force["bonded"], beam_force[third]))
+    solid = Linear.of_fe(bonded)
+    for what, component in (("without thrust Fx", 0), ("without torque Mx", 3)):
+        less = [model.without(component).radial(loads) for model in (solid, spring)]
+        cases.append((third, what, less[0], less[1]))
+    heavy_force = Linear.of_fe(bonded, GRAVITY).radial(loads)
+    cases.append((third, heavy, heavy_force, beam_force[third]))
+    return [
+        [
+            label,
+            what,
+            _mean_error(reference, found),
+            f"{float(compare.correlation(reference, found).mean()):.6f}",
+        ]
+        for label, what, reference, found in cases
+    ]

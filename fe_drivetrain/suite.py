@@ -1,0 +1,108 @@
+"""Several cases in one go: side by side, but for those that measure; and a page that lists them."""
+
+from __future__ import annotations
+
+import shutil
+import traceback
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from fe_drivetrain.case import Case, new_folder, put_in_place, run_into
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.parallel import Job, Processes, Report, silent
+
+
+def result_folder(out: Path, case: Case) -> Path:
+    """Where the results of a case go below a folder for several."""
+    return out.joinpath(*case.name.split("/"))
+
+
+def run_cases(
+    cases: Sequence[Case],
+    out: Path,
+    settings: Mapping[str, Any] | None = None,
+    quick: bool = False,
+    report: Report = silent,
+) -> dict[str, str]:
+    """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
+
+    Independent cases run in processes side by side, as many as the cores allow; those that are to
+    be `alone` come after them, one by one, each in a process that starts afresh. A case that fails
+    does not keep the others from their work. Each result folder appears whole or not at all; when
+    stopped, those of finished cases stay.
+
+    Parameters
+    ----------
+    cases
+        Which, each once.
+    out
+        The folder above theirs.
+    settings, quick, report
+        As for `fe_drivetrain.case.run_case`.
+
+    Returns
+    -------
+    problems
+        Why there are no results, by the name of the case.
+
+    Raises
+    ------
+    InputError
+        A result folder cannot be written or holds something else.
+    """
+    from fe_drivetrain.report import write_index
+
+    out = Path(out)
+    problems: dict[str, str] = {}
+    folders: dict[str, Path] = {}
+
+    finished: list[str] = []
+
+    def finish(case: Case, problem: str) -> None:
+        if problem:
+            problems[case.name] = problem
+        else:
+            put_in_place(folders[case.name], result_folder(out, case))
+        finished.append(case.name)
+
+    try:
+        for case in cases:
+            folders[case.name] = new_folder(result_folder(out, case))
+        beside = [case for case in cases if not case.alone]
+        with Processes(len(beside), report) as processes:
+            jobs: dict[Job[str], Case] = {
+                processes.start(_run, case, folders[case.name], dict(settings or {}), quick): case
+                for case in beside
+            }
+            for job in processes.finished(jobs):
+                finish(jobs[job], job.result())
+        for case in cases:
+            if case.alone:
+                with Processes(1, report, always=True) as processes:
+                    job = processes.start(
+                        _run, case, folders[case.name], dict(settings or {}), quick
+                    )
+                    finish(case, job.result())
+    finally:
+        for folder in folders.values():
+            shutil.rmtree(folder, ignore_errors=True)
+        if finished:  # when stopped, those that were done by then
+            write_index(out, problems)
+    return problems
+
+
+def _run(report: Report, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool) -> str:
+    """Run a case into a folder; why there are no results, or nothing."""
+
+    def named(step: str, lane: int = 0) -> None:
+        report(f"{case.name}: {step}" if step else "", lane)
+
+    try:
+        run_into(case, folder, settings, quick, named)
+    except InputError as error:
+        return str(error)
+    except Exception as error:
+        traceback.print_exc()
+        return f"ended by an error of its own, {type(error).__name__}: {error}"
+    return ""

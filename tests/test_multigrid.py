@@ -1,0 +1,145 @@
+"""Multigrid and its error estimate against direct solutions."""
+
+import numpy as np
+import pytest
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+
+from fe_drivetrain import direct, multigrid
+from fe_drivetrain.elasticity import assemble
+from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.materials import MATERIALS
+from fe_drivetrain.mesh import generate
+from fe_drivetrain.reduction import reduce
+
+
+def cantilever(length, size, inner=0.3, linear=False):
+    """A hollow shaft held at the rear; six unit loads at the rigid front."""
+    section = Section(length=length, outer_diameter=0.7, inner_diameter=inner)
+    mesh = generate(
+        Shaft(sections=[section], front=0.0), [], {}, MeshSizes(shaft=size, elements_per_turn=8)
+    )
+    points, cells = mesh.points, mesh.cells
+    faces = {name: mesh.face_nodes(name) for name in ("shaft.front", "shaft.rear")}
+    if linear:
+        corner, cells = np.unique(cells[:, :4], return_inverse=True)
+        points, cells = points[corner], cells.reshape(-1, 4)
+        faces = {name: np.flatnonzero(np.isin(corner, nodes)) for name, nodes in faces.items()}
+    n = points.size + 6
+    front = rigid_point("front", np.zeros(3), points.size, n)
+    elimination = eliminate(
+        [
+            rigid_face("front", faces["shaft.front"], points, front),
+            fixed("rear", faces["shaft.rear"], n),
+        ],
+        n,
+    )
+    K = assemble(points, cells, MATERIALS["steel"].lame, n)
+    system = reduce(points, cells, K, elimination)
+    return system, elimination.T.T @ front.motion.T.toarray()
+
+
+def energy_norm(K, x):
+    return np.sqrt(np.einsum("nm,nm->m", x, K @ x))
+
+
+def refined(system, F):
+    factor = direct.factorise(system.K, "superlu")
+    x = factor.apply(F)
+    return x + factor.apply(F - system.K @ x)
+
+
+@pytest.mark.parametrize(("length", "linear"), [(2.0, False), (14.0, False), (2.0, True)])
+def test_estimate_is_honest_at_every_step(length, linear):
+    """Chunky and slender (L/D = 20), quadratic and linear: never below half of the true error."""
+    system, F = cantilever(length, 0.3, linear=linear)
+    exact = refined(system, F)
+    hierarchy = multigrid.build(system)
+    size = energy_norm(system.K, exact)
+    ratios = []
+    for found in multigrid.iterates(system.K, F, hierarchy.precondition):
+        true = (energy_norm(system.K, found.x - exact) / size).max()
+        if true < 1e-8:  # the slender shaft's direct solution is no better than that
+            break
+        ratios.append(found.energy_error / true)
+    assert len(ratios) >= 4
+    assert min(ratios) > 0.5
+    assert np.median(ratios) < 20.0
+
+
+def test_stiffness_error_is_the_energy_error_squared():
+    system, F = cantilever(2.0, 0.3)
+    exact = refined(system, F)
+    hierarchy = multigrid.build(system)
+    found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-3)
+    compliance = np.einsum("nm,nm->m", F, found.x)
+    error = 1.0 - compliance / np.einsum("nm,nm->m", F, exact)
+    # Galerkin: always too stiff, by the square of the energy error.
+    assert (error > 0.0).all()
+    true = (energy_norm(system.K, found.x - exact) / energy_norm(system.K, exact)) ** 2
+    np.testing.assert_allclose(error, true, rtol=1e-3)
+    assert error.max() < 1e-5
+
+
+def test_preconditioner_is_symmetric_and_positive(rng):
+    system, F = cantilever(2.0, 0.3)
+    hierarchy = multigrid.build(system)
+    a, b = rng.standard_normal((2, len(F), 3))
+    Ma, Mb = hierarchy.precondition(a), hierarchy.precondition(b)
+    scale = np.abs(a.T @ Ma).max()
+    np.testing.assert_allclose(a.T @ Mb, Ma.T @ b, atol=1e-10 * scale)
+    assert (np.einsum("nm,nm->m", a, Ma) > 0.0).all()
+
+
+def test_iterations_hardly_grow_with_the_mesh():
+    counts = []
+    for size in (0.4, 0.2, 0.1):
+        system, F = cantilever(2.0, size)
+        hierarchy = multigrid.build(system)
+        found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-8)
+        counts.append(found.iterations)
+    assert max(counts) < 30
+
+
+def test_joined_bodies_converge_like_one(spherical_responses):
+    """The sliding joint: without modes of its own for each body this takes hundreds of steps."""
+    model, _ = spherical_responses["sliding"]
+    elimination = eliminate(model.constraints, model.n_freedoms)
+    system = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
+    F = elimination.T.T @ model.unit_loads()
+    hierarchy = multigrid.build(system)
+    found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-9)
+    assert found.energy_error <= 1e-9
+    assert found.iterations < 80
+    exact = refined(system, F)
+    true = energy_norm(system.K, found.x - exact) / energy_norm(system.K, exact)
+    assert true.max() < 1e-9
+
+
+def test_columns_do_not_disturb_each_other():
+    """A zero column, one of 1e-9 and one of 1e9 beside the others."""
+    system, F = cantilever(2.0, 0.3)
+    hierarchy = multigrid.build(system)
+    scale = np.array([1.0, 0.0, 1e-9, 1e9, 1.0, 1.0])
+    found = multigrid.conjugate_gradients(system.K, F * scale, hierarchy.precondition, 1e-9)
+    exact = refined(system, F)
+    assert np.abs(found.x[:, 1]).max() == 0.0
+    for k in (0, 2, 3, 4, 5):
+        x = found.x[:, [k]] / scale[k]
+        error = energy_norm(system.K, x - exact[:, [k]]) / energy_norm(system.K, exact[:, [k]])
+        assert error < 1e-8
+
+
+def test_hierarchy_is_the_same_every_time():
+    system, F = cantilever(2.0, 0.3)
+    once, again = (multigrid.build(system).precondition(F) for _ in range(2))
+    assert np.array_equal(once, again)
+
+
+def test_energy_error_of_a_geometric_sequence():
+    """Terms that fall by a constant factor: the rest of the series is known."""
+    terms = 0.25 ** np.arange(12.0)[:, None]
+    rest = 0.25**12 / (1 - 0.25)
+    total = 1.0 / (1 - 0.25)
+    estimate = multigrid.energy_error(terms)
+    assert estimate >= np.sqrt(rest / total)
+    assert estimate < 3.0 * np.sqrt(rest / total)

@@ -1,0 +1,453 @@
+"""Jobs in processes: right answers, held threads, and nothing left behind however they end."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.case import Run
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.parallel import VARIABLE, Processes, Report, cores
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="looks at processes by their number")
+
+
+@pytest.fixture(autouse=True)
+def two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "2")
+
+
+def is_running(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    status = Path(f"/proc/{pid}/stat")
+    return not (status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z")
+
+
+def until(condition: Callable[[], bool]) -> None:
+    """Wait for what must come; a hang is a failure."""
+    end = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+# --- jobs, as another process imports them -------------------------------------------------------
+
+
+def square(report: Report, x: float) -> tuple[int, float]:
+    return os.getpid(), x * x
+
+
+def meet(report: Report, folder: Path, name: str, other: str) -> bool:
+    """Ends only if the other job runs at the same time."""
+    (folder / name).touch()
+    until(lambda: (folder / other).exists())
+    return True
+
+
+def threads(report: Report) -> tuple[int, dict[str, str]]:
+    from threadpoolctl import threadpool_info
+
+    np.ones((300, 300)) @ np.ones((300, 300))
+    names = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+    return (
+        max(library["num_threads"] for library in threadpool_info()),
+        {name: os.environ[name] for name in names},
+    )
+
+
+def steps(report: Report, name: str) -> int:
+    report(f"first of {name}")
+    report(f"second of {name}")
+    return os.getpid()
+
+
+def mistake(report: Report) -> None:
+    raise InputError("shaft: length is -1 but must be greater than 0: give a length")
+
+
+class OddError(Exception):
+    """Cannot be made again from its arguments, so cannot be pickled."""
+
+    def __init__(self, one: int, two: int) -> None:
+        super().__init__(f"{one} and {two}")
+
+
+def odd(report: Report) -> None:
+    raise OddError(1, 2)
+
+
+def fault(report: Report) -> float:
+    return 1 / 0
+
+
+def end(report: Report, number: int) -> None:
+    if number < 0:
+        os.kill(os.getpid(), -number)
+    sys.stderr.write("last words\n")
+    sys.stderr.flush()
+    os._exit(number)
+
+
+def sleep_for_ever(report: Report, folder: Path) -> None:
+    (folder / str(os.getpid())).touch()
+    time.sleep(600)
+
+
+def talk(report: Report) -> str:
+    print("out")
+    os.write(1, b"raw out\n")
+    sys.stdin.read()  # nobody types here
+    subprocess.run([sys.executable, "-c", "print('child')"], check=True)
+    return "done"
+
+
+def nested(report: Report) -> tuple[int, int]:
+    with Processes(4) as processes:
+        return os.getpid(), processes.start(square, 2.0).result()[0]
+
+
+def large(report: Report, array: np.ndarray) -> np.ndarray:
+    return array[::-1]
+
+
+def random_number(report: Report) -> str:
+    import random
+
+    return str(random.__file__)
+
+
+# --- results -------------------------------------------------------------------------------------
+
+
+def test_results_come_back_from_other_processes() -> None:
+    with Processes(5) as processes:
+        jobs = [processes.start(square, x) for x in range(5)]
+        results = [job.result() for job in jobs]
+    assert [value for _, value in results] == [0, 1, 4, 9, 16]
+    pids = {pid for pid, _ in results}
+    assert os.getpid() not in pids
+    assert len(pids) <= 2
+    until(lambda: not any(map(is_running, pids)))
+
+
+def test_jobs_run_at_the_same_time(tmp_path: Path) -> None:
+    with Processes(2) as processes:
+        jobs = [
+            processes.start(meet, tmp_path, "a", "b"),
+            processes.start(meet, tmp_path, "b", "a"),
+        ]
+        assert all(job.result() for job in jobs)
+
+
+def test_arrays_travel_whole() -> None:
+    array = np.random.default_rng(0).standard_normal((3, 10**6))
+    with Processes(1, always=True) as processes:
+        back = processes.start(large, array).result()
+    assert back.tobytes() == array[::-1].tobytes()
+
+
+def test_jobs_come_as_they_are_finished(tmp_path: Path) -> None:
+    with Processes(2) as processes:
+        slow = processes.start(meet, tmp_path, "a", "go")
+        fast = processes.start(square, 2.0)
+        order = []
+        for job in processes.finished([slow, fast]):
+            order.append(job)
+            (tmp_path / "go").touch()
+    assert order == [fast, slow]
+
+
+def test_one_core_or_one_job_needs_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Processes(1) as processes:
+        assert processes.count == 0
+        assert processes.start(square, 3.0).result() == (os.getpid(), 9.0)
+    monkeypatch.setenv(VARIABLE, "1")
+    with Processes(3) as processes:
+        jobs = [processes.start(square, x) for x in (1.0, 2.0, 3.0)]
+        assert [job.result() for job in processes.finished(jobs)] == [
+            (os.getpid(), x) for x in (1.0, 4.0, 9.0)
+        ]
+    with Processes(1, always=True) as processes:
+        assert processes.start(square, 3.0).result()[0] != os.getpid()
+
+
+def test_jobs_nobody_asks_for_are_done_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number in ("1", "2"):
+        monkeypatch.setenv(VARIABLE, number)
+        folder = tmp_path / number
+        folder.mkdir()
+        (folder / "b").touch()
+        with Processes(2) as processes:
+            processes.start(meet, folder, "a", "b")
+        assert (folder / "a").exists()
+
+
+def test_a_process_starts_no_others() -> None:
+    with Processes(2) as processes:
+        outer, inner = processes.start(nested).result()
+    assert outer == inner != os.getpid()
+
+
+def test_the_users_folder_hides_no_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "random.py").write_text("raise SystemExit('mine')")
+    monkeypatch.chdir(tmp_path)
+    with Processes(2) as processes:
+        assert str(tmp_path) not in processes.start(random_number).result()
+
+
+# --- threads -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("available", "jobs", "share"), [(2, 2, 1), (4, 2, 2), (4, 3, 1)])
+def test_all_processes_together_have_no_more_threads_than_cores(
+    monkeypatch: pytest.MonkeyPatch, available: int, jobs: int, share: int
+) -> None:
+    monkeypatch.setenv(VARIABLE, str(available))
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    monkeypatch.setenv("MKL_NUM_THREADS", "1")
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "64")
+    with Processes(jobs) as processes:
+        number, told = processes.start(threads).result()
+    assert told == {
+        "OMP_NUM_THREADS": str(share),
+        "MKL_NUM_THREADS": "1",  # fewer, as the user said
+        "NUMBA_NUM_THREADS": str(share),
+    }
+    assert number <= share
+    assert processes.count * share <= available
+
+
+def test_this_process_keeps_to_one_thread_meanwhile() -> None:
+    from threadpoolctl import threadpool_info
+
+    before = [library["num_threads"] for library in threadpool_info()]
+    with Processes(2):
+        assert {library["num_threads"] for library in threadpool_info()} <= {1}
+    assert [library["num_threads"] for library in threadpool_info()] == before
+
+
+def test_the_command_line_holds_itself_to_the_cores_that_the_user_gives() -> None:
+    program = (
+        "import sys; sys.argv[:] = ['fe-drivetrain', 'run', 'unknown']\n"
+        "from fe_drivetrain import cli\n"
+        "try:\n"
+        "    cli.main()\n"
+        "except SystemExit:\n"
+        "    pass\n"
+        "import numpy, scipy.linalg\n"
+        "from threadpoolctl import threadpool_info\n"
+        "print(max(library['num_threads'] for library in threadpool_info()))\n"
+    )
+    environment = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**environment, VARIABLE: "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout == "1\n"
+
+
+@pytest.mark.parametrize("number", ["0", "-1", "two", "1.5"])
+def test_a_wrong_number_of_cores_is_told(monkeypatch: pytest.MonkeyPatch, number: str) -> None:
+    monkeypatch.setenv(VARIABLE, number)
+    with pytest.raises(InputError, match=rf"{VARIABLE} is '{number}'"):
+        cores()
+
+
+def test_left_alone_it_takes_the_cores_it_may_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(VARIABLE)
+    assert cores() == len(os.sched_getaffinity(0))
+
+
+# --- steps ---------------------------------------------------------------------------------------
+
+
+def test_steps_of_all_processes_are_told() -> None:
+    told: list[tuple[str, int]] = []
+    with Processes(2, lambda step, lane=0: told.append((step, lane))) as processes:
+        jobs = [processes.start(steps, name) for name in ("a", "b")]
+        for job in jobs:
+            job.result()
+    for name in ("a", "b"):
+        (lane,) = {lane for step, lane in told if step.endswith(name)}
+        assert lane in (1, 2)
+        assert [step for step, at in told if step.endswith(name)] == [
+            f"first of {name}",
+            f"second of {name}",
+        ]
+    ends = [lane for step, lane in told if step == ""]
+    assert set(ends) == {lane for _, lane in told}
+
+
+def timed(run: Run, name: str) -> str:
+    with run.step(name):
+        (run.folder / name).write_text(str(run.settings["k"]))
+        time.sleep(0.2)
+    return name
+
+
+def test_times_of_a_run_add_up_to_the_time_that_passed(tmp_path: Path) -> None:
+    run = Run({"k": 7}, False, tmp_path)
+    start = time.perf_counter()
+    with run.side_by_side(2) as jobs:
+        assert [job.result() for job in [jobs.start(timed, n) for n in ("a", "b")]] == ["a", "b"]
+    passed = time.perf_counter() - start
+    assert {"a", "b"} < set(run.times)
+    assert sum(run.times.values()) == pytest.approx(passed, rel=0.1, abs=0.05)
+    assert (tmp_path / "b").read_text() == "7"
+
+
+# --- failures ------------------------------------------------------------------------------------
+
+
+def test_a_users_mistake_arrives_as_it_was_raised() -> None:
+    with pytest.raises(InputError) as caught, Processes(2) as processes:
+        processes.start(mistake).result()
+    assert str(caught.value) == "shaft: length is -1 but must be greater than 0: give a length"
+
+
+def test_a_fault_says_where_it_was_raised() -> None:
+    with pytest.raises(ZeroDivisionError) as caught, Processes(2) as processes:
+        processes.start(fault).result()
+    assert any("in fault" in note for note in caught.value.__notes__)
+    with pytest.raises(RuntimeError, match="1 and 2"), Processes(2) as processes:
+        processes.start(odd).result()
+
+
+def test_a_failure_ends_all_others_at_once(tmp_path: Path) -> None:
+    def failing() -> None:
+        with Processes(2) as processes:
+            waiting = processes.start(sleep_for_ever, tmp_path)
+            until(lambda: any(tmp_path.iterdir()))
+            processes.start(mistake)
+            waiting.result()
+
+    with pytest.raises(InputError, match="length"):
+        failing()
+    (pid,) = (int(file.name) for file in tmp_path.iterdir())
+    assert not is_running(pid)
+
+
+def test_an_error_in_this_process_ends_all_others(tmp_path: Path) -> None:
+    def stopped() -> None:
+        with Processes(2) as processes:
+            processes.start(sleep_for_ever, tmp_path)
+            processes.start(sleep_for_ever, tmp_path)
+            until(lambda: len(list(tmp_path.iterdir())) == 2)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    assert not any(is_running(int(file.name)) for file in tmp_path.iterdir())
+
+
+def test_a_killed_process_is_explained() -> None:
+    with pytest.raises(InputError, match=rf"memory.*{VARIABLE}=1"), Processes(2) as processes:
+        processes.start(end, -signal.SIGKILL).result()
+    with pytest.raises(RuntimeError, match=r"status 3.*last words"), Processes(2) as processes:
+        processes.start(end, 3).result()
+
+
+def test_what_a_job_prints_is_no_answer(capfd: pytest.CaptureFixture[str]) -> None:
+    with Processes(2) as processes:
+        assert processes.start(talk).result() == "done"
+    said = capfd.readouterr()
+    assert said.out == ""
+    assert "raw out" in said.err
+
+
+# --- from outside, as typed on the command line --------------------------------------------------
+
+JOBS = """
+import os, time
+def work(run, name):
+    with run.step(name):
+        (run.folder / name).write_text(str(os.getpid()))
+        time.sleep(600)
+"""
+SCRIPT = """
+from fe_drivetrain.case import Case
+from fe_drivetrain.cli import main_of_case
+import jobs_of_script
+
+def run(run):
+    with run.side_by_side(2) as jobs:
+        for job in [jobs.start(jobs_of_script.work, name) for name in ("one", "two")]:
+            job.result()
+
+if __name__ == "__main__":
+    main_of_case(Case("group/tiny", "Title", "s", run))
+"""
+
+
+@pytest.mark.parametrize(
+    ("sent", "status"),
+    [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -signal.SIGKILL)],
+)
+def test_a_signal_ends_every_process_and_leaves_nothing_half_written(
+    tmp_path: Path, sent: signal.Signals, status: int
+) -> None:
+    (tmp_path / "jobs_of_script.py").write_text(JOBS)
+    (tmp_path / "script.py").write_text(SCRIPT)
+    out = tmp_path / "out"
+    command = [sys.executable, str(tmp_path / "script.py"), "--out", str(out / "x")]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        assert process.stderr is not None
+
+        def pids() -> list[int]:
+            files = [*out.glob(".x-*/one"), *out.glob(".x-*/two")]
+            return [int(file.read_text() or 0) for file in files]
+
+        until(lambda: len(pids()) == 2 and 0 not in pids())
+        children = pids()
+        assert all(map(is_running, children))
+        # as a terminal sends it: to the whole group of the command
+        os.killpg(process.pid, sent) if sent == signal.SIGINT else process.send_signal(sent)
+        assert process.wait(60) == status
+        until(lambda: not any(map(is_running, children)))
+        err = process.stderr.read()
+    assert "Traceback" not in err
+    if sent != signal.SIGKILL:  # which nothing can clean up after
+        assert list(out.iterdir()) == []
+
+
+def test_a_mistake_in_a_process_is_one_sentence_on_the_command_line(tmp_path: Path) -> None:
+    (tmp_path / "jobs_of_script.py").write_text(
+        "from fe_drivetrain.errors import InputError\n"
+        "def work(run, name):\n"
+        "    raise InputError(f'{name}: too long: make it shorter')\n"
+    )
+    (tmp_path / "script.py").write_text(SCRIPT)
+    command = [sys.executable, str(tmp_path / "script.py"), "--out", str(tmp_path / "out" / "x")]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    (told,) = (line for line in done.stderr.splitlines() if line.startswith("fe-drivetrain:"))
+    assert told.endswith(": too long: make it shorter")
+    assert "Traceback" not in done.stderr
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_a_job_of_the_script_itself_is_refused() -> None:
+    def local(report: Report) -> Any:
+        return None
+
+    local.__module__ = "__main__"
+    with pytest.raises(ValueError, match="must stand in a module"), Processes(2) as processes:
+        processes.start(local)

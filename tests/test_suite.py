@@ -1,0 +1,215 @@
+"""Several cases in one go: each whole or not at all, measuring ones alone, and a page of all."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from fe_drivetrain.cache import user_cache
+from fe_drivetrain.case import Case, Run
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.parallel import VARIABLE, cores
+from fe_drivetrain.report import write_index
+from fe_drivetrain.results import Environment, Results, judge, read_results
+from fe_drivetrain.suite import run_cases
+
+
+def results_of(run: Run, name: str, computed: float = 1.0, **figures: object) -> Results:
+    return Results(
+        case=name,
+        title=f"Title of <{name}>",
+        source="nobody",
+        summary=["One."],
+        verdicts=[judge("one", computed, 1.0, tolerance=0.1, reason="r", source="s")],
+        sections=[],
+        times={"count": 1.5, "saved": -0.25},
+        figures=figures,
+        environment=Environment(
+            date="2026-01-31", python="", platform="", versions={}, settings=dict(run.settings)
+        ),
+    )
+
+
+# module-level, because other processes import them
+def count(run: Run) -> Results:
+    start = time.time()
+    with run.step("count"):
+        (run.folder / "one.txt").write_text("1")
+        time.sleep(0.3)
+    return results_of(
+        run,
+        "a/count",
+        began=start,
+        ended=time.time(),
+        pid=os.getpid(),
+        cores=cores(),
+        kept=user_cache().folder is not None,
+    )
+
+
+def miss(run: Run) -> Results:
+    return results_of(run, "a/miss", 2.0)
+
+
+def refuse(run: Run) -> Results:
+    (run.folder / "half.txt").write_text("half")
+    raise InputError("shaft: length is -1 <m>: give a length")
+
+
+def fault(run: Run) -> Results:
+    return results_of(run, "a/fault", 1 / 0)
+
+
+def wait(run: Run) -> Results:
+    (run.folder / f"pid-{os.getpid()}").touch()
+    with run.step("wait"):
+        time.sleep(600)
+    return results_of(run, "a/wait")
+
+
+def a_case(name: str, work: object, alone: bool = False) -> Case:
+    return Case(name, "title", "source", work, alone)  # type: ignore[arg-type]
+
+
+@pytest.fixture(params=["1", "2"])
+def number_of_cores(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.setenv(VARIABLE, request.param)
+    return str(request.param)
+
+
+def test_each_case_has_its_results_and_all_are_listed(tmp_path: Path, number_of_cores: str) -> None:
+    cases = [a_case("a/one", count), a_case("a/miss", miss), a_case("b/three", count)]
+    assert run_cases(cases, tmp_path, {"k": 1}) == {}
+    for case in cases:
+        results = read_results(tmp_path / case.name / "results.json")
+        assert results.environment.settings == {"k": 1}
+        assert (tmp_path / case.name / "report.html").is_file()
+    page = (tmp_path / "index.html").read_text()
+    assert "2 of 3 cases pass" in page
+    assert re.findall(r'href="([^"]*\.html)"', page) == [
+        f"{case.name}/report.html" for case in sorted(cases, key=lambda c: c.name)
+    ]
+    assert "Title of &lt;a/miss&gt;" in page
+    assert page.count('<td class="number">1.25</td>') == 3  # times add up to what passed
+    assert len(re.findall(">FAIL<", page)) == 1
+    assert sorted(os.listdir(tmp_path)) == ["a", "b", "index.html"]
+    assert sorted(os.listdir(tmp_path / "a")) == ["miss", "one"]
+
+
+def test_a_case_that_cannot_run_keeps_no_other_from_running(
+    tmp_path: Path, number_of_cores: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    cases = [a_case("a/refuse", refuse), a_case("a/fault", fault), a_case("a/one", count)]
+    problems = run_cases(cases, tmp_path)
+    assert problems["a/refuse"] == "shaft: length is -1 <m>: give a length"
+    assert "ZeroDivisionError" in problems["a/fault"]
+    assert list(problems) == ["a/refuse", "a/fault"] or number_of_cores == "2"
+    assert "in fault" in capfd.readouterr().err  # a fault of ours can be found
+    page = (tmp_path / "index.html").read_text()
+    assert "1 of 3 cases passes" not in page
+    assert "1 of 3 cases pass" in page
+    assert "shaft: length is -1 &lt;m&gt;: give a length" in page
+    assert sorted(os.listdir(tmp_path / "a")) == ["one"]
+
+
+def test_earlier_results_stay_where_a_case_cannot_run(tmp_path: Path) -> None:
+    run_cases([a_case("a/one", count)], tmp_path)
+    before = (tmp_path / "a/one/results.json").read_bytes()
+    assert set(run_cases([a_case("a/one", refuse)], tmp_path)) == {"a/one"}
+    assert (tmp_path / "a/one/results.json").read_bytes() == before
+    assert "0 of 1 case passes" in (tmp_path / "index.html").read_text()
+
+
+def test_measuring_cases_run_alone_in_processes_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(VARIABLE, "2")
+    names = [f"a/beside{k}" for k in range(3)] + [f"b/alone{k}" for k in range(2)]
+    cases = [a_case(name, count, alone=name.startswith("b/")) for name in reversed(names)]
+    assert run_cases(cases, tmp_path) == {}
+    found = {n: read_results(tmp_path / n / "results.json").figures for n in names}
+    assert len({figures["pid"] for name, figures in found.items() if "alone" in name}) == 2
+    assert os.getpid() not in {figures["pid"] for figures in found.values()}
+    for name, figures in found.items():
+        assert figures["kept"] == ("beside" in name)
+        for other, others in found.items():
+            if other != name and "alone" in name:
+                assert figures["ended"] <= others["began"] or others["ended"] <= figures["began"]
+    last = max(figures["ended"] for name, figures in found.items() if "beside" in name)
+    assert all(figures["began"] >= last for name, figures in found.items() if "alone" in name)
+
+
+def test_steps_are_told_with_the_name_of_their_case(tmp_path: Path, number_of_cores: str) -> None:
+    told: list[str] = []
+    run_cases(
+        [a_case("a/one", count), a_case("a/two", count)],
+        tmp_path,
+        report=lambda step, lane=0: told.append(step),
+    )
+    assert {f"a/{name}: {step}" for name in ("one", "two") for step in ("count", "report")} == {
+        step for step in told if step
+    }
+
+
+def test_a_folder_that_holds_something_else_is_refused_before_any_work(tmp_path: Path) -> None:
+    (tmp_path / "a/two").mkdir(parents=True)
+    (tmp_path / "a/two/thesis.tex").write_text("years of work")
+    with pytest.raises(InputError, match="not results"):
+        run_cases([a_case("a/one", count), a_case("a/two", count)], tmp_path)
+    assert os.listdir(tmp_path / "a") == ["two"]
+    assert os.listdir(tmp_path / "a/two") == ["thesis.tex"]
+
+
+def test_results_that_cannot_be_read_are_listed_as_such(tmp_path: Path) -> None:
+    run_cases([a_case("a/one", count)], tmp_path)
+    (tmp_path / "a/old").mkdir()
+    (tmp_path / "a/old/results.json").write_text('{"schema_version": 0}')
+    page = write_index(tmp_path).read_text()
+    assert "1 of 2 cases pass" in page
+    assert "cannot be read: run it again" in page
+
+
+@pytest.mark.parametrize(("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
+    tmp_path: Path, sent: signal.Signals, status: int
+) -> None:
+    program = (
+        "import sys; sys.argv[:] = ['fe-drivetrain', 'run', '--all']\n"
+        "import test_suite as t\n"
+        "from fe_drivetrain import case, cli\n"
+        "found = [t.a_case('a/one', t.count), t.a_case('a/wait', t.wait)]\n"
+        "case.all_cases = lambda: {c.name: c for c in found}\n"
+        "cli.main()\n"
+    )
+    environment = {
+        **os.environ,
+        VARIABLE: "2",
+        "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path]),
+    }
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        cwd=tmp_path,
+        env=environment,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        assert process.stderr is not None
+        end = time.monotonic() + 60
+        while not (tmp_path / "reports/a/one").exists() or not list(
+            tmp_path.glob("reports/a/.wait-*/pid-*")
+        ):
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        os.killpg(process.pid, sent) if sent == signal.SIGINT else process.send_signal(sent)
+        assert process.wait(60) == status
+        assert "Traceback" not in process.stderr.read()
+    assert sorted(os.listdir(tmp_path / "reports")) == ["a", "index.html"]
+    assert "1 of 1 case passes" in (tmp_path / "reports/index.html").read_text()
+    assert os.listdir(tmp_path / "reports/a") == ["one"]
+    assert (tmp_path / "reports/a/one/report.html").is_file()
