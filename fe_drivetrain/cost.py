@@ -3,11 +3,13 @@
 Nested dissection of a solid whose cross-section has w nodes, n unknowns in all, fills a factor with
 about n w^(1/2) entries at n w^(3/2) operations (George 1973 for squares and cubes; a slender solid
 is a row of cubes). The width comes from the levels of one breadth-first search, so that slender
-and chunky solids of one size are told apart. Constants: see ``cases/performance/solver_grid.py``.
+and chunky solids of one size are told apart. The constants were fitted to the grid of
+``cases/performance/solver_grid.py`` on two cores; on other machines their ratios are what counts.
 """
 
 import os
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -16,7 +18,39 @@ from scipy.sparse.csgraph import dijkstra
 from fe_drivetrain import direct
 from fe_drivetrain.reduction import System
 
-_ITERATIONS = 20
+
+class Direct(NamedTuple):
+    """Cost of a direct solver: seconds at once, per entry of K, per operation; bytes per entry of
+    the factor; seconds of a solve per byte, at once and for each right-hand side."""
+
+    start: float
+    per_entry: float
+    per_operation: float
+    bytes: float
+    solve: float
+    each: float
+
+
+DIRECT = {
+    "superlu": Direct(0.0, 5e-7, 4.4e-9, 440.0, 1.5e-10, 1.0e-10),
+    "cholmod": Direct(0.0, 4.3e-7, 1.2e-10, 120.0, 3.5e-10, 0.9e-10),
+    "pardiso": Direct(0.1, 2.6e-7, 3.9e-11, 200.0, 3.5e-10, 1.8e-10),
+}
+
+
+class Multigrid(NamedTuple):
+    """Cost of multigrid: seconds at once, per entry of K, per entry and iteration at once and for
+    each right-hand side; bytes per entry; iterations, seen from 16 (shafts) to 47 (assemblies)."""
+
+    start: float
+    per_entry: float
+    once: float
+    each: float
+    bytes: float
+    iterations: int
+
+
+MULTIGRID = Multigrid(0.05, 7e-8, 3.9e-9, 5.5e-10, 6.0, 30)
 
 
 @dataclass(frozen=True)
@@ -54,25 +88,16 @@ def predict(system: System, n_rhs: int) -> list[Cost]:
     memory = available_memory()
     fill, work = n * w**0.5, n * w**1.5
     costs = []
-    for method, (per_fill, per_work, held) in DIRECT.items():
+    for method, d in DIRECT.items():
         if direct.is_installed(method):
-            seconds = per_work * work + per_fill * fill * (1.0 + SOLVES[method] * n_rhs)
-            costs.append((method, seconds, held * fill))
-    setup, once, each, held = MULTIGRID
-    seconds = 0.03 + nnz * (setup + _ITERATIONS * (once + each * n_rhs))
-    costs.append(("multigrid", seconds, held * nnz))
+            held = d.bytes * fill
+            seconds = d.start + d.per_entry * nnz + d.per_operation * work
+            costs.append((method, seconds + held * (d.solve + d.each * n_rhs), held))
+    m = MULTIGRID
+    seconds = m.start + nnz * (m.per_entry + m.iterations * (m.once + m.each * n_rhs))
+    costs.append(("multigrid", seconds, m.bytes * nnz))
     found = [Cost(m, s, b, b < memory) for m, s, b in costs]
     return sorted(found, key=lambda cost: (not cost.fits, cost.seconds))
-
-
-# seconds per entry of fill, per operation, bytes per entry; seconds of a solve per entry, relative
-DIRECT = {
-    "superlu": (1e-8, 1e-9, 12.0),
-    "cholmod": (1e-8, 1e-10, 8.0),
-    "pardiso": (1e-8, 5e-11, 8.0),
-}
-SOLVES = {"superlu": 0.1, "cholmod": 0.1, "pardiso": 0.1}
-MULTIGRID = (1e-8, 1e-8, 1e-9, 4.0)
 
 
 def width(K: sparse.bsr_array) -> float:

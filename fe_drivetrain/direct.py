@@ -6,6 +6,7 @@ memory. The orderings are those that measured best for elasticity on three-dimen
 """
 
 import importlib.util
+import os
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
+from threadpoolctl import threadpool_limits
 
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import SINGULAR, InputError
@@ -86,6 +88,8 @@ def _pardiso(K: sparse.bsr_array) -> Factor:
     upper = sparse.csr_matrix(sparse.triu(K.tocsr(), format="csr"))
     upper.sort_indices()
     solver = PyPardisoSolver(mtype=2)  # real, symmetric, positive definite
+    # Each new one looks for MKL through the file system, unless it is told where it is.
+    os.environ.setdefault("PYPARDISO_MKL_RT", solver.libmkl._name)
 
     def apply(F: Floats) -> Floats:
         try:
@@ -108,7 +112,9 @@ def _cholmod(K: sparse.bsr_array) -> Factor:
     from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
 
     try:
-        factor = cholesky(sparse.csc_matrix(K), ordering_method="metis", mode="supernodal")
+        # Its supernodes are small: OpenBLAS with two threads took up to thirty times as long.
+        with threadpool_limits(1):
+            factor = cholesky(sparse.csc_matrix(K), ordering_method="metis", mode="supernodal")
     except CholmodNotPositiveDefiniteError as error:
         raise InputError(SINGULAR) from error
     return Factor(factor, 8 * int(factor.L().nnz))

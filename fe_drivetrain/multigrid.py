@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyamg
 from scipy import linalg, sparse
+from threadpoolctl import threadpool_limits
 
 from fe_drivetrain import kernels
 from fe_drivetrain.elasticity import Floats, Ints
@@ -276,11 +277,13 @@ def conjugate_gradients(
         where the tolerance is not reached.
     """
     errors: list[float] = []
-    for found in iterates(K, F, precondition):
-        errors.append(found.energy_error)
-        too_long = found.iterations == MAX_ITERATIONS or _is_hopeless(errors, tolerance)
-        if found.energy_error <= tolerance or too_long:
-            break
+    # BLAS does next to nothing here, but its idle threads spin, and take the cores from the loops.
+    with threadpool_limits(1, user_api="blas"):
+        for found in iterates(K, F, precondition):
+            errors.append(found.energy_error)
+            too_long = found.iterations == MAX_ITERATIONS or _is_hopeless(errors, tolerance)
+            if found.energy_error <= tolerance or too_long:
+                break
     return found
 
 

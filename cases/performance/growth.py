@@ -1,0 +1,98 @@
+"""One shaft of one size in a process of its own: what it takes in time and, at its peak, memory.
+
+Run as a module with the size of the elements, the elements a turn and the solver; the answer is a
+line of JSON.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+from dataclasses import dataclass
+
+from fe_drivetrain.cases.performance import choices
+from fe_drivetrain.geometry import Section, Shaft
+
+from fe_drivetrain.materials import MATERIALS
+
+STEPPED = Shaft(
+    front=-2.0,
+    sections=(
+        Section(length=1.0, outer_diameter=0.7, inner_diameter=0.3),
+        Section(length=1.0, outer_diameter=0.5, inner_diameter=0.3),
+    ),
+)
+MATERIAL = MATERIALS["steel"]
+
+MOST_SECONDS = 600.0
+
+
+@dataclass(frozen=True)
+class Grown:
+    """What one size took.
+
+    Attributes
+    ----------
+    unknowns
+        Of the system.
+    used
+        The solver.
+    seconds
+        Wall time of each step.
+    peak_bytes
+        Largest resident memory of the process, interpreter and libraries included.
+    """
+
+    unknowns: int
+    used: str
+    seconds: dict[str, float]
+    peak_bytes: int
+
+    @property
+    def total(self) -> float:
+        """Wall time of all steps [s]."""
+        return sum(self.seconds.values())
+
+
+def grown(size: float, turn: int, method: str = "auto") -> Grown | None:
+    """Mesh, assemble and solve the stepped shaft in a process of its own.
+
+    Parameters
+    ----------
+    size, turn
+        Element size [m], elements round any cylinder.
+    method
+        Of `fe_drivetrain.solvers`.
+
+    Returns
+    -------
+    Grown
+        None where the process failed or took too long: no time is made up for it.
+    """
+    command = [sys.executable, "-m", __name__, str(size), str(turn), method]
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=MOST_SECONDS, check=True
+        )
+    except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
+        return None
+    return Grown(**json.loads(done.stdout.splitlines()[-1]))
+
+
+def _measure(size: float, turn: int, method: str) -> Grown:
+    choices.warm_up(STEPPED, MATERIAL, [choices.CURVED])
+    level = choices.Level(choices.CURVED, size, turn)
+    solve = choices.Solve(method)  # type: ignore[arg-type]
+    (outcome,) = choices.shaft_outcomes(STEPPED, MATERIAL, level, [solve])
+    # Linux counts in KiB, macOS in bytes
+    unit = 1 if sys.platform == "darwin" else 1024
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+    return Grown(outcome.unknowns, outcome.used, outcome.seconds, peak)
+
+
+if __name__ == "__main__":
+    from dataclasses import asdict
+
+    print(json.dumps(asdict(_measure(float(sys.argv[1]), int(sys.argv[2]), sys.argv[3]))))

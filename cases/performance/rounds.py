@@ -1,0 +1,250 @@
+"""Rounds of runs: every tool at every size, interleaved, and what they come to."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from fe_drivetrain.cases.performance.tools.launch import Limits, Outcome, Variant, launch
+
+EQUAL = 1e-6
+"""Tools are compared where the solver leaves less of the stiffness than this."""
+
+
+@dataclass
+class Row:
+    """One tool with one solver on one mesh.
+
+    Attributes
+    ----------
+    variant
+        The tool and its solver.
+    unknowns
+        Of the mesh.
+    found
+        What each run measured, see `tools.runner.measure`.
+    trouble
+        Why there is nothing, or no more, in words.
+    least_seconds
+        What it takes at the least, where it was ended or not begun [s].
+    error
+        Of the stiffness, against the exact solution of the same equations; see `judge_errors`.
+    """
+
+    variant: Variant
+    unknowns: int
+    found: list[dict[str, Any]] = field(default_factory=list)
+    trouble: str = ""
+    least_seconds: float | None = None
+    error: float | None = None
+
+    @property
+    def seconds(self) -> float | None:
+        """Median wall time [s]."""
+        return statistics.median(f["seconds"] for f in self.found) if self.found else None
+
+    @property
+    def bytes(self) -> int | None:
+        """Median peak memory."""
+        return int(statistics.median(f["peak_bytes"] for f in self.found)) if self.found else None
+
+    @property
+    def stiffness(self) -> float | None:
+        """The same in all runs."""
+        return float(self.found[0]["stiffness"]) if self.found else None
+
+    @property
+    def reaches(self) -> bool:
+        """Whether its error is below `EQUAL`."""
+        return self.error is not None and self.error < EQUAL
+
+    @property
+    def loading(self) -> float | None:
+        """Median time of taking the mesh in [s]."""
+        return statistics.median(f["load_seconds"] for f in self.found) if self.found else None
+
+    def step(self, name: str) -> float | None:
+        """Median time of a step [s]."""
+        times = [f["steps"][name] for f in self.found if name in f["steps"]]
+        return statistics.median(times) if times else None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How often, and how long.
+
+    Attributes
+    ----------
+    repetitions
+        Runs of each row at the most.
+    budget
+        Seconds of solving after which a row is run no more.
+    limits
+        Of each run.
+    """
+
+    repetitions: int
+    budget: float
+    limits: Limits
+
+    def runs(self, first: float) -> int:
+        """How many runs for a row whose first took so long [s]."""
+        return max(1, min(self.repetitions, int(self.budget / first)))
+
+
+Launch = Callable[[Variant, Path, Path, Limits, str], Outcome]
+
+
+def run_rounds(
+    variants: Sequence[tuple[Variant, str]],
+    problem: Path,
+    warm_up: Path,
+    unknowns: int,
+    plan: Plan,
+    earlier: Iterable[Row] = (),
+    report: Callable[[str], None] = lambda step: None,
+    start: Launch = launch,
+) -> list[Row]:
+    """Run every tool on one mesh, once a round, in an order that turns from round to round.
+
+    Parameters
+    ----------
+    variants
+        Tools and the interpreters that have them.
+    problem, warm_up
+        Files of the problem and of the small one.
+    unknowns
+        Of the problem.
+    plan
+        Repetitions and limits.
+    earlier
+        Rows of smaller meshes: what is sure to go over a limit is not begun.
+    report
+        Told of each run.
+    start
+        Runs one; tests have another.
+    """
+    rows = {variant: Row(variant, unknowns) for variant, _ in variants}
+    earlier = list(earlier)
+    for row in rows.values():
+        row.trouble, row.least_seconds = foreseen(row, earlier, plan.limits)
+    for number in range(plan.repetitions):
+        turn = number * len(variants) // plan.repetitions
+        for variant, interpreter in [*variants[turn:], *variants[:turn]]:
+            row = rows[variant]
+            if row.trouble or (row.found and number >= plan.runs(row.found[0]["seconds"])):
+                continue
+            report(variant.name)
+            outcome = start(variant, problem, warm_up, plan.limits, interpreter)
+            if outcome.status == "done":
+                row.found.append(outcome.found)
+                continue
+            row.trouble = in_words(outcome, plan.limits)
+            if outcome.status == "over time":
+                row.least_seconds = plan.limits.seconds
+    return list(rows.values())
+
+
+def in_words(outcome: Outcome, limits: Limits) -> str:
+    """Why a run came to nothing."""
+    match outcome.status:
+        case "over time":
+            return f"over {limits.seconds:g} s"
+        case "over memory":
+            return f"over {limits.bytes / 2**30:g} GiB"
+        case "missing":
+            return f"not installed: {outcome.reason}"
+        case _:
+            return f"failed: {outcome.reason}"
+
+
+def foreseen(row: Row, earlier: Sequence[Row], limits: Limits) -> tuple[str, float | None]:
+    """Whether a row is sure to go over a limit, from the same tool on smaller meshes.
+
+    Returns
+    -------
+    trouble, least_seconds
+        In words, or empty; and the time that it takes at the least [s].
+    """
+    mine = [r for r in earlier if r.variant == row.variant and r.unknowns < row.unknowns]
+    mine.sort(key=lambda r: r.unknowns)
+    if not mine:
+        return "", None
+    last = mine[-1]
+    if last.trouble:
+        return f"not run: {last.trouble.removeprefix('not run: ')} before", last.least_seconds
+    done = [r for r in mine if r.found]
+    growths = (
+        ("s", limits.seconds, [r.seconds for r in done]),
+        ("GiB", limits.bytes / 2**30, [(r.bytes or 0) / 2**30 for r in done]),
+    )
+    for unit, limit, values in growths:
+        expected = extrapolated([r.unknowns for r in done], values, row.unknowns)
+        if expected > limit:
+            least = limits.seconds if unit == "s" else None
+            return f"not run: would take about {expected:.2g} {unit}", least
+    return "", None
+
+
+def extrapolated(unknowns: Sequence[int], values: Sequence[float | None], at: int) -> float:
+    """A power law through the last two values, linear at the least; at the least the last."""
+    last = values[-1] or 0.0
+    power = 1.0
+    if len(values) > 1 and values[-2]:
+        ratio = max(last / values[-2], 1e-9)
+        power = max(1.0, math.log(ratio) / math.log(unknowns[-1] / unknowns[-2]))
+    return float(last * (at / unknowns[-1]) ** power)
+
+
+def judge_errors(rows: Sequence[Row]) -> dict[str, float]:
+    """Set the error of every row of one mesh; a reference for each quadrature rule.
+
+    All tools find u^T K u with the displacements prescribed, which is least at the solution: so a
+    solver's error only ever adds. The reference is the median of the direct solvers; without one,
+    the least that an iterative solver found.
+
+    Returns
+    -------
+    references
+        By the rule.
+    """
+    references = {}
+    for rule in sorted({r.variant.rule for r in rows}):
+        done = [r for r in rows if r.variant.rule == rule and r.stiffness is not None]
+        full = [r for r in done if r.variant.tool != "calculix"] or done
+        exact = [r.stiffness for r in full if r.variant.kind == "direct" and r.stiffness]
+        least = [r.stiffness for r in full if r.stiffness]
+        if not least:
+            continue
+        references[rule] = statistics.median(exact) if exact else min(least)
+        for row in done:
+            assert row.stiffness is not None
+            row.error = abs(row.stiffness / references[rule] - 1.0)
+    return references
+
+
+def best(rows: Iterable[Row], tool: str) -> Row | None:
+    """The fastest row of a tool that reaches the common accuracy."""
+    fit = [r for r in rows if r.variant.tool == tool and r.reaches and r.seconds is not None]
+    return min(fit, key=lambda r: r.seconds or 0.0, default=None)
+
+
+def fastest_peer(rows: Iterable[Row], ours: str = "this_project") -> Row | None:
+    """The fastest row of any other tool that reaches the common accuracy."""
+    fit = [r for r in rows if r.variant.tool != ours and r.reaches and r.seconds is not None]
+    return min(fit, key=lambda r: r.seconds or 0.0, default=None)
+
+
+def leanest_direct_peer(rows: Iterable[Row], ours: str = "this_project") -> Row | None:
+    """The row of another tool's direct solver with the least memory."""
+    fit = [r for r in rows if r.variant.tool != ours and r.variant.kind == "direct" and r.found]
+    return min(fit, key=lambda r: r.bytes or 0, default=None)
+
+
+def of_tool(rows: Iterable[Row], tool: str, key: str) -> Row | None:
+    """The row of one variant."""
+    return next((r for r in rows if r.variant == Variant(tool, key)), None)

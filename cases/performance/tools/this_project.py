@@ -1,0 +1,75 @@
+"""This project: its assembly, its elimination of prescribed displacements, its solvers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from fe_drivetrain.cases.performance.tools.runner import Clock, Problem
+
+NAME = "this project"
+INSTALL = "pip install 'fe-drivetrain[pardiso]'"
+VARIANTS = {
+    "auto": ("auto", "chosen", "common"),
+    "multigrid": ("multigrid", "iterative", "common"),
+    "pardiso": ("PARDISO", "direct", "common"),
+    "superlu": ("SuperLU", "direct", "common"),
+}
+# of the energy norm: squared, that of the stiffness, but relative to the much larger energy of
+# the moved face alone; loosest power of ten that leaves less than 1e-6 of the stiffness
+TOLERANCE = 1e-5
+
+
+def version() -> str:
+    """The project's version."""
+    from importlib.metadata import version
+
+    import fe_drivetrain.solvers
+
+    return version(fe_drivetrain.solvers.__name__.partition(".")[0].replace("_", "-"))
+
+
+def load(problem: Problem) -> Problem:
+    """The problem as it is: points and cells are all there is to a mesh."""
+    return problem
+
+
+def solve(problem: Problem, variant: str, clock: Clock) -> float:
+    """The stiffness."""
+    from fe_drivetrain.elasticity import assemble, sparsity
+    from fe_drivetrain.interfaces import eliminate, fixed
+    from fe_drivetrain.reduction import reduce
+    from fe_drivetrain.solvers import solve as solve_system
+
+    with clock.step("assembly"):
+        n = len(problem.points)
+        pattern = sparsity(problem.cells, n)
+        K: Any = None
+        for number, lame in enumerate(zip(*problem.lame(), strict=True)):
+            chosen = problem.material == number
+            part = assemble(
+                problem.points,
+                problem.cells[chosen],
+                lame,
+                pattern=replace(pattern, slots=pattern.slots[chosen]),
+            )
+            if K is None:
+                K = part
+            else:
+                K.data += part.data
+        nodes, values = problem.prescribed()
+        u = np.zeros((n, 3))
+        u[nodes] = values
+        elimination = eliminate([fixed("prescribed", nodes, 3 * n)], 3 * n)
+        given = u.reshape(-1, 1)
+        system = reduce(problem.points, problem.cells, K, elimination)
+        F = np.where(elimination.free[:, None], -(K @ given), 0.0)
+    with clock.step("solve"):
+        solution = solve_system(system, F, variant, TOLERANCE)
+        moved = given + np.where(elimination.free[:, None], solution.x, 0.0)
+    clock.iterations = solution.iterations or None
+    clock.notes = {"method": solution.method, "reason": solution.reason}
+    return float((moved.T @ (K @ moved))[0, 0])

@@ -1,0 +1,460 @@
+"""The benchmark beside other tools: the same answer from each, and honest bookkeeping."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fe_drivetrain.cases.performance import peers, problems, rounds
+from fe_drivetrain.cases.performance.tools import launch, runner
+from fe_drivetrain.cases.performance.tools.launch import Limits, Outcome, Variant
+
+from fe_drivetrain.case import Run, find_case, run_case
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.mesh import FACETS
+
+PEERS = launch.parse(
+    ["calculix.spooles", "ngsolve.multigrid", "sfepy.superlu", "felupe.superlu", "dolfinx.mumps"]
+)
+LIMITS = Limits(60.0, 8 * 2.0**30, 1)
+
+
+@pytest.fixture(scope="module")
+def shaft():
+    """The hollow shaft, as coarse as it goes."""
+    return problems.of_size(problems.hollow_shaft(), 4_000)
+
+
+@pytest.fixture(scope="module")
+def assembly():
+    """The main-bearing assembly, as coarse as it goes."""
+    return problems.of_size(problems.main_bearing(), 9_000)
+
+
+@pytest.fixture(scope="module")
+def bar():
+    """A straight cube of two materials in series, pulled: ten-node tetrahedra, exact solution.
+
+    With Poisson's ratio zero the two halves are springs E A / l in series.
+    """
+    return pulled_bar((2e11, 1e11))
+
+
+def pulled_bar(youngs_modulus, length=2.0):
+    """A bar of unit cross-section along x, halves of different stiffness."""
+    from skfem import MeshTet, MeshTet2
+
+    x = np.linspace(0.0, length, 5)
+    y = np.linspace(0.0, 1.0, 3)
+    mesh = MeshTet2.from_mesh(MeshTet.init_tensor(x, y, y))
+    points, cells = mesh.doflocs.T.copy(), mesh.dofs.element_dofs.T.copy()
+    corners = points[cells[:, :4]]
+    inverted = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0
+    cells[inverted] = cells[inverted][:, [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]]
+    material = (points[cells[:, :4], 0].mean(axis=1) > length / 2).astype(np.int64)
+    facets = cells[:, FACETS].reshape(-1, 6)
+    ends = [facets[(np.abs(points[facets, 0] - at) < 1e-9).all(axis=1)] for at in (0.0, length)]
+    rule = problems.get_quadrature(problems.RefTet, problems.DEGREE)
+    return runner.Problem(
+        points=points,
+        cells=cells.astype(np.int64),
+        material=material,
+        youngs_modulus=np.array(youngs_modulus),
+        poisson_ratio=np.zeros(2),
+        fixed=ends[0],
+        moved=ends[1],
+        translation=np.array([1.0, 0.0, 0.0]),
+        rotation=np.zeros(3),
+        rule_points=rule[0].T.copy(),
+        rule_weights=rule[1],
+    )
+
+
+def stiffness_by(tool, variant, problem):
+    """The stiffness that a tool finds in this process."""
+    module = runner.load_tool(tool)
+    return module.solve(module.load(problem), variant, runner.Clock())
+
+
+def measured(variant, problem, folder, limits=LIMITS):
+    """A tool in a process of its own, in whichever Python has it."""
+    path = folder / "problem.npz"
+    runner.write_problem(problem, path)
+    for interpreter in launch.interpreters():
+        outcome = launch.launch(variant, path, path, limits, interpreter)
+        if outcome.status != "missing":
+            return outcome
+    return outcome
+
+
+# --- the same answer
+
+
+@pytest.mark.parametrize("name", ["shaft", "assembly"])
+def test_this_project_and_plain_scikit_fem_find_the_same_stiffness(name, request):
+    problem = request.getfixturevalue(name)
+    ours = stiffness_by("this_project", "superlu", problem)
+    theirs = stiffness_by("scikit_fem", "superlu", problem)
+    assert ours == pytest.approx(theirs, rel=1e-9)
+
+
+def test_the_iterative_solver_leaves_less_than_the_common_accuracy(shaft, assembly):
+    for problem in (shaft, assembly):
+        exact = stiffness_by("this_project", "superlu", problem)
+        near = stiffness_by("this_project", "multigrid", problem)
+        # the energy is least at the solution
+        assert -1e-12 <= near / exact - 1 < rounds.EQUAL
+
+
+def test_torsional_stiffness_is_g_j_over_l_but_for_the_shape_of_the_elements():
+    benchmark = problems.hollow_shaft()
+    errors = []
+    for size in (4_000, 20_000):
+        problem = problems.of_size(benchmark, size)
+        errors.append(stiffness_by("this_project", "multigrid", problem) / benchmark.exact - 1)
+    # A parabola through three points of an arc of angle a is off by about a^4 / 500 of its radius;
+    # the coarser mesh has six elements or so round the bore, and K goes with the fourth power.
+    assert abs(errors[0]) < 4 * (2 * np.pi / 6) ** 4 / 500
+    assert abs(errors[1]) < abs(errors[0]) / 5
+
+
+@pytest.mark.parametrize(
+    ("tool", "variant"),
+    [("this_project", "superlu"), ("this_project", "multigrid"), ("scikit_fem", "superlu")],
+)
+def test_two_materials_in_series_are_springs_in_series(tool, variant, bar):
+    springs = bar.youngs_modulus  # A / l = 1 of each half
+    expected = 1.0 / (1.0 / springs).sum()
+    assert stiffness_by(tool, variant, bar) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("variant", PEERS, ids=str)
+def test_installed_peers_agree_where_quadrature_is_exact(variant, bar, tmp_path):
+    outcome = measured(variant, bar, tmp_path)
+    if outcome.status == "missing":
+        pytest.skip(f"{variant.tool_name} is not installed: {outcome.reason}")
+    assert outcome.status == "done", outcome.reason
+    expected = 1.0 / (1.0 / bar.youngs_modulus).sum()
+    assert outcome.found["stiffness"] == pytest.approx(expected, rel=rounds.EQUAL)
+
+
+# --- the deck and what ccx says
+
+
+def test_a_deck_says_the_whole_problem_again(shaft):
+    module = runner.load_tool("calculix")
+    lines = module.deck(shaft, "spooles").splitlines()
+    numbers = re.compile(r"^\d+,[-+0-9.e,]+$")
+    nodes = [line for line in lines[1:] if numbers.match(line)][: len(shaft.points)]
+    points = np.array([[float(v) for v in line.split(",")[1:]] for line in nodes])
+    np.testing.assert_allclose(points, shaft.points, atol=1e-12)
+    # ccx reads twenty characters of a number, no more
+    assert max(len(word) for line in nodes for word in line.split(",")) <= 20
+    start = lines.index("*ELEMENT, TYPE=C3D10, ELSET=E0") + 1
+    cells = np.array([[int(v) for v in lines[start + k].split(",")] for k in range(3)])
+    np.testing.assert_array_equal(cells[:, 1:] - 1, shaft.cells[:3])
+    held = lines[lines.index("*BOUNDARY") + 1 : lines.index("*EL PRINT, ELSET=EALL, TOTALS=ONLY")]
+    given = np.zeros((len(shaft.points), 3))
+    for line in held:
+        node, first, last, value = line.split(",")
+        assert first == last
+        given[int(node) - 1, int(first) - 1] = float(value)
+    ids, values = shaft.prescribed()
+    assert len(held) == 3 * len(ids)
+    np.testing.assert_allclose(given[ids], values, atol=1e-12)
+
+
+def test_the_corrected_deck_moves_little_and_says_so():
+    module = runner.load_tool("calculix")
+    text = module.deck(pulled_bar((1e11, 1e11)), "corrected")
+    assert "*STEP, NLGEOM" in text
+    assert "SOLVER=ITERATIVE CHOLESKY" in text
+    assert f",1,1,{module.SMALL:.12e}" in text
+
+
+def test_energy_is_read_from_the_last_total():
+    module = runner.load_tool("calculix")
+    text = (
+        "\n total internal energy for set EALL and time  0.5000000E+00\n\n        1.000000E+08\n"
+        "\n total internal energy for set EALL and time  0.1000000E+01\n\n        4.380604E+08\n"
+    )
+    assert module.read_energy(text) == 4.380604e8
+    with pytest.raises(ValueError, match="no total internal energy"):
+        module.read_energy("")
+
+
+def test_the_log_of_ccx_is_split_into_reading_assembly_and_solving():
+    module = runner.load_tool("calculix")
+    lines = [
+        (0.1, "nodes:        17328"),
+        (0.3, "STEP            1"),
+        (0.4, "Using up to 2 cpu(s) for the stress calculation."),
+        (1.0, "Factoring the system of equations using the symmetric spooles solver"),
+        (1.1, "Using up to 2 cpu(s) for spooles."),
+        (8.0, "Using up to 2 cpu(s) for the stress calculation."),
+        (8.2, "Job finished"),
+    ]
+    found = module.read_log(lines)
+    assert found["reading"] == 0.3
+    assert found["assembly"] == pytest.approx(0.7)
+    assert found["solve"] == pytest.approx(7.0)
+    assert found["iterations"] is None
+    assert found["threads"] == "2"
+    again = [
+        *lines,
+        (9.0, "Solving the system of equations using the iterative solver"),
+        (9.5, "# of iterations = 33"),
+        (9.6, "Using up to 2 cpu(s) for the stress calculation."),
+    ]
+    found = module.read_log(again)
+    assert found["solve"] == pytest.approx(7.6)
+    assert found["iterations"] == 33
+    with pytest.raises(ValueError, match="first step"):
+        module.read_log(lines[:1])
+
+
+# --- processes and their limits
+
+
+def test_a_process_measures_what_this_one_finds(bar, tmp_path):
+    outcome = measured(Variant("this_project", "superlu"), bar, tmp_path)
+    assert outcome.status == "done", outcome.reason
+    found = outcome.found
+    assert found["stiffness"] == pytest.approx(
+        stiffness_by("this_project", "superlu", bar), rel=1e-9
+    )
+    assert 0 < sum(found["steps"].values()) <= found["seconds"] < outcome.elapsed
+    # at the least the matrix, at the most what this machine could have
+    assert 5e6 < found["baseline_bytes"] <= found["peak_bytes"] < 8 * 2**30
+
+
+def test_a_run_over_its_time_or_memory_is_ended(bar, tmp_path):
+    variant = Variant("scikit_fem", "superlu")
+    slow = measured(variant, bar, tmp_path, replace(LIMITS, seconds=1e-3))
+    assert slow.status == "over time"
+    large = measured(variant, bar, tmp_path, replace(LIMITS, bytes=1e6))
+    assert large.status == "over memory"
+
+
+def test_what_is_not_installed_is_missing_not_failed(shaft, tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    path = tmp_path / "problem.npz"
+    runner.write_problem(shaft, path)
+    outcome = launch.launch(Variant("calculix", "spooles"), path, path, LIMITS, sys.executable)
+    assert outcome.status == "missing"
+    assert "ccx" in outcome.reason
+    for tool in launch.TOOLS:
+        assert re.match(r"(pip|apt-get) install ", launch.how_to_install(tool))
+
+
+@pytest.mark.parametrize("ends_first", [False, True])
+def test_children_end_with_their_parent(ends_first, tmp_path):
+    note = tmp_path / "pid"
+    script = (
+        "import pathlib, subprocess, sys, time\n"
+        "child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(60)'])\n"
+        f"pathlib.Path({str(note)!r}).write_text(str(child.pid))\n"
+        f"time.sleep({0 if ends_first else 60})\n"
+    )
+    process = subprocess.Popen([sys.executable, "-c", script], start_new_session=True)
+    while not (note.exists() and note.read_text()):
+        time.sleep(0.02)
+    if ends_first:
+        process.wait()
+    launch._end(process)
+    child = Path(f"/proc/{note.read_text()}/stat")
+    for _ in range(200):
+        try:
+            state = child.read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            return
+        if state == "Z":  # it has ended, and waits for whoever inherited it
+            return
+        time.sleep(0.02)
+    os.kill(int(note.read_text()), signal.SIGKILL)
+    pytest.fail("the child lives on")
+
+
+def test_a_problem_comes_back_from_its_file(bar, tmp_path):
+    runner.write_problem(bar, tmp_path / "bar.npz")
+    again = runner.read_problem(tmp_path / "bar.npz")
+    for name, value in vars(bar).items():
+        np.testing.assert_array_equal(getattr(again, name), value)
+    assert again.n_unknowns == 3 * (len(bar.points) - len(np.unique(bar.fixed)) * 2)
+
+
+# --- rounds
+
+
+def plan(repetitions=3, budget=10.0):
+    return rounds.Plan(repetitions, budget, Limits(30.0, 2.0**30, 1))
+
+
+def row(variant, unknowns, seconds=None, bytes_=1e8, stiffness=1.0, trouble=""):
+    found = []
+    if seconds is not None:
+        found = [
+            {
+                "seconds": seconds,
+                "load_seconds": 0.0,
+                "peak_bytes": bytes_,
+                "stiffness": stiffness,
+                "steps": {},
+                "iterations": None,
+                "notes": {},
+            }
+        ]
+    return rounds.Row(variant, unknowns, found, trouble)
+
+
+def test_rounds_are_interleaved_and_slow_rows_run_less_often(tmp_path):
+    quick, slow = Variant("ngsolve", "multigrid"), Variant("scikit_fem", "superlu")
+    order = []
+
+    def start(variant, problem, warm_up, limits, interpreter):
+        order.append(variant)
+        seconds = 1.0 if variant == quick else 9.0
+        return Outcome("done", row(variant, 1, seconds).found[0])
+
+    rows = rounds.run_rounds(
+        [(quick, ""), (slow, "")], tmp_path, tmp_path, 1000, plan(), start=start
+    )
+    assert [len(r.found) for r in rows] == [3, 1]
+    assert order[:2] == [quick, slow]
+    assert order[2:] == [quick, quick]
+
+
+def test_a_row_in_trouble_is_left_and_larger_meshes_not_begun(tmp_path):
+    variant = Variant("scikit_fem", "superlu")
+    calls = []
+
+    def start(*_):
+        calls.append(1)
+        return Outcome("over time")
+
+    small = rounds.run_rounds([(variant, "")], tmp_path, tmp_path, 1000, plan(), start=start)
+    assert small[0].trouble == "over 30 s"
+    assert small[0].least_seconds == 30.0
+    large = rounds.run_rounds([(variant, "")], tmp_path, tmp_path, 9000, plan(), small, start=start)
+    assert large[0].trouble == "not run: over 30 s before"
+    assert large[0].least_seconds == 30.0
+    assert len(calls) == 1
+
+
+def test_what_would_go_over_a_limit_is_foreseen():
+    variant = Variant("ngsolve", "cholesky")
+    limits = plan().limits
+    # time grows with the square of the unknowns: 1, 4, 16, 64 s
+    done = [row(variant, 1000, 1.0), row(variant, 2000, 4.0)]
+    assert rounds.foreseen(rounds.Row(variant, 4000), done, limits) == ("", None)
+    trouble, least = rounds.foreseen(rounds.Row(variant, 8000), done, limits)
+    assert trouble == "not run: would take about 64 s"
+    assert least == 30.0
+    # memory in proportion: half a GiB, then one and a half
+    done = [row(variant, 1000, 1e-3, 2.0**28), row(variant, 2000, 2e-3, 2.0**29)]
+    trouble, least = rounds.foreseen(rounds.Row(variant, 6000), done, limits)
+    assert trouble == "not run: would take about 1.5 GiB"
+    assert least is None
+
+
+def test_a_power_law_is_continued_and_never_below_linear():
+    assert rounds.extrapolated([10, 100], [1.0, 100.0], 1000) == pytest.approx(10_000.0)
+    assert rounds.extrapolated([10, 100], [1.0, 1.1], 1000) == pytest.approx(11.0)
+    assert rounds.extrapolated([100], [2.0], 300) == pytest.approx(6.0)
+
+
+def test_errors_are_against_the_direct_solvers_of_the_same_rule():
+    direct = row(Variant("this_project", "superlu"), 10, 1.0, stiffness=100.0)
+    iterative = row(Variant("ngsolve", "multigrid"), 10, 1.0, stiffness=100.001)
+    own = row(Variant("ngsolve", "multigrid_own"), 10, 1.0, stiffness=99.0)
+    printed = row(Variant("calculix", "spooles"), 10, 1.0, stiffness=99.00001)
+    rough = row(Variant("calculix", "cholesky"), 10, 1.0, stiffness=99.0099)
+    rows = [direct, iterative, own, printed, rough]
+    references = rounds.judge_errors(rows)
+    assert references == {"common": 100.0, "4 points": 99.0}
+    assert direct.error == 0.0
+    assert iterative.error == pytest.approx(1e-5)
+    assert rough.error == pytest.approx(1e-4)
+    assert [r.reaches for r in rows] == [True, False, True, True, False]
+    # and only those that reach it are compared
+    assert rounds.fastest_peer(rows).variant.tool in ("ngsolve", "calculix")
+    assert rounds.best([rough], "calculix") is None
+
+
+# --- settings and the page
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"sises": [1000]}, "sises"),
+        ({"tools": ["abaqus"]}, "abaqus"),
+        ({"tools": ["ngsolve.pardiso"]}, r"ngsolve\.pardiso"),
+        ({"problems": ["plate"]}, "plate"),
+        ({"sizes": [10]}, "from 1000"),
+        ({"sizes": []}, "empty"),
+        ({"repetitions": 0}, "repetitions"),
+        ({"repetitions": 1.5}, "whole"),
+        ({"time_limit": "long"}, "time_limit"),
+        ({"threads": True}, "threads"),
+    ],
+)
+def test_wrong_settings_are_named(settings, message, tmp_path):
+    with pytest.raises(InputError, match=message):
+        peers.settings_of(Run(settings, False, tmp_path))
+
+
+def test_quick_is_small_and_gives_way_to_settings(tmp_path):
+    quick = peers.settings_of(Run({}, True, tmp_path))
+    assert max(quick["sizes"]) <= 10_000
+    assert quick["repetitions"] == 1
+    assert peers.settings_of(Run({"sizes": 2000}, True, tmp_path))["sizes"] == [2000]
+
+
+def test_slower_or_hungrier_than_a_peer_fails_visibly():
+    ours = row(Variant("this_project", "auto"), 50_000, 2.0, 3e8)
+    peer = row(Variant("ngsolve", "multigrid"), 50_000, 1.0, 2e8)
+    direct = row(Variant("ngsolve", "cholesky"), 50_000, 4.0, 2e8)
+    rows = [ours, peer, direct]
+    rounds.judge_errors(rows)
+    found = peers.verdicts_of(replace(problems.hollow_shaft(), exact=None), rows, plan())
+    by_name = {v.quantity: v for v in found}
+    time_share = next(v for name, v in by_name.items() if "time of this project" in name)
+    memory_share = next(v for name, v in by_name.items() if "peak memory" in name)
+    assert time_share.computed == pytest.approx(2.0)
+    assert memory_share.computed == pytest.approx(1.5)
+    assert not time_share.passed
+    assert not memory_share.passed
+    # a peer that does not reach the accuracy is no peer
+    peer.error = 1e-3
+    direct.error = 1e-3
+    alone = peers.verdicts_of(replace(problems.hollow_shaft(), exact=None), rows, plan())
+    assert next(v for v in alone if "time of this project" in v.quantity).passed
+
+
+def test_the_case_runs_and_its_page_says_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))  # no ccx there
+    settings = {
+        "tools": ["this_project.auto", "calculix.spooles"],
+        "sizes": [4000],
+        "problems": ["shaft"],
+        "threads": 1,
+    }
+    results = run_case(find_case("performance/peers"), tmp_path / "out", settings, quick=True)
+    (ours,) = results.figures["shaft"]
+    exact = problems.hollow_shaft().exact
+    assert ours["stiffness"] == pytest.approx(exact, rel=1e-2)
+    assert len(ours["seconds"]) == 1
+    assert all(v.passed for v in results.verdicts)
+    data = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert data["sections"][0]["title"] == "Time at equal error"
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "this project: auto" in page
+    assert "apt-get install calculix-ccx" in page
