@@ -298,8 +298,8 @@ def iterates(
     come. It is taken as Delta_k times the largest such ratio seen in the steps before (Meurant,
     Papez, Tichy 2021, Accurate error estimation in CG, section 4).
     """
-    X = np.zeros_like(F)
     R = np.array(F, order="C")
+    X = np.zeros_like(R)
     P = precondition(R)
     rz = np.einsum("nm,nm->m", R, P)
     start = rz

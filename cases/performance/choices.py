@@ -32,6 +32,9 @@ REPEATS = 3
 
 #: Largest systems that each direct solver is tried on, unknowns.
 MOST_UNKNOWNS = {"superlu": 12_000, "cholmod": 70_000, "pardiso": 70_000}
+#: Largest systems on which an iteration is driven further than `FAR_ENOUGH`.
+SWEPT = 60_000
+FAR_ENOUGH = 1e-6
 
 _Made = TypeVar("_Made")
 
@@ -262,7 +265,7 @@ def solved(
     """
     system, loads, quantities = assembled
     for how in solves:
-        if system.n_free > MOST_UNKNOWNS.get(how.method, np.inf):
+        if not _worth_a_try(system.n_free, how):
             continue
         runs = list(repeated(partial(solvers.solve, system, loads, *how), repeats))
         solution = runs[0]
@@ -282,6 +285,12 @@ def solved(
             seconds=dict(zip(STEPS, steps, strict=True)),
             values=quantities(solution.x),
         )
+
+
+def _worth_a_try(unknowns: int, how: Solve) -> bool:
+    if how.method == "multigrid" and how.tolerance < FAR_ENOUGH:
+        return unknowns <= SWEPT
+    return unknowns <= MOST_UNKNOWNS.get(how.method, np.inf)
 
 
 def repeated(work: Callable[[], _Made], repeats: int) -> Iterator[_Made]:
