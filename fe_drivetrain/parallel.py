@@ -332,7 +332,10 @@ class _Worker:
 def hold_threads() -> None:
     """Where the user limits the cores, hold what this process imports from now on to as many."""
     if os.environ.get(VARIABLE):
-        os.environ.update(_limits(cores()))
+        limits = _limits(cores())
+        if "numba" in sys.modules:  # which fails when told otherwise once its threads run
+            del limits["NUMBA_NUM_THREADS"]
+        os.environ.update(limits)
 
 
 def _limits(threads: int) -> dict[str, str]:
