@@ -38,10 +38,11 @@ _EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
 _HEX_CORNERS = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 )
-_HEX_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
-_HEX_EDGES += [(0, 4), (1, 5), (2, 6), (3, 7)]
-_HEX_FACES = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)]
-_HEX_MEANS = [*_HEX_EDGES, *_HEX_FACES, tuple(range(8))]
+HEXAHEDRON_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
+HEXAHEDRON_EDGES += [(0, 4), (1, 5), (2, 6), (3, 7)]
+HEXAHEDRON_FACES = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2)]
+HEXAHEDRON_FACES += [(0, 3, 2, 1), (4, 5, 6, 7)]
+_HEX_MEANS = [*HEXAHEDRON_EDGES, *HEXAHEDRON_FACES, tuple(range(8))]
 
 
 @dataclass(frozen=True)

@@ -207,6 +207,25 @@ def add_curved(
                 _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
 
 
+@njit(cache=True)
+def distances(indptr: Index, indices: Index, start: int) -> Index:
+    """Steps from one node to each other one along the graph of a matrix; -1 where none lead."""
+    n = len(indptr) - 1
+    steps, queue = np.full(n, -1, np.int32), np.empty(n, np.int32)
+    steps[start], queue[0] = 0, start
+    first, last = 0, 1
+    while first < last:
+        i = queue[first]
+        first += 1
+        for p in range(indptr[i], indptr[i + 1]):
+            j = indices[p]
+            if steps[j] < 0:
+                steps[j] = steps[i] + 1
+                queue[last] = j
+                last += 1
+    return steps
+
+
 @njit(cache=True, parallel=True)
 def keep_freedoms(indptr: Index, indices: Index, data: Array, kept: Array, diagonal: float) -> None:
     """Zero the rows and columns of freedoms that are not kept, and put ``diagonal`` there.

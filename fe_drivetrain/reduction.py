@@ -72,10 +72,14 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
 
 def bodies(cells: Ints, n_nodes: int) -> Ints:
     """(n_nodes,) which body each node belongs to: parts that share nodes are one."""
-    first = np.repeat(cells[:, 0], cells.shape[1])
+    corners = cells[:, : element_kind(cells.shape[1]).n_corners]
+    first = np.repeat(corners[:, 0], corners.shape[1] - 1)
     shape = (n_nodes, n_nodes)
-    graph = sparse.coo_array((np.ones(first.size), (first, cells.ravel())), shape=shape)
-    return np.asarray(connected_components(graph, directed=False)[1])
+    graph = sparse.coo_array((np.ones(first.size), (first, corners[:, 1:].ravel())), shape=shape)
+    body = connected_components(graph, directed=False)[1]
+    middles = cells[:, corners.shape[1] :]
+    body[middles] = body[corners[:, :1]]
+    return np.unique(body, return_inverse=True)[1]
 
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
@@ -96,11 +100,23 @@ def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.b
         (np.ones(len(pivots)), (np.arange(len(pivots)), pivots)), shape=(len(pivots), n)
     )
     dependent = place @ T
-    rows = (place @ K).tocsr()
+    rows = _rows(K, pivots)
     across = dependent.T @ rows @ sparse.diags_array(free.astype(float))
     passed = across + across.T + dependent.T @ (rows @ place.T) @ dependent
     passed = passed + mean * sparse.diags_array(bare)
     return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
+
+
+def _rows(K: sparse.bsr_array, chosen: Ints) -> sparse.csr_array:
+    """Some rows of a matrix in blocks; to select them by a product would convert all of it."""
+    nodes, place = np.unique(chosen // 3, return_inverse=True)
+    counts = np.diff(K.indptr)[nodes]
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    entries = np.arange(starts[-1]) + np.repeat(K.indptr[nodes] - starts[:-1], counts)
+    blocks = sparse.bsr_array(
+        (K.data[entries], K.indices[entries], starts), shape=(3 * len(nodes), K.shape[1])
+    )
+    return blocks.tocsr()[3 * place + chosen % 3]
 
 
 def in_blocks(K: sparse.sparray) -> sparse.bsr_array:

@@ -357,7 +357,16 @@ def test_the_two_sides_of_a_joint_match_node_for_node_and_share_none(joint, bond
     )
     # the joint is the bonded mesh with its face doubled, nothing else
     assert len(joint.points) == len(bonded.points) + len(outer)
-    np.testing.assert_array_equal(joint.points[joint.cells], bonded.points[bonded.cells])
+    split, whole = (
+        ordered(mesh.points[mesh.cells].reshape(len(mesh.cells), -1)) for mesh in (joint, bonded)
+    )
+    np.testing.assert_array_equal(split, whole)
+
+
+def test_neighbours_have_numbers_near_each_other(joint):
+    """A numbering at random has cells that span half of all the nodes."""
+    span = np.ptp(joint.cells, axis=1) / len(joint.points)
+    assert np.median(span) < 0.1
 
 
 def test_each_bearing_is_bonded_or_not_on_its_own(two):

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from scipy import linalg
 
-from fe_drivetrain import direct, multigrid
+from fe_drivetrain import direct, multigrid, solvers
+from fe_drivetrain.blocks import brick
 from fe_drivetrain.elasticity import assemble
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
 from fe_drivetrain.materials import MATERIALS
@@ -143,3 +145,30 @@ def test_energy_error_of_a_geometric_sequence():
     estimate = multigrid.energy_error(terms)
     assert estimate >= np.sqrt(rest / total)
     assert estimate < 3.0 * np.sqrt(rest / total)
+
+
+@pytest.mark.parametrize("flatness", [0.0, 0.9, 0.99])
+def test_smoother_knows_the_largest_eigenvalue(flatness):
+    """Also that of one all but flat element, which a random vector hardly sees."""
+    block = brick((4, 4, 4), 4)
+    points = block.points.copy()
+    middle = int(np.argmin(np.abs(points - 0.5).max(axis=1)))
+    points[middle, 2] += 0.25 * flatness
+    K = assemble(points, block.cells, MATERIALS["steel"].lame)
+    blocks = K.toarray().reshape(len(points), 3, len(points), 3)
+    inverse = np.linalg.inv(np.einsum("ninj->nij", blocks))
+    D = linalg.block_diag(*np.linalg.inv(inverse))
+    true = linalg.eigh(K.toarray(), D, eigvals_only=True)[-1]
+    bound = multigrid.largest_eigenvalue(K, inverse)
+    assert true <= bound < 1.5 * true
+
+
+def test_a_hierarchy_that_is_not_positive_is_found_out(monkeypatch):
+    """A smoother told a third of its largest eigenvalue: the direct solver answers, and says so."""
+    system, F = cantilever(2.0, 0.3)
+    right = multigrid.largest_eigenvalue
+    monkeypatch.setattr(multigrid, "largest_eigenvalue", lambda *given: right(*given) / 3.0)
+    solution = solvers.factorise(system, "multigrid").solve(F)
+    assert solution.method != "multigrid"
+    assert "multigrid stopped" in solution.reason
+    assert solution.residual < 1e-9

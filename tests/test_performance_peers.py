@@ -16,7 +16,7 @@ from fe_drivetrain.cases.performance import peers, problems, rounds
 from fe_drivetrain.cases.performance.tools import launch, runner
 from fe_drivetrain.cases.performance.tools.launch import Limits, Outcome, Variant
 
-from fe_drivetrain.case import Run, find_case, run_case
+from fe_drivetrain.case import Run, find_cases, run_case
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.mesh import FACETS
 
@@ -447,7 +447,7 @@ def test_the_case_runs_and_its_page_says_what_is_missing(tmp_path, monkeypatch):
         "problems": ["shaft"],
         "threads": 1,
     }
-    results = run_case(find_case("performance/peers"), tmp_path / "out", settings, quick=True)
+    results = run_case(find_cases("performance/peers")[0], tmp_path / "out", settings, quick=True)
     (ours,) = results.figures["shaft"]
     exact = problems.hollow_shaft().exact
     assert ours["stiffness"] == pytest.approx(exact, rel=1e-2)

@@ -17,15 +17,12 @@ from fe_drivetrain.cases.performance.choices import (
     shaft_outcomes,
 )
 from fe_drivetrain.cases.performance.growth import STEPPED
-from fe_drivetrain.cases.performance.meridian import meridian_stiffness
 from fe_drivetrain.cases.performance.precision import (
     cheapest_within,
-    extrapolate,
     growth_exponent,
     pareto_front,
-    richardson,
 )
-from fe_drivetrain.cases.performance.studies import beam_stiffness
+from fe_drivetrain.cases.performance.studies import beam_stiffness, meridian_stiffness
 from fe_drivetrain.cases.performance.tilt import QUANTITIES, assemble_tilt, in_element
 from fe_drivetrain.cases.performance.work_precision import PARTS, parts_of
 from fe_drivetrain.geometry import Section, Shaft
@@ -33,7 +30,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_drivetrain import solvers
-from fe_drivetrain.case import Run, find_case, run_case
+from fe_drivetrain.case import Run, find_cases, run_case
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.hexahedra import Grading
 from fe_drivetrain.materials import MATERIALS, Material
@@ -102,62 +99,20 @@ def test_growth_exponent_of_one_size_is_unknown():
     assert np.isnan(growth_exponent([], []))
 
 
-@given(
-    st.floats(-10, 10),
-    st.floats(0.1, 10).map(lambda c: c) | st.floats(-10, -0.1),
-    st.floats(0.5, 5.0),
-    st.sampled_from([(1.0, 0.5, 0.25), (1.0, 0.7, 0.5), (2.0, 1.4, 1.0, 0.7), (3.0, 2.0, 0.5)]),
-)
-def test_extrapolation_finds_the_limit_and_order_of_a_power_law(limit, c, order, sizes):
-    """f = f0 + c h^p through three sizes, of whatever ratios: f0 and p exactly."""
-    values = limit + c * np.array(sizes) ** order
-    found = extrapolate(sizes, values)
-    assert found.value == pytest.approx(limit, abs=1e-6 * abs(c))
-    assert found.order == pytest.approx(order, rel=1e-5)
-    assert richardson(sizes[-2:], values[-2:], order) == pytest.approx(limit, abs=1e-9 * abs(c))
-    # the band is at least a third of what is missing, and holds the limit
-    assert found.uncertainty >= 0.333 * abs(values[-1] - limit)
-    assert abs(found.value - limit) <= found.uncertainty
-
-
-def test_extrapolation_of_two_orders_keeps_the_limit_in_its_band():
-    """A mixture of first and second order: the observed order is between, the band tells."""
-    sizes = np.array([1.0, 0.7, 0.5, 0.35])
-    for first, second in ((0.1, 1.0), (1.0, 1.0), (1.0, 0.1)):
-        found = extrapolate(sizes, 5.0 + first * sizes + second * sizes**2)
-        assert 1.0 <= found.order <= 2.0
-        assert abs(found.value - 5.0) <= found.uncertainty
-
-
-@pytest.mark.parametrize("values", [[1.0, 1.2, 1.1], [1.0, 1.1, 1.3], [1.0, 1.0, 1.0]])
-def test_extrapolation_without_order_has_a_wide_band(values):
-    found = extrapolate([1.0, 0.5, 0.25], values)
-    assert np.isnan(found.order)
-    assert found.uncertainty >= np.ptp(values)
-
-
-@pytest.mark.parametrize(
-    ("sizes", "values"), [([1, 0.5], [1, 2]), ([1, 1, 0.5], [1, 2, 3]), ([1, 2, 3], [1, 2, 3])]
-)
-def test_extrapolation_refuses_what_is_no_series(sizes, values):
-    with pytest.raises(InputError, match="at least three sizes that descend"):
-        extrapolate(sizes, values)
-
-
 def test_meridian_reference_equals_beam_theory_where_that_is_exact():
     """Uniform shaft: GJ/L always; without lateral contraction EA/L and EI/L too."""
     area, inertia = np.pi / 4 * (0.7**2 - 0.3**2), np.pi / 64 * (0.7**4 - 0.3**4)
-    steel = meridian_stiffness(TUBE, STEEL, 0.4, halvings=2)
+    steel = meridian_stiffness(TUBE, STEEL, order=4, layers=1)
     assert steel[0] == pytest.approx(STEEL.shear_modulus * 2 * inertia / 2.0, rel=1e-10)
     cork = Material(youngs_modulus=1e10, poisson_ratio=0.0, density=1.0)
-    found = meridian_stiffness(TUBE, cork, 0.4, halvings=2)
+    found = meridian_stiffness(TUBE, cork, order=4, layers=1)
     exact = 1e10 * np.array([inertia, inertia, area]) / 2.0
     np.testing.assert_allclose(found, exact, rtol=1e-10)
 
 
 def test_meridian_reference_is_the_limit_of_solid_elements_from_below():
     """Displacement elements are too stiff; finer ones less so, in the meridian and in space."""
-    rough, fine = (meridian_stiffness(STEPPED, STEEL, 0.3, halvings=n) for n in (3, 8))
+    rough, fine = (meridian_stiffness(STEPPED, STEEL, n, layers=n) for n in (3, 6))
     assert np.all(fine < rough)
     np.testing.assert_allclose(rough, fine, rtol=2e-3)
     # 12 elements a turn leave 2e-4 of the surface, far less than the step's own error here
@@ -252,7 +207,7 @@ def test_parts_may_be_one_or_all(tmp_path):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("reports") / "work_precision"
-    run_case(find_case("work_precision"), out, quick=True)
+    run_case(find_cases("work_precision")[0], out, quick=True)
     return out
 
 

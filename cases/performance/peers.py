@@ -46,6 +46,13 @@ DEFAULTS: dict[str, Any] = {
     "threads": 2,
 }
 
+QUICK: dict[str, Any] = {
+    "tools": [f"{OURS}.auto", "scikit_fem.superlu"],
+    "problems": ["shaft"],
+    "sizes": list(QUICK_SIZES),
+    "repetitions": 1,
+}
+
 COLOURS = {
     OURS: "#1f2933",
     "scikit_fem": "#56b4e9",
@@ -113,7 +120,7 @@ def settings_of(run: Run) -> dict[str, Any]:
 
     from fe_drivetrain.errors import InputError
 
-    quick = {"sizes": list(QUICK_SIZES), "repetitions": 1} if run.quick else {}
+    quick = QUICK if run.quick else {}
     unknown = sorted(set(run.settings) - set(DEFAULTS))
     if unknown:
         raise InputError(f"setting {unknown[0]!r} is unknown: use one of {', '.join(DEFAULTS)}")

@@ -26,7 +26,7 @@ from fe_drivetrain.solvers import METHODS, factorise
 MANY = 12  # right-hand sides
 
 #: A solver predicted to need more than this is left out of the grid [s].
-TIME_LIMIT = 4.0
+TIME_LIMIT = 6.0
 
 #: Choices within this of the best are as good: run to run, times differ by that much.
 ALLOWED = 1.5
@@ -132,6 +132,8 @@ def study(run: Run, case: Case) -> Results:
         grid += [lambda s=s: shaft_problem(14.0, s) for s in (0.3,)]  # type: ignore[misc]
         grid += [lambda s=s: bearing_problem("bonded", s) for s in (2.5, 1.0)]  # type: ignore[misc]
         grid += [lambda: bearing_problem("spherical", 1.0)]
+        # These two had no part in fitting the constants of `cost`.
+        grid += [lambda: shaft_problem(6.0, 0.1), lambda: bearing_problem("bonded", 1.6)]
     installed = [m for m in METHODS if m == "multigrid" or (m != "auto" and direct.is_installed(m))]
     with run.step("compile"):
         timed(shaft_problem(1.0, 0.5), "multigrid", 1)
@@ -365,7 +367,7 @@ def _stopping(quick: bool) -> tuple[list[Any], list[Verdict]]:
         "thin tube, D = 3 m, t = 0.02 m": lambda: shaft_problem(1.0, 0.06, 3.0, 2.96),
     }
     if quick:
-        del shapes["thin tube, D = 3 m, t = 0.02 m"]
+        del shapes["thin tube, D = 3 m, t = 0.02 m"], shapes["slender, L/D = 20"]
     items: list[Any] = []
     verdicts: list[Verdict] = []
     rows: list[list[Any]] = []
