@@ -173,6 +173,31 @@ class Case:
     run: Callable[[Run], Results]
     alone: bool = False
 
+    def results(self, run: Run, *, seed: int | None = 0, **found: Any) -> Results:
+        """What a run of this case found.
+
+        Parameters
+        ----------
+        run
+            The run: its times and settings.
+        seed
+            Of random numbers.
+        found
+            ``summary``, ``verdicts``, ``sections``, and where there are any ``figures`` and
+            ``assumptions``; see `fe_drivetrain.results.Results`.
+        """
+        from fe_drivetrain.environment import environment
+        from fe_drivetrain.results import Results
+
+        return Results(
+            case=self.name,
+            title=self.title,
+            source=self.source,
+            times=run.times,
+            environment=environment(run.settings, seed),
+            **found,
+        )
+
 
 def all_cases() -> dict[str, Case]:
     """Every case by name, in order."""
@@ -195,8 +220,8 @@ def _states_a_case(module: str) -> bool:
     return source is None or re.search(r"^CASE\b", source, re.MULTILINE) is not None
 
 
-def find_case(name: str) -> Case:
-    """The case of that name; its last part is enough where it is unique.
+def find_cases(name: str) -> list[Case]:
+    """The case of that name, its last part being enough where it is unique; or a group's cases.
 
     Raises
     ------
@@ -204,13 +229,16 @@ def find_case(name: str) -> Case:
         There is none, or there are several.
     """
     cases = all_cases()
+    group = [c for full, c in cases.items() if full.partition("/")[0] == name]
+    if group:
+        return group
     matches = [c for full, c in cases.items() if name in (full, full.rpartition("/")[2])]
     if len(matches) != 1:
         raise InputError(
             f"case {name!r} is {'ambiguous' if matches else 'unknown'}: "
             f"use one of {', '.join(cases)}"
         )
-    return matches[0]
+    return matches
 
 
 def run_case(

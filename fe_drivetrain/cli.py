@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.case import Case
     from fe_drivetrain.parallel import Report
     from fe_drivetrain.results import Results, Verdict
+    from fe_drivetrain.suite import Problem
 
 PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
 
@@ -46,6 +47,7 @@ _USERS_ERRORS = {
 }
 
 _SUMMARY_SENTENCES = 3
+_EXPORTS = (".inp", ".vtu", ".msh")
 _KEPT = "results of an earlier run are as they were"
 
 _app = typer.Typer(
@@ -95,7 +97,7 @@ def main_of_case(case: Case) -> None:
 
     @app.command(help=f"{case.title}\n\nSource: {case.source}")
     def run(out: _OutOption = None, set_: _SetOption = None, quick: _QuickOption = False) -> None:
-        raise typer.Exit(_run(lambda: case, out, set_ or (), quick))
+        raise typer.Exit(_run(lambda: [case], out, set_ or (), quick))
 
     _forgive_narrow_encodings()
     app()
@@ -147,12 +149,20 @@ def _list() -> None:
 def _run_named(
     cases: Annotated[
         list[str] | None,
-        typer.Argument(metavar="CASE", help="GROUP/NAME, or NAME where it is unique."),
+        typer.Argument(
+            metavar="CASE", help="GROUP/NAME, NAME where it is unique, or GROUP for all of it."
+        ),
     ] = None,
     all_: Annotated[bool, typer.Option("--all", help="Run every case.")] = False,
     out: _OutOption = None,
     set_: _SetOption = None,
     quick: _QuickOption = False,
+    junit: Annotated[
+        Path | None,
+        typer.Option(
+            "--junit", metavar="FILE", help="Write the verdicts as JUnit XML, for CI servers."
+        ),
+    ] = None,
 ) -> None:
     """Run validation cases and write their reports.
 
@@ -160,28 +170,91 @@ def _run_named(
     time: these come last, one by one. An index.html lists them.
 
     The exit status is 0 when every check passes, 1 when one fails, 2 for a wrong option or
-    setting, and 130 when stopped.
+    setting, and 130 when stopped. A case that needs a program that is not installed is listed as
+    skipped.
     """
     names = cases or []
 
-    def one() -> Case:
-        from fe_drivetrain.case import find_case
-
-        return find_case(names[0])
-
     def several() -> list[Case]:
-        from fe_drivetrain.case import all_cases, find_case
+        from fe_drivetrain.case import all_cases, find_cases
 
         if all_ and names:
             raise InputError(f"--all runs {', '.join(names)} too: leave out either")
         if not all_ and not names:
             raise InputError("Missing CASE: name one or more, or give --all")
-        found = list(all_cases().values()) if all_ else [find_case(name) for name in names]
+        if all_:
+            return list(all_cases().values())
+        found = [case for name in names for case in find_cases(name)]
         return list({case.name: case for case in found}.values())
 
-    if len(names) == 1 and not all_:
-        raise typer.Exit(_run(one, out, set_ or (), quick))
-    raise typer.Exit(_run_several(several, out, set_ or (), quick))
+    raise typer.Exit(_run(several, out, set_ or (), quick, junit))
+
+
+@_app.command("export")
+def _export(
+    scene: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENE",
+            help="A scene file, or a scene of the library by its name: main_bearing_bonded, "
+            "main_bearing_spherical.",
+        ),
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="What its ending says: .inp is the whole model for CalculiX, with interfaces, "
+            "supports and unit loads; .vtu (ParaView) and .msh (gmsh) are the mesh.",
+        ),
+    ],
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Change a value of the scene, as in --set shaft.sections.0.inner_diameter=0.2. "
+            "May be given several times.",
+        ),
+    ] = None,
+) -> None:
+    """Write a scene for other programs: a model for CalculiX, or its mesh."""
+
+    def work() -> int:
+        hold_threads()
+        changes = parse_settings(set_ or ())
+        if out.suffix not in _EXPORTS:
+            raise InputError(f"--out {out} ends in {out.suffix!r}: use {', '.join(_EXPORTS)}")
+        if out.is_dir() or not out.resolve().parent.is_dir():
+            raise InputError(f"--out {out} must be a file in a folder that exists: name one")
+        from fe_drivetrain.scene import change_scene, library_scene, read_scene
+
+        is_file = Path(scene).suffix != "" or Path(scene).exists()
+        found = read_scene(scene, changes) if is_file else library_scene(scene)
+        if not is_file:
+            found = change_scene(found, changes)
+        from fe_drivetrain.calculix import write_inp
+        from fe_drivetrain.mesh import write
+        from fe_drivetrain.model import build_model, mesh_scene
+
+        with _progress() as report:
+            report("mesh")
+            mesh = mesh_scene(found)
+            if out.suffix == ".inp":
+                report("model")
+                model = build_model(found, mesh)
+                report("write")
+                write_inp(model, out)
+            else:
+                report("write")
+                write(mesh, out)
+            report("")
+        _write(sys.stdout, f"{out}: {len(mesh.cells):,} elements, {len(mesh.points):,} nodes\n")
+        return PASSED
+
+    with _stopped_by_terminate():
+        raise typer.Exit(_guarded(work, lambda: "a file of that name is as it was"))
 
 
 def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
@@ -250,66 +323,83 @@ def _is_plain(value: object) -> bool:
     return value is None or isinstance(value, str | int | float | bool)
 
 
-def _run(find: Callable[[], Case], out: Path | None, settings: Sequence[str], quick: bool) -> int:
-    """Run a case; the exit status."""
-
-    def work() -> int:
-        hold_threads()
-        parsed = parse_settings(settings)
-        case = find()
-        from fe_drivetrain.case import run_case
-
-        folder = Path("reports", *case.name.split("/")) if out is None else out
-        with _progress() as report:
-            # a link, or ".", stands for the folder that it leads to
-            results = run_case(case, folder.resolve(), parsed, quick, report)
-        _write(sys.stdout, _outcome(results, folder / "report.html"))
-        return PASSED if results.passed else FAILED
-
-    with _stopped_by_terminate():
-        return _guarded(work)
-
-
-def _run_several(
-    find: Callable[[], list[Case]], out: Path | None, settings: Sequence[str], quick: bool
+def _run(
+    find: Callable[[], list[Case]],
+    out: Path | None,
+    settings: Sequence[str],
+    quick: bool,
+    junit: Path | None = None,
 ) -> int:
-    """Run cases side by side; the exit status."""
+    """Run one case, or several side by side; the exit status."""
+    several = False
 
     def work() -> int:
+        nonlocal several
         hold_threads()
         parsed = parse_settings(settings)
+        if junit is not None and not junit.resolve().parent.is_dir():
+            raise InputError(f"--junit {junit}: there is no folder {junit.parent}: create it first")
         cases = find()
-        from fe_drivetrain.results import read_results
-        from fe_drivetrain.suite import result_folder, run_cases
+        several = len(cases) > 1
+        do = _run_several if several else _run_one
+        results, problems = do(cases, out, parsed, quick)
+        if junit is not None:
+            from fe_drivetrain.junit import write_junit
 
-        folder = Path("reports") if out is None else out
-        with _progress() as report:
-            problems = run_cases(cases, folder.resolve(), parsed, quick, report)
-        results = {
-            case.name: read_results(result_folder(folder, case) / "results.json")
-            for case in cases
-            if case.name not in problems
-        }
-        _write(sys.stdout, _outcome_of_several(cases, results, problems, folder / "index.html"))
-        if problems:
+            write_junit(junit, [case.name for case in cases], results, problems)
+        if any(not problem.is_missing_tool for problem in problems.values()):
             return MISTAKE
         return PASSED if all(found.passed for found in results.values()) else FAILED
 
     with _stopped_by_terminate():
-        return _guarded(work, f"what was finished is kept, {_KEPT}")
+        return _guarded(work, lambda: f"what was finished is kept, {_KEPT}" if several else _KEPT)
+
+
+def _run_one(
+    cases: Sequence[Case], out: Path | None, settings: Mapping[str, Any], quick: bool
+) -> tuple[dict[str, Results], dict[str, Problem]]:
+    from fe_drivetrain.case import run_case
+
+    (case,) = cases
+    folder = Path("reports", *case.name.split("/")) if out is None else out
+    with _progress() as report:
+        # a link, or ".", stands for the folder that it leads to
+        results = run_case(case, folder.resolve(), settings, quick, report)
+    _write(sys.stdout, _outcome(results, folder / "report.html"))
+    return {case.name: results}, {}
+
+
+def _run_several(
+    cases: Sequence[Case], out: Path | None, settings: Mapping[str, Any], quick: bool
+) -> tuple[dict[str, Results], dict[str, Problem]]:
+    from fe_drivetrain.results import read_results
+    from fe_drivetrain.suite import result_folder, run_cases
+
+    folder = Path("reports") if out is None else out
+    with _progress() as report:
+        problems = run_cases(cases, folder.resolve(), settings, quick, report)
+    results = {
+        case.name: read_results(result_folder(folder, case) / "results.json")
+        for case in cases
+        if case.name not in problems
+    }
+    _write(sys.stdout, _outcome_of_several(cases, results, problems, folder / "index.html"))
+    return results, problems
 
 
 def _outcome_of_several(
     cases: Sequence[Case],
     results: Mapping[str, Results],
-    problems: Mapping[str, str],
+    problems: Mapping[str, Problem],
     page: Path,
 ) -> str:
     """What the user sees at the end: a line for each case, and what failed in it."""
     lines = []
     for case in cases:
         if case.name in problems:
-            lines.append(f"none  {case.name}: {problems[case.name]}")
+            problem = problems[case.name]
+            kind = "skip" if problem.is_missing_tool else "none"
+            lines.append(f"{kind}  {case.name}: {problem.message}")
             continue
         found = results[case.name]
         failed = [verdict for verdict in found.verdicts if not verdict.passed]
@@ -322,14 +412,14 @@ def _outcome_of_several(
     return "".join(f"{line}\n" for line in lines)
 
 
-def _guarded(work: Callable[[], int], kept: str = _KEPT) -> int:
+def _guarded(work: Callable[[], int], kept: Callable[[], str] = lambda: _KEPT) -> int:
     """Do the work; a user's mistake becomes one sentence and its exit status."""
     try:
         return work()
     except InputError as error:
         message, status = str(error), MISTAKE
     except KeyboardInterrupt:
-        message, status = f"stopped; {kept}", STOPPED
+        message, status = f"stopped; {kept()}", STOPPED
     except OSError as error:
         sentence = _sentence(error)
         if sentence is None:

@@ -9,4 +9,8 @@ class InputError(Exception):
     """
 
 
+class MissingToolError(InputError):
+    """Something optional that a case needs is not installed; the message says how to get it."""
+
+
 SINGULAR = "the stiffness matrix is singular: the scene is not held everywhere"

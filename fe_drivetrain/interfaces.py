@@ -5,7 +5,7 @@ freedoms for each rigid reference point. ``eliminate`` turns all rows together i
 q are the freedoms that are left, so that stiffness contrast cannot spoil the conditioning.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,10 +67,18 @@ def freedoms(nodes: Ints) -> Ints:
 
 def fixed(name: str, nodes: Ints, n_freedoms: int) -> Constraint:
     """All displacements of the nodes are zero."""
-    columns = freedoms(nodes).ravel()
-    return Constraint(
-        name, _rows(np.ones((columns.size, 1)), columns[:, None], n_freedoms), columns
-    )
+    return held_nodes(name, nodes, (0, 1, 2), n_freedoms)
+
+
+def held_freedoms(name: str, columns: Ints, n_freedoms: int) -> Constraint:
+    """These freedoms are zero."""
+    held = np.asarray(columns)
+    return Constraint(name, _rows(np.ones((held.size, 1)), held[:, None], n_freedoms), held)
+
+
+def held_nodes(name: str, nodes: Ints, axes: Sequence[int], n_freedoms: int) -> Constraint:
+    """Displacements of the nodes along these axes (0, 1, 2) are zero."""
+    return held_freedoms(name, freedoms(nodes)[:, list(axes)].ravel(), n_freedoms)
 
 
 def sliding_sphere(
@@ -277,6 +285,26 @@ class Elimination:
         values = splu(C[:, pivots].T.tocsc()).solve(np.asarray(residual[pivots]))
         sizes = np.cumsum([len(c.pivots) for c in self.constraints])[:-1]
         return dict(zip((c.name for c in self.constraints), np.split(values, sizes), strict=True))
+
+    def particular(self, right: Mapping[str, Floats]) -> Floats:
+        """One u with C u = g: what is added to T q where displacements are prescribed.
+
+        Parameters
+        ----------
+        right
+            (m, n_loads) g of each constraint that is not homogeneous, by its name.
+
+        Returns
+        -------
+        u
+            (n_freedoms, n_loads), zero at the freedoms that are left.
+        """
+        C, pivots = _stack(self.constraints)
+        n_loads = max(values.shape[1] for values in right.values())
+        g = [right.get(c.name, np.zeros((len(c.pivots), n_loads))) for c in self.constraints]
+        u = np.zeros((C.shape[1], n_loads))
+        u[pivots] = splu(C[:, pivots].tocsc()).solve(np.vstack(g))
+        return u
 
 
 def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination:

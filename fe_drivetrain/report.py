@@ -14,14 +14,25 @@ import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jinja2
 from markupsafe import Markup
 
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.files import atomic_path
-from fe_drivetrain.results import Chart, Image, Results, Table, Verdict, read_results
+from fe_drivetrain.results import (
+    Chart,
+    Image,
+    Results,
+    Table,
+    Verdict,
+    bias_and_scatter,
+    read_results,
+)
+
+if TYPE_CHECKING:
+    from fe_drivetrain.suite import Problem
 
 DIGITS = 5
 """Significant digits of a number on the page; results.json keeps all of them."""
@@ -88,8 +99,8 @@ def write_page(folder: Path) -> Path:
     return page
 
 
-def write_index(folder: Path, problems: Mapping[str, str] | None = None) -> Path:
-    """Write a page that lists the results below a folder, with their verdicts and times.
+def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> Path:
+    """Write a page of all results below a folder: every verdict, and bias and scatter of all.
 
     Parameters
     ----------
@@ -104,36 +115,41 @@ def write_index(folder: Path, problems: Mapping[str, str] | None = None) -> Path
         Path of index.html in the same folder; it appears whole or not at all.
     """
     folder = Path(folder)
+    problems = problems or {}
     names = {"/".join(f.parts[-3:-1]) for f in folder.glob("*/*/results.json")}
     rows = []
-    for name in sorted(names | set(problems or {})):
-        row: dict[str, Any] = {"name": name, "group": name.partition("/")[0], "passes": False}
-        try:
-            if problems and name in problems:
-                raise InputError(problems[name])
-            results = read_results(folder / name / "results.json")
-        except InputError as problem:
-            rows.append({**row, "problem": str(problem)})
-            continue
-        except (OSError, ValueError):  # of another version, say
-            rows.append({**row, "problem": "its results.json cannot be read: run it again"})
-            continue
-        rows.append(
-            {
-                **row,
-                "problem": "",
-                "title": results.title,
-                "passes": results.passed,
-                "passed": sum(verdict.passed for verdict in results.verdicts),
-                "total": len(results.verdicts),
-                "time": sum(results.times.values()),
-                "date": results.environment.date,
-            }
-        )
+    for name in sorted(names | set(problems)):
+        row: dict[str, Any] = {"name": name, "group": name.partition("/")[0], "results": None}
+        if name in problems:
+            row["problem"] = problems[name].message
+            row["skipped"] = problems[name].is_missing_tool
+        else:
+            try:
+                row["results"] = read_results(folder / name / "results.json")
+            except (OSError, ValueError):  # of another version, say
+                row["problem"] = "its results.json cannot be read: run it again"
+                row["skipped"] = False
+        rows.append(row)
+    verdicts = [v for row in rows if row["results"] for v in row["results"].verdicts]
+    environment = _environment()
+    environment.filters |= {
+        "cell": formatted,
+        "band": band_text,
+        "error": error_text,
+        "tolerance": tolerance_text,
+        "percent": lambda share: formatted(100 * share, 3),
+    }
     page = folder / "index.html"
-    template = _environment().get_template("index.html")
     with atomic_path(page) as unfinished:
-        unfinished.write_text(template.render(rows=rows, style=_style()), encoding="utf-8")
+        content = environment.get_template("index.html").render(
+            rows=rows,
+            skipped=sum(bool(row.get("skipped")) for row in rows),
+            passed=sum(row["results"] is not None and row["results"].passed for row in rows),
+            verdicts=verdicts,
+            statistics=bias_and_scatter(verdicts),
+            style=_style(),
+        )
+        unfinished.write_text(content, encoding="utf-8")
     return page
 
 
@@ -170,6 +186,7 @@ def render(results: Results, folder: Path) -> str:
         "unit_unbroken": _unit_unbroken,
         "numeric_columns": _numeric_columns,
         "height": _chart_height,
+        "band": band_text,
         "error": error_text,
         "tolerance": tolerance_text,
         "as_given": lambda settings: [(key, _as_given(settings[key])) for key in settings],
@@ -223,6 +240,15 @@ def error_text(verdict: Verdict) -> str:
     if verdict.relative and verdict.reference != 0:
         return _signed(100 * error / abs(verdict.reference), "%")
     return _signed(error, verdict.unit)
+
+
+def band_text(verdict: Verdict) -> str:
+    """The band of a computed value: in percent of it, or in the unit."""
+    if verdict.band is None:
+        return "–"
+    if verdict.relative and verdict.computed != 0:
+        return f"±{formatted(100 * verdict.band / abs(verdict.computed), 2)}\u00a0%"
+    return f"±{_with_unit(formatted(verdict.band, 2), verdict.unit)}"
 
 
 def tolerance_text(verdict: Verdict) -> str:

@@ -1,12 +1,28 @@
 """What a case found, as data: written to results.json, and the page is made from that alone."""
 
-from collections.abc import Sequence
+import statistics
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 Cell = float | int | str | bool | None
+
+Measure = Literal[
+    "stiffness",
+    "deflection",
+    "rotation",
+    "stress",
+    "reaction",
+    "frequency",
+    "energy",
+    "mass",
+    "order",
+    "identity",
+]
+"""What kind of quantity a verdict is about; "identity" must vanish or agree to round-off."""
 
 
 class _Result(BaseModel):
@@ -27,6 +43,12 @@ class Verdict(_Result):
     tolerance: float = Field(description="allowed |computed - reference|, relative or in the unit")
     relative: bool = Field(description="whether tolerance is relative to the reference")
     reason: str = Field(description="why the tolerance is what it is")
+    measure: Measure | None = Field(default=None, description="kind of quantity, for statistics")
+    band: float | None = Field(
+        default=None,
+        ge=0,
+        description="half width of the numerical uncertainty of computed, in its unit",
+    )
     passed: bool
 
 
@@ -40,8 +62,10 @@ def judge(
     source: str,
     unit: str = "",
     relative: bool = True,
+    measure: Measure | None = None,
+    band: float | None = None,
 ) -> Verdict:
-    """Judge one quantity; a NaN never passes."""
+    """Judge one quantity; a NaN never passes. For the arguments see `Verdict`."""
     size = abs(reference) if relative else 1.0
     passed = bool(abs(computed - reference) <= tolerance * size)
     return Verdict(
@@ -53,8 +77,54 @@ def judge(
         tolerance=tolerance,
         relative=relative,
         reason=reason,
+        measure=measure,
+        band=None if band is None else float(band),
         passed=passed,
     )
+
+
+@dataclass(frozen=True)
+class Statistic:
+    """How far many verdicts of one measure are from their references, relative to these.
+
+    Attributes
+    ----------
+    measure
+        Which.
+    count
+        Number of verdicts.
+    bias
+        Mean of the signed errors.
+    scatter
+        Standard deviation of the signed errors; 0 of one verdict.
+    largest
+        Largest error, without its sign.
+    """
+
+    measure: str
+    count: int
+    bias: float
+    scatter: float
+    largest: float
+
+
+def bias_and_scatter(verdicts: Iterable[Verdict]) -> list[Statistic]:
+    """Statistics of each measure, over verdicts that are relative to a reference other than 0."""
+    errors: dict[str, list[float]] = {}
+    for v in verdicts:
+        if v.measure in (None, "identity") or not v.relative or v.reference == 0.0:
+            continue
+        errors.setdefault(str(v.measure), []).append((v.computed - v.reference) / abs(v.reference))
+    return [
+        Statistic(
+            measure,
+            len(found),
+            statistics.fmean(found),
+            statistics.stdev(found) if len(found) > 1 else 0.0,
+            max(map(abs, found)),
+        )
+        for measure, found in sorted(errors.items())
+    ]
 
 
 class Text(_Result):

@@ -6,11 +6,18 @@ import shutil
 import traceback
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from fe_drivetrain.case import Case, new_folder, put_in_place, run_into
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.errors import InputError, MissingToolError
 from fe_drivetrain.parallel import Job, Processes, Report, silent
+
+
+class Problem(NamedTuple):
+    """Why a case has no results."""
+
+    message: str
+    is_missing_tool: bool = False
 
 
 def result_folder(out: Path, case: Case) -> Path:
@@ -24,7 +31,7 @@ def run_cases(
     settings: Mapping[str, Any] | None = None,
     quick: bool = False,
     report: Report = silent,
-) -> dict[str, str]:
+) -> dict[str, Problem]:
     """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
 
     Independent cases run in processes side by side, as many as the cores allow; those that are to
@@ -54,12 +61,12 @@ def run_cases(
     from fe_drivetrain.report import write_index
 
     out = Path(out)
-    problems: dict[str, str] = {}
+    problems: dict[str, Problem] = {}
     folders: dict[str, Path] = {}
 
     finished: list[str] = []
 
-    def finish(case: Case, problem: str) -> None:
+    def finish(case: Case, problem: Problem | None) -> None:
         if problem:
             problems[case.name] = problem
         else:
@@ -71,7 +78,7 @@ def run_cases(
             folders[case.name] = new_folder(result_folder(out, case))
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), report) as processes:
-            jobs: dict[Job[str], Case] = {
+            jobs: dict[Job[Problem | None], Case] = {
                 processes.start(_run, case, folders[case.name], dict(settings or {}), quick): case
                 for case in beside
             }
@@ -92,8 +99,10 @@ def run_cases(
     return problems
 
 
-def _run(report: Report, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool) -> str:
-    """Run a case into a folder; why there are no results, or nothing."""
+def _run(
+    report: Report, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool
+) -> Problem | None:
+    """Run a case into a folder; why there are no results, if there are none."""
 
     def named(step: str, lane: int = 0) -> None:
         report(f"{case.name}: {step}" if step else "", lane)
@@ -101,8 +110,8 @@ def _run(report: Report, case: Case, folder: Path, settings: Mapping[str, Any], 
     try:
         run_into(case, folder, settings, quick, named)
     except InputError as error:
-        return str(error)
+        return Problem(str(error), isinstance(error, MissingToolError))
     except Exception as error:
         traceback.print_exc()
-        return f"ended by an error of its own, {type(error).__name__}: {error}"
-    return ""
+        return Problem(f"ended by an error of its own, {type(error).__name__}: {error}")
+    return None

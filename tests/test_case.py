@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from fe_drivetrain import case as case_module
-from fe_drivetrain.case import Case, Run, find_case, run_case
+from fe_drivetrain.case import Case, Run, find_cases, run_case
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.results import (
     AssumptionRow,
@@ -183,12 +183,13 @@ def test_a_case_is_found_by_its_name_or_its_last_part(monkeypatch: pytest.Monkey
     names = ("a/one", "a/two", "b/two")
     cases = {name: Case(name, "t", "s", results_of) for name in names}
     monkeypatch.setattr(case_module, "all_cases", lambda: cases)
-    assert find_case("a/two").name == "a/two"
-    assert find_case("one").name == "a/one"
+    assert [case.name for case in find_cases("a/two")] == ["a/two"]
+    assert [case.name for case in find_cases("one")] == ["a/one"]
+    assert [case.name for case in find_cases("a")] == ["a/one", "a/two"]
     with pytest.raises(InputError, match="ambiguous"):
-        find_case("two")
+        find_cases("two")
     with pytest.raises(InputError, match=r"unknown.*a/one"):
-        find_case("three")
+        find_cases("three")
 
 
 def test_every_case_of_the_package_is_named_after_its_place() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from conftest import COARSE
 
-from fe_drivetrain.case import all_cases, find_case, run_case
+from fe_drivetrain.case import all_cases, find_cases, run_case
 from fe_drivetrain.cli import main
 from fe_drivetrain.export import read_stiffness_json
 from fe_drivetrain.results import read_results
@@ -56,7 +56,7 @@ def reports(tmp_path_factory, hub_load_file):
         settings = dict(COARSE)
         if name == "rmse":
             settings["loads"] = str(hub_load_file)
-        run_case(find_case(name), folder / name, settings, quick=True)
+        run_case(find_cases(name)[0], folder / name, settings, quick=True)
     return folder
 
 

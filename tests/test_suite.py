@@ -12,7 +12,7 @@ import pytest
 
 from fe_drivetrain.cache import user_cache
 from fe_drivetrain.case import Case, Run
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.errors import InputError, MissingToolError
 from fe_drivetrain.parallel import VARIABLE, cores
 from fe_drivetrain.report import write_index
 from fe_drivetrain.results import Environment, Results, judge, read_results
@@ -65,6 +65,14 @@ def fault(run: Run) -> Results:
     return results_of(run, "a/fault", 1 / 0)
 
 
+def off(run: Run) -> Results:
+    verdicts = [
+        judge(q, x, 1.0, tolerance=1, reason="r", source="s", measure="stiffness", band=0.05 * x)
+        for q, x in (("up", 1.25), ("down", 0.75))
+    ]
+    return results_of(run, "a/off").model_copy(update={"verdicts": verdicts})
+
+
 def wait(run: Run) -> Results:
     (run.folder / f"pid-{os.getpid()}").touch()
     with run.step("wait"):
@@ -95,7 +103,8 @@ def test_each_case_has_its_results_and_all_are_listed(tmp_path: Path, number_of_
         f"{case.name}/report.html" for case in sorted(cases, key=lambda c: c.name)
     ]
     assert "Title of &lt;a/miss&gt;" in page
-    assert page.count('<td class="number">1.25</td>') == 3  # times add up to what passed
+    # times add up to what passed
+    assert page.count('<td class="number" rowspan="1">1.25</td>') == 3
     assert len(re.findall(">FAIL<", page)) == 1
     assert sorted(os.listdir(tmp_path)) == ["a", "b", "index.html"]
     assert sorted(os.listdir(tmp_path / "a")) == ["miss", "one"]
@@ -106,8 +115,8 @@ def test_a_case_that_cannot_run_keeps_no_other_from_running(
 ) -> None:
     cases = [a_case("a/refuse", refuse), a_case("a/fault", fault), a_case("a/one", count)]
     problems = run_cases(cases, tmp_path)
-    assert problems["a/refuse"] == "shaft: length is -1 <m>: give a length"
-    assert "ZeroDivisionError" in problems["a/fault"]
+    assert problems["a/refuse"].message == "shaft: length is -1 <m>: give a length"
+    assert "ZeroDivisionError" in problems["a/fault"].message
     assert list(problems) == ["a/refuse", "a/fault"] or number_of_cores == "2"
     assert "in fault" in capfd.readouterr().err  # a fault of ours can be found
     page = (tmp_path / "index.html").read_text()
@@ -115,6 +124,27 @@ def test_a_case_that_cannot_run_keeps_no_other_from_running(
     assert "1 of 3 cases pass" in page
     assert "shaft: length is -1 &lt;m&gt;: give a length" in page
     assert sorted(os.listdir(tmp_path / "a")) == ["one"]
+
+
+def need_a_tool(run: Run) -> Results:
+    raise MissingToolError("ccx is not installed: apt-get install calculix-ccx")
+
+
+def test_a_case_without_its_tool_is_skipped_and_none_fails_for_it(tmp_path: Path) -> None:
+    problems = run_cases([a_case("a/tool", need_a_tool), a_case("a/one", count)], tmp_path)
+    assert problems["a/tool"].is_missing_tool
+    page = (tmp_path / "index.html").read_text()
+    assert "1 of 1 case passes, 1 skipped" in page
+    assert "apt-get install calculix-ccx" in page
+
+
+def test_bias_and_scatter_of_all_stand_on_the_front_page(tmp_path: Path) -> None:
+    """Errors of +25 % and -25 % of stiffness: no bias, a scatter of 35.4 %."""
+    run_cases([a_case("a/off", off)], tmp_path)
+    page = (tmp_path / "index.html").read_text()
+    row = page[page.index('<th scope="row">stiffness</th>') :].partition("</tr>")[0]
+    assert re.findall('<td class="number">([^<]*)</td>', row) == ["2", "0", "35.4", "25"]
+    assert "±5" in page  # the band of each
 
 
 def test_earlier_results_stay_where_a_case_cannot_run(tmp_path: Path) -> None:
