@@ -3,6 +3,7 @@
 from .assembly import MeshSizes, build, size_name
 from .bearing import Bearing
 from .housing import Housing
+from .local_sizes import LocalSizes, apply_local_sizes
 from .part import Assumption, Part
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
@@ -12,10 +13,12 @@ __all__ = [
     "Bearing",
     "Flange",
     "Housing",
+    "LocalSizes",
     "MeshSizes",
     "Part",
     "Section",
     "Shaft",
+    "apply_local_sizes",
     "build",
     "gmsh_session",
     "size_name",

@@ -1,0 +1,80 @@
+"""Bands of a case's figures come from coarser meshes of the same scene, or are not given at all."""
+
+import numpy as np
+import pytest
+from conftest import coarse_scene
+from fe_drivetrain.cases.main_bearing import bands
+from fe_drivetrain.cases.main_bearing.bands import FACTORS, LEAST_ORDER, Series
+
+from fe_drivetrain.case import Run
+from fe_drivetrain.scene import change_scene
+
+
+def series_of_order(order, limit=5.0):
+    levels = [
+        {"K_R": np.array([[limit, limit + 0.1 * size**order]]), "checks": np.array([1e-10, 1e-12])}
+        for size in (*FACTORS, 1.0)
+    ]
+    return Series(tuple(levels))
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 4.0])
+def test_band_holds_the_limit_whatever_the_order(order):
+    series = series_of_order(order)
+    band = series.band(lambda f: float(f["K_R"][0, 1]))
+    assert band >= 0.1
+    assert series.percent(lambda f: float(f["K_R"][0, 1])) == pytest.approx(100 * band / 5.1)
+    # and reaches to the limit at the least order
+    difference = 0.1 * (FACTORS[1] ** order - 1.0)
+    assert band >= 0.999 * difference / (FACTORS[1] ** LEAST_ORDER - 1.0)
+    # what no mesh changes has none
+    assert series.band(lambda f: float(f["K_R"][0, 0])) < 1e-10
+    assert "at most" in series.largest("K_R")
+
+
+def test_no_coarser_mesh_gives_no_band():
+    series = Series(series_of_order(1.0).levels[-1:])
+    assert not series.complete
+    assert series.band(lambda f: float(f["K_R"][0, 1])) is None
+    assert series.checked("bonded") == []
+    assert "No bands" in series.note()
+
+
+def test_coarser_solutions_out_of_balance_are_told():
+    good = series_of_order(1.0)
+    assert all(v.passed for v in good.checked("bonded"))
+    spoiled = Series(({**good.levels[0], "free checks": np.array([1e-3, 0.0])}, *good.levels[1:]))
+    assert not all(v.passed for v in spoiled.checked("bonded"))
+
+
+def test_mesh_too_coarse_for_the_walls_is_left_out(tmp_path):
+    scene = coarse_scene("bonded", **{"mesh.bearing": 1.0})
+    assert bands.solve_coarser(Run({}, True, tmp_path), scene, "x", True, True) is None
+
+
+def test_coarser_scene_has_larger_elements_and_enough_a_turn():
+    scene = change_scene(coarse_scene("bonded"), {"mesh.elements_per_turn": 12})
+    for factor in FACTORS:
+        sizes = bands.coarser(scene, factor).mesh
+        assert sizes.housing == pytest.approx(factor * scene.mesh.housing)
+        assert 8 <= sizes.elements_per_turn < 12
+
+
+def test_figures_of_a_coarser_mesh_are_those_of_the_case(tmp_path):
+    """Solved on the same mesh, a figure is the same; K_R stands under its plane and estimator."""
+    from fe_drivetrain.cases.main_bearing import study
+
+    scene = coarse_scene("bonded")
+    run = Run({}, True, tmp_path)
+    found = bands.solve_coarser(run, scene, "x", solved=True, tilted=True)
+    assert found is not None
+    meshed = study.mesh_of(run, scene, "x")
+    solved = study.solve_scene(run, scene, "x", meshed)
+    tilt = study.solve_tilt(run, scene, "x", meshed)
+    own = bands.of_solved(solved) | bands.of_tilt(tilt)
+    assert set(found) == set(own)
+    assert found["K_R"][0, 1] == pytest.approx(tilt.by_plane["vertical"]["averaged seat"], rel=1e-9)
+    name = solved.bearing
+    np.testing.assert_allclose(
+        found[f"reaction {name}"], solved.response.reactions[name], rtol=1e-6, atol=1e-6
+    )
