@@ -16,6 +16,7 @@ from fe_drivetrain.beams import MainBearingBeam
 from fe_drivetrain.case import Run
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.response import GRAVITY
+from fe_drivetrain.scene import Scene
 from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
 
 #: Mean error [%] and correlation of the resultant force over all histories (Stirling 2023, lines
@@ -64,6 +65,11 @@ class Linear:
         # loads as large as the weight in the constant, which would swallow digits of a unit load's
         size = 1e6
         return cls((model(size * np.eye(6), beam) - constant) / size, constant)
+
+    @classmethod
+    def of_reactions(cls, matrix: Floats, weight: float) -> Linear:
+        """A solid known by its (6, 10) reactions to unit loads, and its gearbox weight [N]."""
+        return cls(matrix[:, :6].T, weight * matrix[:, 9])
 
     def reaction(self, loads: Floats) -> Floats:
         """(..., 6) reactions [N, N m] to (..., 6) hub loads."""
@@ -212,6 +218,35 @@ def compared(
         causes,
         with_their_stiffness,
         seconds,
+    )
+
+
+def of_one_mesh(
+    hub: HubLoads, scene: Scene, matrix: Floats, stiffness: Floats
+) -> tuple[float, float, float]:
+    """How far both beams are from a bonded bearing, with what one mesh gives.
+
+    Parameters
+    ----------
+    scene
+        The bonded scene.
+    matrix, stiffness
+        (6, 10) reactions, and (2,) K_R from the averaged seat.
+
+    Returns
+    -------
+    Mean error of the pinned and of the torsional-spring beam [%], and the latter's correlation.
+    """
+    force = Linear.of_reactions(matrix, scene.gearbox.weight).radial(hub.loads)
+    spring = main_bearing_beam(scene, float(stiffness[0]), float(stiffness[1]))
+    pinned, sprung = (
+        Linear.of_beam(model, spring).radial(hub.loads)
+        for model in (beams.pinned_model, beams.torsional_spring_model)
+    )
+    return (
+        _mean_error(force, pinned),
+        _mean_error(force, sprung),
+        float(compare.correlation(force, sprung).mean()),
     )
 
 

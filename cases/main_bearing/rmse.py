@@ -14,8 +14,13 @@ OWN_KEYS = ("scene", "loads", "solver")
 def run(run: Run) -> Any:
     """Make or read the hub loads, solve both scenes, compare over all histories."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import loads, study
-    from fe_drivetrain.cases.main_bearing.comparison import PUBLISHED, SIXBYSIX, compared
+    from fe_drivetrain.cases.main_bearing import bands, loads, study
+    from fe_drivetrain.cases.main_bearing.comparison import (
+        PUBLISHED,
+        SIXBYSIX,
+        compared,
+        of_one_mesh,
+    )
 
     from fe_drivetrain.environment import environment
     from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
@@ -27,7 +32,7 @@ def run(run: Run) -> Any:
     bonded_scene = study.scene_of(run, "bonded", OWN_KEYS)
     pinned_beam = main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
     given = loads.own_hub_loads(run)  # before the work: a mistake in a file is told at once
-    with run.side_by_side(3) as jobs:
+    with run.side_by_side(7) as jobs:
         solving = jobs.start(
             study.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"
         )
@@ -36,6 +41,8 @@ def run(run: Run) -> Any:
             study.solve_and_write, bonded_scene, "bonded", meshed, "mesh_bonded"
         )
         tilting = jobs.start(study.solve_tilt, bonded_scene, "bonded, no gearbox", meshed)
+        coarser = bands.start(jobs, spherical_scene, "spherical")
+        coarser_bonded = bands.start(jobs, bonded_scene, "bonded", tilted=True)
         hub = loads.surrogate_hub_loads(run, jobs) if given is None else given
         spherical = solving.result()
         mean_load = np.zeros(10)
@@ -47,6 +54,10 @@ def run(run: Run) -> Any:
         bonded, tilt = solving_bonded.result(), tilting.result()
         found = compared(run, hub, pinned_beam, spherical, bonded, tilt)
         pictures = drawing.result()
+        series = {
+            "spherical": coarser.below(bands.of_solved(spherical)),
+            "bonded": coarser_bonded.below(bands.of_solved(bonded) | bands.of_tilt(tilt)),
+        }
     name = bonded.bearing
     mean_error, correlation = found.mean_error, found.correlation
     n_histories, n_samples = hub.loads.shape[:2]
@@ -59,7 +70,20 @@ def run(run: Run) -> Any:
     for label, solved in (("spherical", spherical), ("bonded", bonded)):
         verdicts += study.check_verdicts(solved, label)
     verdicts += study.check_verdicts(tilt.free, "bonded, without gearbox")
+    for label, found_bands in series.items():
+        verdicts += found_bands.checked(label)
     first, second, third = PUBLISHED
+    with run.step("bands of the mean errors"):
+        by_mesh = [
+            of_one_mesh(hub, bonded_scene, f[f"reaction {name}"], f["K_R"][:, 1])
+            for f in series["bonded"].levels[:-1]
+        ]
+    by_mesh.append((mean_error[second], mean_error[third], correlation[third]))
+    of_beams = bands.Series(tuple({"beams": np.array(row)} for row in by_mesh))
+    error_band = {
+        label: of_beams.band(lambda f, k=k: float(f["beams"][k]))
+        for k, label in enumerate((second, third))
+    }
     verdicts += [
         judge(
             f"{first}: mean error of the resultant",
@@ -70,6 +94,7 @@ def run(run: Run) -> Any:
             unit="%",
             source="statics: the shaft is determinate",
             reason="loads act at the same points in both: solver accuracy",
+            measure="identity",
         ),
         judge(
             f"{third}: mean error of the resultant",
@@ -80,6 +105,7 @@ def run(run: Run) -> Any:
             unit="%",
             source="FE of this study; the thesis reports 1.61 %",
             reason="asked of the torsional-spring model: under 2 %",
+            band=error_band[third],
         ),
     ]
     if np.isfinite(correlation[third]):  # a load that never changes has no correlation
@@ -92,6 +118,7 @@ def run(run: Run) -> Any:
                 relative=False,
                 source="FE of this study; the thesis reports 0.9996",
                 reason="asked of the torsional-spring model: above 0.999",
+                band=of_beams.band(lambda f: float(f["beams"][2])),
             )
         )
 
@@ -131,13 +158,14 @@ def run(run: Run) -> Any:
                     columns=[
                         "comparison",
                         "mean error [%]",
+                        "± mean error [%]",
                         "mean |error| / mean |force| [%]",
                         "samples left out of the mean error [%]",
                         "correlation",
                         "thesis: mean error [%]",
                         "thesis: correlation",
                     ],
-                    rows=found.headline,
+                    rows=[[*r[:2], error_band.get(str(r[0])), *r[2:]] for r in found.headline],
                 ),
                 Text(
                     text="Mean error is the thesis's metric, |F_beam - F_FE| / |F_FE| averaged "
@@ -194,7 +222,7 @@ def run(run: Run) -> Any:
         Section(
             title="What reactions do not show: stiffness, deflection, slope",
             items=[
-                study.tilt_table(tilt),
+                bands.tilt_table(tilt, series["bonded"]),
                 Table(
                     caption="The torsional-spring beam with K_R of each estimator, against bonded "
                     "FE; no value is fitted",
@@ -209,9 +237,10 @@ def run(run: Run) -> Any:
                     ],
                     rows=found.estimators,
                 ),
-                _deflections(spherical, bonded, tilt, stiffness),
+                _deflections(spherical, bonded, tilt, stiffness, series),
                 study.matrix_table(
-                    "Condensed stiffness of the bonded bearing unit at the bearing's centre",
+                    "Condensed stiffness of the bonded bearing unit at the bearing's centre; "
+                    + series["bonded"].largest("stiffness"),
                     tilt.matrix,
                 ),
             ],
@@ -222,6 +251,7 @@ def run(run: Run) -> Any:
                 study.mesh_table(
                     {"spherical": spherical, "bonded": bonded, "bonded, no gearbox": tilt.free}
                 ),
+                Text(text=series["bonded"].note()),
                 Text(
                     text=f"{n_steps:,} load steps were turned into the reactions of two models in "
                     f"{found.seconds:.2f} s: one matrix product each."
@@ -263,7 +293,7 @@ def run(run: Run) -> Any:
     )
 
 
-def _deflections(spherical: Any, bonded: Any, tilt: Any, stiffness: Any) -> Any:
+def _deflections(spherical: Any, bonded: Any, tilt: Any, stiffness: Any, series: Any) -> Any:
     """Deflection at the hub and slope at the bearing, FE and Timoshenko beams."""
     import numpy as np
 
@@ -293,8 +323,12 @@ def _deflections(spherical: Any, bonded: Any, tilt: Any, stiffness: Any) -> Any:
             ("slope ry at the bearing", "µrad", 1, f"{name}.seat", 4),
         ):
             fe = 1e9 * float(solved.response.motions[point][component, 2])
+            band = series[label].band(
+                lambda f, p=point, c=component: 1e9 * float(f[f"motion {p}"][c, 2])
+            )
             bare, ring = (1e6 * float(m[station, component]) for m in motion)
-            rows.append([label, f"{quantity} [{unit}]", fe, bare, ring, 100.0 * (bare / fe - 1.0)])
+            against = 100.0 * (bare / fe - 1.0)
+            rows.append([label, f"{quantity} [{unit}]", fe, band, bare, ring, against])
     return Table(
         caption="Under Fz = 1 kN at the hub: FE, and Timoshenko beams on the FE stiffness of the "
         "bearing unit. The ring stiffens the shaft; the 6x6 of the bonded unit holds its share "
@@ -303,6 +337,7 @@ def _deflections(spherical: Any, bonded: Any, tilt: Any, stiffness: Any) -> Any:
             "bearing",
             "quantity",
             "FE",
+            "± FE",
             "beam, bare shaft",
             "beam, ring as shaft",
             "bare beam against FE [%]",

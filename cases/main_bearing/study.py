@@ -251,6 +251,7 @@ def check_verdicts(solved: Solved, label: str) -> list[Verdict]:
             relative=False,
             source=source,
             reason="reactions come from the residual on constrained freedoms: solver accuracy",
+            measure="identity",
         ),
         judge(
             f"{label}: linearity, a random load solved directly against superposed",
@@ -260,6 +261,7 @@ def check_verdicts(solved: Solved, label: str) -> list[Verdict]:
             relative=False,
             source=source,
             reason="the scene is linear: solver accuracy",
+            measure="identity",
         ),
     ]
 

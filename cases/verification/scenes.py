@@ -1,0 +1,51 @@
+"""The library's two main-bearing scenes, on coarse meshes: balances hold on any mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_drivetrain.case import Run
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.mesh import Mesh
+from fe_drivetrain.model import Model, build_model, mesh_scene
+from fe_drivetrain.response import Response, unit_load_response
+from fe_drivetrain.scene import Scene, library_scene
+
+KINDS = ("spherical", "bonded")
+
+#: Factor on the library's mesh sizes, and that of a quick run.
+COARSER, QUICK = 2.0, 3.0
+
+
+def meshed(run: Run, kind: str) -> tuple[Scene, Mesh]:
+    """One of the scenes with its mesh."""
+    scene = library_scene(f"main_bearing_{kind}")
+    sizes = scene.mesh.scaled(QUICK if run.quick else COARSER)
+    scene = scene.model_copy(update={"mesh": sizes})
+    with run.step(f"mesh ({kind})"):
+        return scene, mesh_scene(scene)
+
+
+def solved(run: Run, kind: str) -> tuple[Model, Response]:
+    """One of the scenes with its response to unit loads."""
+    scene, mesh = meshed(run, kind)
+    with run.step(f"assembly and solve ({kind})"):
+        model = build_model(scene, mesh)
+        return model, unit_load_response(model)
+
+
+def work(model: Model, response: Response) -> Floats:
+    """(10, 10) work of each unit load (row) on the displacements under each other (column) [J].
+
+    The loads themselves on the displacements of the nodes: no stiffness is in it.
+
+    Raises
+    ------
+    ValueError
+        The scene has reference points with freedoms of their own.
+    """
+    F = model.unit_loads()
+    U = response.displacements.reshape(-1, F.shape[1])
+    if len(U) != len(F):
+        raise ValueError("work is summed over nodes: couple hub and gearbox by averages")
+    return np.asarray(F.T @ U)

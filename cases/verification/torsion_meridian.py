@@ -1,0 +1,125 @@
+"""Torsion of a shaft of any outline between two bounds, from its meridian alone (Michell 1899).
+
+Twisted by its rigid end faces, a body of revolution moves by u_t = r psi(x, r) and nothing else.
+The angle psi that makes the energy least bounds the stiffness from above, the torsion function
+phi that makes the complementary energy least bounds it from below:
+
+    2 pi G min integral r^3 |grad psi|^2 dx dr  >=  k  >=  2 pi G / min integral r^-3 |grad phi|^2,
+
+psi = 0 and 1 on the end faces; phi = 0 on the axis or the bore and 1 on the outer surface. A solid
+shaft takes phi = r^4 chi, which leaves nothing singular on the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from fe_drivetrain.geometry import Shaft
+from skfem import Basis, BilinearForm, ElementTriP4, MeshQuad, condense, solve
+
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.hexahedra import SAME_LENGTH, shaft_quadrilaterals
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The torsional stiffness lies between these [N m/rad]."""
+
+    lower: float
+    upper: float
+
+    @property
+    def middle(self) -> float:
+        """[N m/rad]."""
+        return 0.5 * (self.lower + self.upper)
+
+    @property
+    def half_width(self) -> float:
+        """[N m/rad]."""
+        return 0.5 * (self.upper - self.lower)
+
+
+def torsion_bounds(shaft: Shaft, shear_modulus: float, size: float, halvings: int = 0) -> Bounds:
+    """Bounds of the stiffness between rigid end faces.
+
+    Parameters
+    ----------
+    shaft
+        Without fillets; solid, or of one bore all along.
+    shear_modulus
+        G [Pa].
+    size
+        Element size [m], fourth order.
+    halvings
+        Local refinements at the corners of the outline.
+
+    Returns
+    -------
+    Bounds
+        Rigorous but for the lower one where the outer surface is not a cylinder: there the values
+        on it are interpolated with fourth order.
+    """
+    mesh = _triangles(shaft, size, halvings)
+    basis = Basis(mesh, ElementTriP4(), intorder=12)
+    x, r = basis.doflocs
+    front, rear = (np.abs(x - end) < SAME_LENGTH for end in (shaft.front, shaft.rear))
+
+    def angle(u: Any, v: Any, w: Any) -> Any:
+        return w.x[1] ** 3 * (u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1])
+
+    most = _least(basis, angle, rear.astype(float), front | rear)
+
+    ends = mesh.p[:, mesh.facets]
+    outside = np.zeros(mesh.facets.shape[1], dtype=bool)
+    outside[mesh.boundary_facets()] = True
+    bore = shaft.pieces[0].inner_diameter / 2
+    for axis, value in ((0, shaft.front), (0, shaft.rear), (1, bore)):
+        outside &= np.abs(ends[axis] - value).max(axis=0) > SAME_LENGTH
+    surface = np.zeros(basis.N, dtype=bool)
+    surface[basis.get_dofs(np.flatnonzero(outside)).all()] = True
+    if bore > 0:
+
+        def function(u: Any, v: Any, w: Any) -> Any:
+            return (u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1]) / w.x[1] ** 3
+
+        inside = np.abs(r - bore) < SAME_LENGTH
+        least = _least(basis, function, surface.astype(float), surface | inside)
+    else:
+
+        def function(u: Any, v: Any, w: Any) -> Any:
+            r = w.x[1]
+            both = (4 * u + r * u.grad[1]) * (4 * v + r * v.grad[1])
+            return r**5 * u.grad[0] * v.grad[0] + r**3 * both
+
+        values = np.where(surface, np.where(r > 0, r, 1.0) ** -4.0, 0.0)
+        least = _least(basis, function, values, surface)
+    scale = 2 * np.pi * shear_modulus
+    return Bounds(scale / least, scale * most)
+
+
+def _least(basis: Any, form: Callable[..., Any], values: Floats, held: Any) -> float:
+    """The least energy with these values at the held freedoms."""
+    K = BilinearForm(form).assemble(basis)
+    u = solve(*condense(K, x=values, D=np.flatnonzero(held)))
+    return float(u @ (K @ u))
+
+
+def _triangles(shaft: Shaft, size: float, halvings: int) -> Any:
+    nodes, quads = shaft_quadrilaterals(shaft, size)
+    corners, local = np.unique(quads[:, ::2, ::2], return_inverse=True)
+    local = local.reshape(-1, 4)[:, [0, 2, 3, 1]]
+    mesh = MeshQuad(nodes[corners].T.copy(), local.T.copy()).to_meshtri()
+    outline = [
+        (x, diameter / 2)
+        for piece, ends in zip(shaft.pieces, pairwise(shaft.stations), strict=True)
+        for x, diameter in zip(ends, (piece.outer_diameter, piece.end_diameter), strict=True)
+    ]
+    for _ in range(halvings):
+        at = np.array(outline)[:, :, None]
+        nearest = np.unique(np.abs(mesh.p - at).max(axis=1).argmin(axis=1))
+        mesh = mesh.refined(np.flatnonzero(np.isin(mesh.t, nearest).any(axis=0)))
+    return mesh
