@@ -17,10 +17,10 @@ KINDS = ("spherical", "bonded")
 COARSER, QUICK = 2.0, 3.0
 
 
-def meshed(run: Run, kind: str) -> tuple[Scene, Mesh]:
-    """One of the scenes with its mesh."""
+def meshed(run: Run, kind: str, factor: float | None = None) -> tuple[Scene, Mesh]:
+    """One of the scenes with its mesh; the factor on the sizes is that of the run if not given."""
     scene = library_scene(f"main_bearing_{kind}")
-    sizes = scene.mesh.scaled(QUICK if run.quick else COARSER)
+    sizes = scene.mesh.scaled(factor or (QUICK if run.quick else COARSER))
     scene = scene.model_copy(update={"mesh": sizes})
     with run.step(f"mesh ({kind})"):
         return scene, mesh_scene(scene)
