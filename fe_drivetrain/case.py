@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import os
 import pkgutil
 import re
-import shutil
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
@@ -17,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.files import HiddenFolder
 from fe_drivetrain.parallel import Job, Processes, Report, silent
 
 if TYPE_CHECKING:
@@ -183,8 +181,8 @@ class Case:
         seed
             Of random numbers.
         found
-            ``summary``, ``verdicts``, ``sections``, and where there are any ``figures`` and
-            ``assumptions``; see `fe_drivetrain.results.Results`.
+            ``summary``, ``verdicts``, ``sections``, and where there are any ``figures``, ``limits``
+            and ``assumptions``; see `fe_drivetrain.results.Results`.
         """
         from fe_drivetrain.environment import environment
         from fe_drivetrain.results import Results
@@ -251,7 +249,8 @@ def run_case(
     """Run a case and write its result folder: results.json, report.html and what else it makes.
 
     Everything is written to a hidden folder beside ``out`` first, so that a run that fails or is
-    stopped leaves what was there before.
+    stopped leaves what was there before. Of a run that was killed, the next one into the same place
+    removes that folder.
 
     Parameters
     ----------
@@ -270,10 +269,10 @@ def run_case(
     out = Path(out)
     folder = new_folder(out)
     try:
-        results = run_into(case, folder, settings or {}, quick, report)
+        results = run_into(case, folder.path, settings or {}, quick, report)
         put_in_place(folder, out)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        folder.discard()
     return results
 
 
@@ -293,7 +292,7 @@ def run_into(
     return results
 
 
-def new_folder(out: Path) -> Path:
+def new_folder(out: Path) -> HiddenFolder:
     """A hidden folder beside the result folder ``out``, for `put_in_place` when it is complete.
 
     Raises
@@ -303,12 +302,9 @@ def new_folder(out: Path) -> Path:
     """
     _check_folder(out)
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        return Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
+        return HiddenFolder(out)
     except OSError as error:
-        raise InputError(
-            f"cannot write to {out.parent}: {error.strerror}: give a writable folder with --out"
-        ) from error
+        raise _not_writable(out.parent, error) from error
 
 
 def _check_folder(out: Path) -> None:
@@ -322,22 +318,15 @@ def _check_folder(out: Path) -> None:
         )
 
 
-def put_in_place(folder: Path, out: Path) -> None:
+def put_in_place(folder: HiddenFolder, out: Path) -> None:
     """Put a complete folder of `new_folder` in the place of an older one."""
-    folder.chmod(0o755)
-    old = Path(tempfile.mkdtemp(prefix=f".{out.name}-old-", dir=out.parent))
     try:
-        try:
-            if out.exists():
-                os.rename(out, old / "results")
-            os.rename(folder, out)
-        finally:
-            # whatever went wrong, Ctrl-C between the two included
-            if not out.exists() and (old / "results").exists():
-                os.rename(old / "results", out)
+        folder.put_in_place()
     except OSError as error:
-        raise InputError(
-            f"cannot write {out}: {error.strerror}: give a writable folder with --out"
-        ) from error
-    finally:
-        shutil.rmtree(old, ignore_errors=True)
+        raise _not_writable(out, error) from error
+
+
+def _not_writable(where: Path, error: OSError) -> InputError:
+    return InputError(
+        f"cannot write to {where}: {error.strerror}: give a writable folder with --out"
+    )

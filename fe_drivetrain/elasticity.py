@@ -17,11 +17,10 @@ from skfem import (
     ElementHexS2,
     ElementTetP1,
     ElementTetP2,
-    ElementTriP2,
 )
 from skfem.element import Element
 from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTet, RefTri
+from skfem.refdom import RefTet
 
 from fe_drivetrain import kernels
 from fe_drivetrain.errors import InputError
@@ -46,17 +45,45 @@ _HEX_MEANS = [*HEXAHEDRON_EDGES, *HEXAHEDRON_FACES, tuple(range(8))]
 
 
 @dataclass(frozen=True)
-class ElementKind:
-    """An element, known by its number of nodes.
+class Nodal:
+    """A scalar Lagrange element of scikit-fem, with its nodes in VTK's order.
+
+    Attributes
+    ----------
+    element
+        scikit-fem's.
+    order
+        scikit-fem's number of each of VTK's nodes.
+    """
+
+    element: Element
+    order: Ints
+
+    @property
+    def places(self) -> Floats:
+        """(n_nodes, dim) reference coordinates of the nodes."""
+        return np.asarray(self.element.doflocs[self.order], dtype=float)
+
+    def shape(self, at: Floats) -> tuple[Floats, Floats]:
+        """Shape functions (n_q, n_nodes) and their reference gradients (n_q, dim, n_nodes).
+
+        Parameters
+        ----------
+        at
+            (dim, n_q) reference coordinates.
+        """
+        values, gradients = shape_functions(self.element, at)
+        return values[:, self.order], gradients[:, :, self.order]
+
+
+@dataclass(frozen=True)
+class ElementKind(Nodal):
+    """An element of a solid, known by its number of nodes.
 
     Attributes
     ----------
     name
         As meshio and VTK call it.
-    element
-        The scalar Lagrange element of scikit-fem.
-    order
-        scikit-fem's number of each of VTK's nodes.
     corner
         The linear element on the same corners.
     degree
@@ -65,8 +92,6 @@ class ElementKind:
     """
 
     name: str
-    element: Element
-    order: Ints
     corner: Element
     degree: int
 
@@ -77,15 +102,12 @@ class ElementKind:
 
     def corner_weights(self) -> Floats:
         """(n_nodes, n_corners): the linear shape functions at the nodes."""
-        kind = element_kind(self.n_corners)
-        positions = self.element.doflocs[self.order].T
-        return shape_functions(kind.corner, positions)[0][:, kind.order]
+        return element_kind(self.n_corners).shape(self.places.T)[0]
 
     def table(self, degree: int) -> tuple[Floats, Floats]:
         """Reference gradients (n_q, 3, n_nodes), nodes in VTK's order, and weights (n_q,)."""
         X, W = get_quadrature(self.element.refdom, degree)
-        gradients = shape_functions(self.element, X)[1][:, :, self.order]
-        return np.ascontiguousarray(gradients), W
+        return np.ascontiguousarray(self.shape(X)[1]), W
 
 
 @cache
@@ -100,7 +122,7 @@ def element_kind(n_nodes: int) -> ElementKind:
     if n_nodes in (4, 10):
         element = ElementTetP1() if n_nodes == 4 else ElementTetP2()
         name = "tetra" if n_nodes == 4 else "tetra10"
-        return ElementKind(name, element, np.arange(n_nodes), ElementTetP1(), 2 * (n_nodes > 4) + 2)
+        return ElementKind(element, np.arange(n_nodes), name, ElementTetP1(), 2 * (n_nodes > 4) + 2)
     elements = {8: ElementHex1, 20: ElementHexS2, 27: ElementHex2}
     if n_nodes not in elements:
         raise InputError(
@@ -113,7 +135,7 @@ def element_kind(n_nodes: int) -> ElementKind:
     distance = np.abs(positions[:, None] - element.doflocs[None]).max(axis=2)
     name = "hexahedron" if n_nodes == 8 else f"hexahedron{n_nodes}"
     degree = 3 if n_nodes == 8 else 4
-    return ElementKind(name, element, distance.argmin(axis=1), ElementHex1(), degree)
+    return ElementKind(element, distance.argmin(axis=1), name, ElementHex1(), degree)
 
 
 def shape_functions(element: Element, points: Floats) -> tuple[Floats, Floats]:
@@ -262,17 +284,6 @@ def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
         part = cells[start : start + _CHUNK]
         determinant = jacobian(points, part, gradients)[1]
         np.add.at(weights, part, (np.abs(determinant) * W) @ values)
-    return weights
-
-
-def face_weights(points: Floats, faces: Ints, n_nodes: int) -> Floats:
-    """Integrals of the shape functions over six-node triangles; (n_nodes,) [m^2]."""
-    X, W = get_quadrature(RefTri, 4)
-    values, gradients = shape_functions(ElementTriP2(), X)
-    tangents = np.einsum("qkn,fni->fqki", gradients, points[faces])
-    area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2)
-    weights = np.zeros(n_nodes)
-    np.add.at(weights, faces, (area * W) @ values)
     return weights
 
 

@@ -30,7 +30,6 @@ from fe_drivetrain.elasticity import (
     Ints,
     element_kind,
     jacobian,
-    shape_functions,
 )
 from fe_drivetrain.stress import stresses
 
@@ -112,10 +111,9 @@ def _energies(
     kind = element_kind(cells.shape[1])
     patches = _Patches(points, cells, kind)
     coefficients = patches.fit(points, cells, lame, u)
-    corner = element_kind(kind.n_corners)
     at, weights = get_quadrature(kind.element.refdom, 4 if kind.n_corners == 4 else 5)
-    blend = shape_functions(kind.corner, at)[0][:, corner.order]
-    values, gradients = _tables(kind, at)
+    blend, _ = element_kind(kind.n_corners).shape(at)
+    values, gradients = kind.shape(at)
     for start in range(0, len(cells), _CHUNK):
         rows = slice(start, start + _CHUNK)
         s = stresses(points, cells[rows], u, lame, at)
@@ -177,7 +175,7 @@ class _Patches:
         These are the Gauss points of one degree less (Barlow 1976).
         """
         at, _ = get_quadrature(self._kind.element.refdom, self._degree + 1)
-        values, _ = _tables(self._kind, at)
+        values, _ = self._kind.shape(at)
         n, n_terms = len(self._centre), (1, 4, 10)[self._degree]
         left = np.zeros((n, n_terms * n_terms))
         right = np.zeros((n, n_terms * 6))
@@ -196,9 +194,3 @@ class _Patches:
         matrix = left.reshape(n, n_terms, n_terms)
         matrix += matrix[:, 0, 0, None, None] * np.diag(_HELD[:n_terms])
         return np.asarray(np.linalg.solve(matrix, right.reshape(n, n_terms, 6)))
-
-
-def _tables(kind: ElementKind, at: Floats) -> tuple[Floats, Floats]:
-    """Values (n_q, n_nodes) and gradients (n_q, 3, n_nodes), nodes in VTK's order."""
-    values, gradients = shape_functions(kind.element, at)
-    return values[:, kind.order], gradients[:, :, kind.order]

@@ -5,7 +5,6 @@ from functools import cache
 
 import numpy as np
 from skfem import ElementQuad1, ElementQuad2, ElementQuadS2, ElementTriP1, ElementTriP2
-from skfem.element import Element
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.elasticity import (
@@ -13,10 +12,13 @@ from fe_drivetrain.elasticity import (
     HEXAHEDRON_FACES,
     Floats,
     Ints,
+    Nodal,
     element_kind,
-    shape_functions,
 )
 from fe_drivetrain.errors import InputError
+
+MEANS = 4
+"""Degree of the quadrature for means over a face, which need less than loads do."""
 
 _TETRAHEDRON = np.array(
     [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [0, 3, 2, 7, 9, 6], [1, 2, 3, 5, 9, 8]]
@@ -35,21 +37,15 @@ _SQUARE = np.array(
 
 
 @dataclass(frozen=True)
-class FacetKind:
+class FacetKind(Nodal):
     """A facet, known by its number of nodes.
 
     Attributes
     ----------
-    element
-        The scalar Lagrange element of scikit-fem.
-    order
-        scikit-fem's number of each of VTK's nodes.
     degree
         Of a quadrature that is exact to round-off for smooth loads on curved facets.
     """
 
-    element: Element
-    order: Ints
     degree: int
 
 
@@ -124,8 +120,7 @@ def facet_points(points: Floats, facets: Ints, degree: int | None = None) -> Fac
     """
     kind = facet_kind(facets.shape[1])
     X, W = get_quadrature(kind.element.refdom, kind.degree if degree is None else degree)
-    values, gradients = shape_functions(kind.element, X)
-    values, gradients = values[:, kind.order], gradients[:, :, kind.order]
+    values, gradients = kind.shape(X)
     nodes = points[facets]
     tangents = np.einsum("qkn,fni->fqki", gradients, nodes)
     vectors = np.cross(tangents[:, :, 0], tangents[:, :, 1])
@@ -136,3 +131,19 @@ def facet_points(points: Floats, facets: Ints, degree: int | None = None) -> Fac
         vectors / lengths[:, :, None],
         lengths * W,
     )
+
+
+def face_weights(points: Floats, facets: Ints, n_nodes: int, degree: int | None = None) -> Floats:
+    """Integrals of the shape functions over facets; (n_nodes,) [m^2].
+
+    Parameters
+    ----------
+    points, facets, degree
+        As for `facet_points`.
+    n_nodes
+        Length of the result.
+    """
+    at = facet_points(points, facets, degree)
+    weights = np.zeros(n_nodes)
+    np.add.at(weights, facets, at.areas @ at.values)
+    return weights

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian, shape_functions
+from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian
 from fe_drivetrain.facets import facet_points
 
 Traction = Callable[[Floats, Floats], Floats]
@@ -80,8 +80,7 @@ def body_loads(
     """
     kind = element_kind(cells.shape[1])
     X, W = get_quadrature(kind.element.refdom, _DEGREE)
-    values, gradients = shape_functions(kind.element, X)
-    values, gradients = values[:, kind.order], gradients[:, :, kind.order]
+    values, gradients = kind.shape(X)
     forces = np.zeros((len(points) if n_freedoms is None else n_freedoms // 3, 3))
     for start in range(0, len(cells), _CHUNK):
         part = cells[start : start + _CHUNK]

@@ -12,7 +12,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from fe_drivetrain.files import atomic_path
 from fe_drivetrain.results import (
     Chart,
     Image,
+    Limit,
     Results,
     Table,
     Verdict,
@@ -102,6 +103,8 @@ def write_page(folder: Path) -> Path:
 def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> Path:
     """Write a page of all results below a folder: every verdict, and bias and scatter of all.
 
+    Where there are limits of methods among them, atlas.html beside it lists these.
+
     Parameters
     ----------
     folder
@@ -132,16 +135,25 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
         rows.append(row)
     verdicts = [v for row in rows if row["results"] for v in row["results"].verdicts]
     environment = _environment()
-    environment.filters |= {
-        "cell": formatted,
-        "band": band_text,
-        "error": error_text,
-        "tolerance": tolerance_text,
-        "percent": lambda share: formatted(100 * share, 3),
-    }
+    environment.filters["percent"] = lambda share: formatted(100 * share, 3)
+    limits = [
+        (limit, row["name"]) for row in rows if row["results"] for limit in row["results"].limits
+    ]
+    atlas = folder / "atlas.html"
+    if limits:
+        with atomic_path(atlas) as unfinished:
+            content = environment.get_template("atlas.html").render(
+                limits=[limit for limit, _ in limits],
+                pages=[name for _, name in limits],
+                style=_style(),
+            )
+            unfinished.write_text(content, encoding="utf-8")
+    else:
+        atlas.unlink(missing_ok=True)
     page = folder / "index.html"
     with atomic_path(page) as unfinished:
         content = environment.get_template("index.html").render(
+            has_atlas=bool(limits),
             rows=rows,
             skipped=sum(bool(row.get("skipped")) for row in rows),
             passed=sum(row["results"] is not None and row["results"].passed for row in rows),
@@ -161,7 +173,15 @@ def _environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["seconds"] = lambda s: f"{s:.3g}" if abs(s) < 1000 else f"{s:.0f}"
+    shared: dict[str, Callable[..., str]] = {
+        "seconds": lambda s: f"{s:.3g}" if abs(s) < 1000 else f"{s:.0f}",
+        "cell": formatted,
+        "band": band_text,
+        "error": error_text,
+        "tolerance": tolerance_text,
+        "safe_range": safe_range,
+    }
+    environment.filters |= shared
     return environment
 
 
@@ -180,15 +200,11 @@ def render(results: Results, folder: Path) -> str:
         scripts = [get_plotlyjs(), (_TEMPLATES / "charts.js").read_text(encoding="utf-8")]
     environment = _environment()
     environment.filters |= {
-        "cell": formatted,
         "number": _is_number,
         "figure": _figure_as_json,
         "unit_unbroken": _unit_unbroken,
         "numeric_columns": _numeric_columns,
         "height": _chart_height,
-        "band": band_text,
-        "error": error_text,
-        "tolerance": tolerance_text,
         "as_given": lambda settings: [(key, _as_given(settings[key])) for key in settings],
         "data_url": lambda image: _as_data_url(image, folder),
     }
@@ -249,6 +265,14 @@ def band_text(verdict: Verdict) -> str:
     if verdict.relative and verdict.computed != 0:
         return f"±{formatted(100 * verdict.band / abs(verdict.computed), 2)}\u00a0%"
     return f"±{_with_unit(formatted(verdict.band, 2), verdict.unit)}"
+
+
+def safe_range(limit: Limit) -> str:
+    """The safe range of a limit, as a table shows it."""
+    low, high = (None if end is None else formatted(end, 3) for end in (limit.low, limit.high))
+    if low is None:
+        return "the whole sweep" if high is None else f"up to {high}"
+    return f"from {low}" if high is None else f"{low} to {high}"
 
 
 def tolerance_text(verdict: Verdict) -> str:

@@ -175,6 +175,19 @@ class AssumptionRow(_Result):
     source: str = Field(description="where it comes from, or why it was assumed")
 
 
+class Limit(_Result):
+    """How far a method can be trusted, found by driving one parameter into its failure."""
+
+    method: str = Field(description="what fails: an element, a solver, a theory, a metric")
+    parameter: str = Field(description="what was varied, with its unit")
+    low: float | None = Field(default=None, description="least safe value; None: no bound found")
+    high: float | None = Field(default=None, description="largest safe value; None: no bound found")
+    criterion: str = Field(description="what counts as safe, such as an error below 1 %")
+    beyond: str = Field(description="what happens outside of the safe range")
+    program: str = Field(description="what the program does about it")
+    remedy: str = Field(description="what holds there, shown on the same axis")
+
+
 class Environment(_Result):
     """What a run depended on, so that it can be repeated."""
 
@@ -196,6 +209,7 @@ class Results(_Result):
     summary: list[str] = Field(description="the answer first, in a few sentences")
     verdicts: list[Verdict]
     sections: list[Section]
+    limits: list[Limit] = []
     assumptions: list[AssumptionRow] = []
     times: dict[str, float] = Field(default={}, description="wall time of each step [s]")
     figures: dict[str, Any] = Field(default={}, description="named numbers for other programs")

@@ -51,7 +51,7 @@ def stresses(
 def strains(points: Floats, cells: Ints, u: Floats, at: Floats) -> Floats:
     """Strains inside the elements, as `stresses`; shear strains are those of the tensor."""
     kind = element_kind(cells.shape[1])
-    gradients = shape_functions(kind.element, at)[1][:, :, kind.order]
+    gradients = kind.shape(at)[1]
     displacements = u[: 3 * len(points)].reshape(-1, 3)
     found = np.empty((len(cells), at.shape[1], 6))
     for start in range(0, len(cells), _CHUNK):
@@ -84,7 +84,7 @@ def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, fl
     kind = element_kind(cells.shape[1])
     at, weights, to_nodes = _best_points(kind)
     s = stresses(points, cells, u, lame, at)
-    gradients = shape_functions(kind.element, at)[1][:, :, kind.order]
+    gradients = kind.shape(at)[1]
     volume = np.concatenate(
         [
             np.abs(jacobian(points, cells[start : start + _CHUNK], gradients)[1]) @ weights
@@ -108,8 +108,7 @@ def _best_points(kind: ElementKind) -> tuple[Floats, Floats, Floats]:
         X, W = np.full((3, 1), 0.5), np.array([1.0])
         return X, W, np.ones((8, 1))
     through = shape_functions(kind.corner, X)[0]
-    nodes = kind.element.doflocs[kind.order].T
-    at_nodes = shape_functions(kind.corner, nodes)[0]
+    at_nodes = shape_functions(kind.corner, kind.places.T)[0]
     return X, W, np.asarray(at_nodes @ np.linalg.inv(through))
 
 

@@ -20,13 +20,13 @@ from skfem.quadrature import get_quadrature
 from fe_drivetrain.elasticity import (
     assemble,
     element_kind,
-    face_weights,
     is_straight,
     rigid_motions,
     sparsity,
     volume_weights,
 )
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.facets import face_weights
 from fe_drivetrain.materials import MATERIALS, Material
 
 STEEL = MATERIALS["steel"]

@@ -15,12 +15,20 @@ from hypothesis import strategies as st
 from PIL import Image as Pixels
 
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.report import error_text, formatted, tolerance_text, write_page
+from fe_drivetrain.report import (
+    error_text,
+    formatted,
+    safe_range,
+    tolerance_text,
+    write_index,
+    write_page,
+)
 from fe_drivetrain.results import (
     AssumptionRow,
     Chart,
     Environment,
     Image,
+    Limit,
     Results,
     Section,
     Table,
@@ -324,3 +332,46 @@ def test_a_browser_draws_the_chart_and_runs_nothing_hostile(tmp_path: Path) -> N
     head = done.stdout.partition("<title>")[2].partition("</title>")[0]
     assert "taken" in head  # the whole string is the title, escaped
     assert head.startswith("&lt;/script&gt;")
+
+
+def limit(**changes: object) -> Limit:
+    given: dict[str, object] = {
+        "method": "linear tetrahedra",
+        "parameter": "length over diameter [-]",
+        "high": 12.5,
+        "criterion": "error below 1 %",
+        "beyond": "too stiff",
+        "program": "takes quadratic ones",
+        "remedy": "quadratic tetrahedra",
+    }
+    return Limit.model_validate(given | changes)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "text"),
+    [
+        (None, 12.5, "up to 12.5"),
+        (0.1, None, "from 0.1"),
+        (2.5, 80.0, "2.5 to 80"),
+        (None, None, "the whole sweep"),
+    ],
+)
+def test_safe_ranges_are_written_in_words(low: float | None, high: float | None, text: str) -> None:
+    assert safe_range(limit(low=low, high=high)).replace("\N{THIN SPACE}", " ") == text
+
+
+def test_limits_are_on_the_page_and_on_the_atlas(tmp_path: Path) -> None:
+    content = results(limits=[limit(method=HOSTILE)])
+    folder = tmp_path / "stability" / "some"
+    folder.mkdir(parents=True)
+    assert HOSTILE in Page(page_of(folder, content)).text()
+    write_index(tmp_path)
+    atlas = Page((tmp_path / "atlas.html").read_text())
+    assert ("a", {"href": "stability/some/report.html"}) in atlas.elements
+    assert "up to 12.5" in [text.strip() for _, text in atlas.texts]
+    assert not atlas.scripts
+    # without limits there is no atlas, and no link to one
+    (folder / "results.json").write_text(results().model_dump_json())
+    write_index(tmp_path)
+    assert not (tmp_path / "atlas.html").exists()
+    assert "atlas.html" not in (tmp_path / "index.html").read_text()

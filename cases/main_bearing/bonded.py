@@ -16,10 +16,9 @@ def run(run: Run) -> Any:
     from fe_drivetrain.cases.main_bearing import bands, study
 
     from fe_drivetrain import beams, frame
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+    from fe_drivetrain.export.stiffness_file import stiffness_matrix, write_stiffness_json
     from fe_drivetrain.model import COMPONENTS
-    from fe_drivetrain.results import Results, Section, Table, Text, judge
+    from fe_drivetrain.results import Section, Table, Text, judge
     from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
 
     scene = study.scene_of(run, "bonded")
@@ -179,10 +178,8 @@ def run(run: Run) -> Any:
         solved.response.n_unknowns,
         tilt.by_plane,
     )
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
         summary=[
             f"1 N up at the hub puts {reaction[2, 2]:.4g} N and {reaction[4, 2]:.4g} N m on the "
             f"bonded bearing; the pinned beam says {pinned[2, 2]:.4g} N and no moment.",
@@ -244,9 +241,7 @@ def run(run: Run) -> Any:
             ),
         ],
         assumptions=study.assumptions(scene),
-        times=run.times,
         figures={"tilt_stiffness": tilt.by_plane, "stiffness": tilt.matrix.tolist()},
-        environment=environment(run.settings, seed=0),
     )
 
 

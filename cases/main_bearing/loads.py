@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.cases.main_bearing.study import line, rounded
 
 from fe_drivetrain import compare
 from fe_drivetrain.cache import user_cache
 from fe_drivetrain.case import Jobs, Run
+from fe_drivetrain.charts import rounded, trace
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.hub_loads import read_hub_loads
@@ -188,10 +188,10 @@ def rmse_charts(
                 # Staggered about the mean wind speed, as in the thesis, for clarity.
                 wind = [found[i][0] + 0.25 * (k - (len(series) - 1) / 2) for i in rows]
                 traces.append(
-                    line(
+                    trace(
+                        f"{turbulence} turbulence, shear {shear:g}",
                         wind,
                         statistics.mean[rows],
-                        f"{turbulence} turbulence, shear {shear:g}",
                         mode="markers",
                         marker={"symbol": "circle" if shear < 0.4 else "diamond", "size": 8},
                         error_y={"type": "data", "array": rounded(statistics.std[rows])},
@@ -230,19 +230,19 @@ def series_charts(
     for plane, quantity, component in _PLANES:
         for kind in ("spherical", "bonded"):
             traces = [
-                line(
+                trace(
+                    f"{kind} FE",
                     hub.time[shown],
                     fe[kind][chosen, shown, component] / 1e3,
-                    f"{kind} FE",
                     mode="lines",
                     line={"width": 3},
                 )
             ]
             traces += [
-                line(
+                trace(
+                    label.partition(" against")[0],
                     hub.time[shown],
                     model[chosen, shown, component] / 1e3,
-                    label.partition(" against")[0],
                     mode="lines",
                     line={"dash": dash},
                 )
@@ -279,12 +279,12 @@ def scatter_charts(
         x = reference[chosen, component] / 1e3
         unit = "kN" if component < 3 else "kN m"
         ends = np.array([x.min(), x.max()])
-        traces = [line(ends, ends, "equal", mode="lines", line={"color": "#888888", "width": 1})]
+        traces = [trace("equal", ends, ends, mode="lines", line={"color": "#888888", "width": 1})]
         traces += [
-            line(
+            trace(
+                label.partition(" against")[0],
                 x,
                 model.reshape(-1, 6)[chosen, component] / 1e3,
-                label.partition(" against")[0],
                 mode="markers",
                 marker={"size": 4, "opacity": 0.6},
             )

@@ -14,9 +14,9 @@ def run(run: Run) -> Any:
     import numpy as np
     from fe_drivetrain.cases.main_bearing import bands, study
 
+    from fe_drivetrain.charts import trace
     from fe_drivetrain.convergence import grid_convergence, richardson
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.results import Chart, Results, Section, Table, Text, judge
+    from fe_drivetrain.results import Chart, Section, Table, Text, judge
 
     scene = study.scene_of(run, "bonded", coarsen=False)
     factors = QUICK_FACTORS if run.quick else FACTORS
@@ -85,10 +85,10 @@ def run(run: Run) -> Any:
         caption="Difference from the finest mesh",
         figure={
             "data": [
-                study.line(
+                trace(
+                    q.partition(" [")[0],
                     unknowns[:-1],
                     np.maximum(d, 1e-6),
-                    q.partition(" [")[0],
                     mode="lines+markers",
                     marker={"symbol": k, "size": 9},
                     line={"dash": "solid" if q.startswith("K_R") else "dot"},
@@ -103,10 +103,8 @@ def run(run: Run) -> Any:
     )
     reactions = max(abs(e[-2]) for q, e in errors.items() if "at the bearing" in q)
     stiffness = max(abs(e[-2]) for q, e in errors.items() if q.startswith("K_R"))
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
         summary=[
             f"With sizes x {last:g} ({unknowns[-2]:,} unknowns) the reactions are within "
             f"{reactions:.2g} % and K_R within {stiffness:.2g} % of their values extrapolated to "
@@ -168,14 +166,12 @@ def run(run: Run) -> Any:
             Section(title="Mesh and solution", items=[study.mesh_table(solutions)]),
         ],
         assumptions=study.assumptions(scene),
-        times=run.times,
         figures={
             "unknowns": unknowns,
             "values": values,
             "extrapolated": limits,
             "uncertainty_of_finest": {q: c.uncertainty for q, c in found.items()},
         },
-        environment=environment(run.settings, seed=0),
     )
 
 

@@ -22,9 +22,8 @@ def run(run: Run) -> Any:
         of_one_mesh,
     )
 
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-    from fe_drivetrain.results import AssumptionRow, Results, Section, Table, Text, judge
+    from fe_drivetrain.export.stiffness_file import stiffness_matrix, write_stiffness_json
+    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
     from fe_drivetrain.scene_beam import main_bearing_beam
     from fe_drivetrain.stiffness import bearing_unit_stiffness
 
@@ -259,10 +258,9 @@ def run(run: Run) -> Any:
             ],
         ),
     ]
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
+        seed=hub.seed,
         summary=[
             f"Over {n_histories:,} hub-load histor{'y' if n_histories == 1 else 'ies'} "
             f"({n_steps:,} load steps) the pinned "
@@ -281,7 +279,6 @@ def run(run: Run) -> Any:
             *study.assumptions(bonded_scene),
             *(AssumptionRow(name=n, value=v, unit=u, source=s) for n, v, u, s in hub.assumptions),
         ],
-        times=run.times,
         figures={
             "mean_error_percent": mean_error,
             "correlation": correlation,
@@ -289,7 +286,6 @@ def run(run: Run) -> Any:
             "load_steps": n_steps,
             "seconds_for_reactions": found.seconds,
         },
-        environment=environment(run.settings, seed=hub.seed),
     )
 
 

@@ -24,9 +24,9 @@ def run(run: Run) -> Any:
     from fe_drivetrain.cases.main_bearing import bands, study
 
     from fe_drivetrain import beams
+    from fe_drivetrain.charts import trace
     from fe_drivetrain.compare import resultant
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.results import Chart, Results, Section, Table, Text, judge
+    from fe_drivetrain.results import Chart, Section, Table, Text, judge
     from fe_drivetrain.scene import change_scene
     from fe_drivetrain.scene_beam import main_bearing_beam
     from fe_drivetrain.surrogate import Condition, hub_loads
@@ -151,7 +151,7 @@ def run(run: Run) -> Any:
                     band_of(name, lambda f, this, ref: 1e9 * f["motion hub"][2, 2]),
                 ]
             )
-            traces.append(study.line(history.time, force / 1e3, f"{wall} % wall", mode="lines"))
+            traces.append(trace(f"{wall} % wall", history.time, force / 1e3, mode="lines"))
         charts.append(
             Chart(
                 caption=f"{label}: radial reaction over ten seconds, by shaft wall (as Figure "
@@ -166,10 +166,9 @@ def run(run: Run) -> Any:
             )
         )
     largest = max(row[5] for row in rows)
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
+        seed=1,
         summary=[
             "A bore does not change the reactions of the spherical bearing at all, and changes "
             f"those of the bonded one by {largest:.2g} % on average with half the wall: the "
@@ -217,9 +216,7 @@ def run(run: Run) -> Any:
             ),
         ],
         assumptions=study.assumptions(whole),
-        times=run.times,
         figures={"largest_mean_change_percent": largest},
-        environment=environment(run.settings, seed=1),
     )
 
 

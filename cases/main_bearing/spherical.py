@@ -17,11 +17,11 @@ def run(run: Run) -> Any:
     from fe_drivetrain.cases.main_bearing import bands, study
 
     from fe_drivetrain import beams, frame
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+    from fe_drivetrain.charts import trace
+    from fe_drivetrain.export.stiffness_file import stiffness_matrix, write_stiffness_json
     from fe_drivetrain.model import LOADS
     from fe_drivetrain.response import GRAVITY
-    from fe_drivetrain.results import Chart, Results, Section, Table, Text, judge
+    from fe_drivetrain.results import Chart, Section, Table, Text, judge
     from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
     from fe_drivetrain.stiffness import bearing_unit_stiffness
 
@@ -199,12 +199,10 @@ def run(run: Run) -> Any:
         figure={
             "data": [
                 *(
-                    study.line(
-                        stations, 1e6 * motion_of_beam[rings][0][:60, 2], label, mode="lines"
-                    )
+                    trace(label, stations, 1e6 * motion_of_beam[rings][0][:60, 2], mode="lines")
                     for rings, label in ((False, "beam, bare shaft"), (True, "beam, ring as shaft"))
                 ),
-                study.line(slices[0], 1e9 * slices[1], "FE, mean of each slice", mode="markers"),
+                trace("FE, mean of each slice", slices[0], 1e9 * slices[1], mode="markers"),
             ],
             "layout": {
                 "xaxis": {"title": {"text": "x along the shaft [m]"}},
@@ -276,10 +274,8 @@ def run(run: Run) -> Any:
         series.percent(lambda f, p=p, c=c, k=k: float(f[f"motion {p}"][c, k])) or 0.0
         for p, c, k in (("hub", 2, 2), ("hub", 4, 4), (f"{name}.seat", 4, 2))
     )
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
         summary=[
             "Reactions of the FE model equal statics to solver accuracy, as they must: the "
             "spherical joint makes the shaft determinate.",
@@ -302,12 +298,10 @@ def run(run: Run) -> Any:
         verdicts=verdicts,
         sections=sections,
         assumptions=study.assumptions(scene),
-        times=run.times,
         figures={
             form: {"stiffness_x": u[0, 0], "stiffness_y": u[1, 1], "stiffness_z": u[2, 2]}
             for form, u in unit.items()
         },
-        environment=environment(run.settings, seed=0),
     )
 
 

@@ -1,5 +1,6 @@
 """What the main-bearing cases share: their scene, its solution, and how both are shown."""
 
+import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -143,6 +144,8 @@ def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None
     mesh, mesh_quality = mesh_of(run, scene, label) if meshed is None else meshed
     with run.step(f"assembly ({label})"):
         model = build_model(scene, mesh)
+    for warning in model.warnings:
+        run.report(f"warning: {label}: {warning}")
     with run.step(f"solve 10 unit loads ({label})"):
         response = unit_load_response(model, solver(run))
     run.report(f"{label}: {response.method}, {response.reason}")
@@ -190,10 +193,13 @@ def solve_tilt(run: Run, scene: Scene, label: str, meshed: Meshed) -> Tilt:
         Of the solution without them.
     """
     free = solve_scene(run, without_gearbox(scene), label, meshed)
-    by_plane = {
-        plane.name: tilt_stiffness(free.model, free.response, free.bearing, plane)
-        for plane in PLANES
-    }
+    with warnings.catch_warnings():
+        # four nodes against the averaged seat: every page has both, side by side
+        warnings.simplefilter("ignore")
+        by_plane = {
+            plane.name: tilt_stiffness(free.model, free.response, free.bearing, plane)
+            for plane in PLANES
+        }
     return Tilt(by_plane, bearing_unit_stiffness(free.response, free.bearing), free)
 
 
@@ -289,7 +295,7 @@ def mesh_table(solutions: dict[str, Solved]) -> Table:
         )
     return Table(
         caption="Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve. "
-        f"Solver {_choices(solutions)}",
+        f"Solver {_choices(solutions)}{_warnings(solutions)}",
         columns=[
             "model",
             "elements",
@@ -314,6 +320,15 @@ def _choices(solutions: dict[str, Solved]) -> str:
     for label, s in solutions.items():
         reasons.setdefault(s.response.reason, label)
     return "; ".join(f"({label}): {reason}" for reason, label in reasons.items())
+
+
+def _warnings(solutions: dict[str, Solved]) -> str:
+    """What the models warn of, each once, with the first model that does."""
+    found: dict[str, str] = {}
+    for label, s in solutions.items():
+        for warning in s.model.warnings:
+            found.setdefault(warning, label)
+    return "".join(f". Warning ({label}): {warning}" for warning, label in found.items())
 
 
 def reaction_table(caption: str, reaction: Floats) -> Table:
@@ -434,19 +449,3 @@ def assumptions(scene: Scene) -> list[AssumptionRow]:
 def _parts(scene: Scene) -> list[str]:
     names = [unit.bearing.name for unit in scene.bearing_units]
     return ["shaft", *names, *(f"{name}.housing" for name in names)]
-
-
-def line(x: Any, y: Any, name: str, **more: Any) -> dict[str, Any]:
-    """One trace of a Plotly figure, numbers rounded to what a chart can show."""
-    return {
-        "type": "scatter",
-        "name": name,
-        "x": rounded(x),
-        "y": rounded(y),
-        **more,
-    }
-
-
-def rounded(values: Any, digits: int = 6) -> list[float]:
-    """Plain floats of so many significant digits: keeps results.json and pages small."""
-    return [float(f"{v:.{digits}g}") for v in np.asarray(values, dtype=float)]

@@ -10,8 +10,8 @@ def run(run: Run) -> Any:
     import numpy as np
     from fe_drivetrain.cases.main_bearing import bands, study
 
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.results import Chart, Results, Section, Table, Text, judge
+    from fe_drivetrain.charts import rounded
+    from fe_drivetrain.results import Chart, Section, Table, Text, judge
     from fe_drivetrain.stiffness import PLANES
 
     scene = study.scene_of(run, "bonded")
@@ -120,7 +120,7 @@ def run(run: Run) -> Any:
                 "type": "bar",
                 "name": plane,
                 "x": list(values),
-                "y": study.rounded([v / 1e6 for v in values.values()]),
+                "y": rounded([v / 1e6 for v in values.values()]),
             }
             for plane, values in tilt.by_plane.items()
         ],
@@ -139,10 +139,8 @@ def run(run: Run) -> Any:
         if series.complete
         else []
     )
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
         summary=[
             f"K_R of bearing and housing is {vertical:.0f} MN m/rad in the vertical and "
             f"{horizontal:.0f} MN m/rad in the horizontal plane (averaged seat).",
@@ -194,9 +192,7 @@ def run(run: Run) -> Any:
             ),
         ],
         assumptions=study.assumptions(scene),
-        times=run.times,
         figures={"tilt_stiffness": tilt.by_plane},
-        environment=environment(run.settings, seed=0),
     )
 
 

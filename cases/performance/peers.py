@@ -216,8 +216,7 @@ def results_of(
     first: dict[Variant, tuple[Outcome, str]],
 ) -> Any:
     """The page."""
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.results import Results, Section, Text
+    from fe_drivetrain.results import Section, Text
 
     verdicts = [
         verdict for key, b in benchmarks.items() for verdict in verdicts_of(b, rows[key], plan)
@@ -244,14 +243,12 @@ def results_of(
         Section(title="Tools", items=[tool_table(first, plan), *missing_tables(first)]),
         Section(title="How it was measured", items=[Text(text=text) for text in method(plan)]),
     ]
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
+        seed=None,
         summary=summary_of(benchmarks, rows, missing),
         verdicts=verdicts,
         sections=sections,
-        times=run.times,
         figures={
             key: [
                 {
@@ -267,7 +264,6 @@ def results_of(
             ]
             for key, found in rows.items()
         },
-        environment=environment(run.settings),
     )
 
 

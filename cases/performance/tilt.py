@@ -27,8 +27,9 @@ from fe_drivetrain.cases.performance.choices import (
 from fe_drivetrain.geometry import MeshSizes
 
 from fe_drivetrain import interfaces
-from fe_drivetrain.elasticity import Floats, Ints, assemble, face_weights
+from fe_drivetrain.elasticity import Floats, Ints, assemble
 from fe_drivetrain.elements import first_order, straightened
+from fe_drivetrain.facets import MEANS, face_weights
 from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.model import build_model, mesh_scene
 from fe_drivetrain.reduction import reduce
@@ -102,7 +103,7 @@ def in_element(mesh: Mesh, bearing: str, element: str) -> TiltMesh:
 
     def weighed(name: str) -> tuple[Ints, Floats]:
         nodes = np.unique(faces[name])
-        return nodes, _face_weights(points, faces[name])[nodes]
+        return nodes, face_weights(points, faces[name], len(points), MEANS)[nodes]
 
     return TiltMesh(
         points,
@@ -112,16 +113,6 @@ def in_element(mesh: Mesh, bearing: str, element: str) -> TiltMesh:
         weighed("hub"),
         weighed("seat"),
     )
-
-
-def _face_weights(points: Floats, faces: Ints) -> Floats:
-    """Integrals of the shape functions over triangles of three or six nodes; (n,) [m^2]."""
-    if faces.shape[1] == 6:
-        return face_weights(points, faces, len(points))
-    a, b, c = np.moveaxis(points[faces], 1, 0)
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
-    weights = np.bincount(faces.ravel(), np.repeat(area / 3.0, 3), minlength=len(points))
-    return np.asarray(weights, dtype=float)
 
 
 def assemble_tilt(scene: Scene, mesh: TiltMesh) -> Assembled:

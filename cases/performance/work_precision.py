@@ -38,9 +38,6 @@ def run(run: Run) -> Any:
     """Measure every choice, and say which to take."""
     from fe_drivetrain.cases.performance import studies
 
-    from fe_drivetrain.environment import environment
-    from fe_drivetrain.results import Results
-
     parts = parts_of(run)
     verdicts: list[Verdict] = []
     summary: list[str] = []
@@ -77,16 +74,13 @@ def run(run: Run) -> Any:
         figures["growth"] = [
             {"unknowns": g.unknowns, "seconds": g.total, "peak_bytes": g.peak_bytes} for g in grown
         ]
-    return Results(
-        case=CASE.name,
-        title=CASE.title,
-        source=CASE.source,
+    return CASE.results(
+        run,
+        seed=None,
         summary=summary,
         verdicts=verdicts,
         sections=sections,
-        times=run.times,
         figures=figures,
-        environment=environment(run.settings),
     )
 
 
@@ -306,6 +300,8 @@ _STEPS = ("mesh [ms]", "assembly [ms]", "set-up [ms]", "solve [ms]", "in all [ms
 
 def choice_cells(outcome: Outcome, error: float) -> list[Any]:
     """A choice, its error and its times, for a row."""
+    from fe_drivetrain.charts import rounded
+
     choice = [outcome.element, outcome.mesh, outcome.solver, outcome.unknowns]
     seconds = [*outcome.seconds.values(), outcome.total]
     return [*choice, f"{100 * error:.2g}", *rounded([1000 * t for t in seconds], 3)]
@@ -351,6 +347,7 @@ def error_chart(study: Study, quantity: int) -> Chart:
     import numpy as np
     from fe_drivetrain.cases.performance.choices import ELEMENTS
 
+    from fe_drivetrain.charts import rounded
     from fe_drivetrain.results import Chart
 
     error, seconds = study.error(quantity), study.seconds()
@@ -427,6 +424,7 @@ def split_chart(study: Study, quantity: int) -> Chart:
     """Where the time goes, along the front."""
     from fe_drivetrain.cases.performance.choices import STEPS
 
+    from fe_drivetrain.charts import rounded
     from fe_drivetrain.results import Chart
 
     error = study.error(quantity)
@@ -493,6 +491,7 @@ def tolerance_chart(study: Study) -> Chart:
     """What a looser tolerance costs in accuracy: against the direct solution of the same mesh."""
     import numpy as np
 
+    from fe_drivetrain.charts import rounded
     from fe_drivetrain.results import Chart
 
     traces = []
@@ -629,6 +628,7 @@ def growth_section(grown: Sequence[Grown], outcomes: Sequence[Outcome]) -> Secti
     from fe_drivetrain.cases.performance.choices import CURVED, STEPS
     from fe_drivetrain.cases.performance.precision import growth_exponent
 
+    from fe_drivetrain.charts import rounded
     from fe_drivetrain.results import Chart, Section, Table
 
     unknowns = [g.unknowns for g in grown]
@@ -757,11 +757,6 @@ def figures_of(study: Study) -> dict[str, Any]:
             "take": take,
         }
     return found
-
-
-def rounded(values: Any, digits: int = 4) -> list[float]:
-    """Plain floats of so many significant digits."""
-    return [float(f"{v:.{digits}g}") for v in values]
 
 
 CASE = Case(

@@ -24,9 +24,9 @@ def run(run: Run) -> Any:
     """Refine step by step, and compare with uniform meshes."""
     import numpy as np
     from fe_drivetrain.cases.verification import rigid_ended_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
 
     from fe_drivetrain.adaptivity import marked, refined_sizes
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.results import Section, Table, Text, judge
 
     shaft = rigid_ended_shafts.SHAFTS[SHAFT]

@@ -15,11 +15,12 @@ def run(run: Run) -> Any:
     """Uniform traction on the ends, then ends that are held flat and round."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import Tube, parabola_shortfall
 
     from fe_drivetrain.axisymmetric import end_stiffness
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import grid_convergence
+    from fe_drivetrain.facets import face_weights
     from fe_drivetrain.hexahedra import Grading
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import MATERIALS
@@ -61,8 +62,8 @@ def run(run: Run) -> Any:
                     solid_shafts.pinned_like(mesh, exact),
                 )
             u = solution.u[:, 0].reshape(-1, 3)
-            area = float(solid_shafts.face_weights(mesh.points, ends[1]).sum())
-            weights = solid_shafts.face_weights(mesh.points, ends[1]) / area
+            area = float(face_weights(mesh.points, ends[1], len(mesh.points)).sum())
+            weights = face_weights(mesh.points, ends[1], len(mesh.points)) / area
             stretch = float(weights @ u[:, 0])
             found.append(sigma * area / stretch)
         s = nodal_stresses(mesh.points, mesh.cells, solution.u[:, 0], steel.lame)
@@ -131,7 +132,7 @@ def run(run: Run) -> Any:
                     solid_shafts.prescribed_on(held, nodes, field),
                 )
                 k = 2 * float(pulled.energy[0]) / 1e-8
-                across = solid_shafts.face_weights(held.points, held.section_facets(0.0)).sum()
+                across = face_weights(held.points, held.section_facets(0.0), len(held.points)).sum()
                 # of the meshed area: what is left is the ends' doing
                 by_mesh.append(float(k * HELD * OUTER / (E * across)))
         # the coarsest elements are half a diameter long, the layers at the ends 0.3 of that each

@@ -113,7 +113,7 @@ def section_stresses(
     """
     near = cells[np.isin(cells, section).any(axis=1)]
     kind = element_kind(cells.shape[1])
-    s = stresses(points, near, u, lame, kind.element.doflocs[kind.order].T)
+    s = stresses(points, near, u, lame, kind.places.T)
     total, count = np.zeros((len(points), 6)), np.zeros(len(points))
     np.add.at(total, near, s)
     np.add.at(count, near, 1.0)

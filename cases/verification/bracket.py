@@ -19,10 +19,10 @@ def run(run: Run) -> Any:
     """Solve the bracket as a solid on three meshes, and as a plane problem."""
     import numpy as np
     from fe_drivetrain.cases.verification.bracket_plane import Bracket, plane_answer
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.ring_solids import band_of, node_at, plane_strain_hold
 
     from fe_drivetrain.blocks import brick
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_freedoms
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import Material

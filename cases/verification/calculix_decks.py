@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.cases.verification.line_charts import trace
 
 from fe_drivetrain.calculix import (
     ROUNDING,
@@ -24,6 +23,7 @@ from fe_drivetrain.calculix import (
     write_inp,
 )
 from fe_drivetrain.case import Run
+from fe_drivetrain.charts import trace
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.interfaces import freedoms
 from fe_drivetrain.mesh import Mesh

@@ -25,11 +25,11 @@ DIVISIONS = {4: (8, 16, 32), 8: (8, 16, 32), 10: (2, 4, 8), 20: (2, 4, 8), 27: (
 def run(run: Run) -> Any:
     """Energy of three fields with every element."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.plane_rings import plane_strain
     from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
 
     from fe_drivetrain.blocks import FACES, Block, brick
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import observed_order
     from fe_drivetrain.interfaces import held_freedoms, held_nodes
     from fe_drivetrain.loads import traction_loads

@@ -16,7 +16,6 @@ def run(run: Run) -> Any:
     """Exact tractions on both ends; then a clamped end and a rigid tip."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
         flexure_field,
@@ -26,6 +25,8 @@ def run(run: Run) -> Any:
     )
 
     from fe_drivetrain.axisymmetric import end_stiffness
+    from fe_drivetrain.charts import chart, trace
+    from fe_drivetrain.facets import face_weights
     from fe_drivetrain.hexahedra import Grading
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import MATERIALS
@@ -71,7 +72,7 @@ def run(run: Run) -> Any:
             means = []
             z = mesh.points[:, 2]
             for facets in ends:
-                w = solid_shafts.face_weights(mesh.points, facets)
+                w = face_weights(mesh.points, facets, len(mesh.points))
                 slope = -(w @ (z * u[:, 0])) / (w @ z**2)
                 means.append((w @ u[:, 2] / w.sum(), slope))
             (w0, slope0), (w1, _) = means
@@ -288,9 +289,10 @@ def _unbalanced(points: Any, F: Any, facets: Any) -> Any:
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
 
+    from fe_drivetrain.facets import face_weights
     from fe_drivetrain.interfaces import averaged_point
 
-    weights = solid_shafts.face_weights(points, facets)
+    weights = face_weights(points, facets, len(points))
     nodes = np.flatnonzero(weights != 0.0)
     point = averaged_point("root", nodes, weights[nodes], points, np.zeros(3), points.size)
     return point.motion.T @ solid_shafts.resultant(points, F)

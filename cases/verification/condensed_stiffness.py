@@ -11,13 +11,13 @@ OUTER, BORE, LENGTH = 0.7, 0.3, 2.0
 def run(run: Run) -> Any:
     """Condense bodies to the twelve motions of two end points, and look at the eigenvalues."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing.study import line
     from fe_drivetrain.cases.verification import condensed
     from fe_drivetrain.cases.verification import manufactured as m
     from fe_drivetrain.geometry import Section as ShaftSection
     from fe_drivetrain.geometry import Shaft
 
     from fe_drivetrain.blocks import brick
+    from fe_drivetrain.charts import trace
     from fe_drivetrain.elasticity import rigid_motions
     from fe_drivetrain.hexahedra import shaft_hexahedra
     from fe_drivetrain.results import Chart, Section, Table, Text, judge
@@ -133,8 +133,7 @@ def run(run: Run) -> Any:
         ]
         rows.append([label, zeros, gap, float(values[0]), float(values[6]), float(values[-1])])
         shown = np.maximum(np.abs(values) / values[-1], 1e-18)
-        trace = line(np.arange(1, 13), shown, label)
-        traces.append({**trace, "mode": "lines+markers"})
+        traces.append(trace(label, np.arange(1, 13), shown, mode="lines+markers"))
 
     torsion = m.LAME[1] * np.pi / 32.0 * (OUTER**4 - BORE**4) / LENGTH
     twist, twist_coarse = fine.by_energy[9, 9], coarse.by_energy[9, 9]

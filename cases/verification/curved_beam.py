@@ -17,7 +17,6 @@ QUICK_DIVISIONS = (3, 6, 12)
 def run(run: Run) -> Any:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.plane_rings import CurvedBar, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -29,6 +28,7 @@ def run(run: Run) -> Any:
         ring_sector,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_freedoms
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import Material

@@ -17,10 +17,10 @@ ROUND_OFF = (
 def run(run: Run) -> Any:
     """Solve solids, and the main bearing, again after a random rotation and a translation."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing.study import line
     from fe_drivetrain.cases.verification import frames, scenes
     from scipy.spatial.transform import Rotation
 
+    from fe_drivetrain.charts import trace
     from fe_drivetrain.model import build_model
     from fe_drivetrain.response import unit_load_response
     from fe_drivetrain.results import Chart, Section, Table, Text, judge
@@ -65,8 +65,7 @@ def run(run: Run) -> Any:
                 max(frames.differences(here, frames.solve_ring(nodes, Q, d * away), Q).values())
                 for d in DISTANCES
             ]
-            trace = line(DISTANCES, far, f"quarter ring, {label}")
-            traces.append({**trace, "mode": "lines+markers"})
+            traces.append(trace(f"quarter ring, {label}", DISTANCES, far, mode="lines+markers"))
 
     for kind in ("spherical",) if run.quick else scenes.KINDS:
         # Direct, since what iterations leave depends on the frame; on a mesh that suits that.
@@ -79,8 +78,8 @@ def run(run: Run) -> Any:
         judged(f"main bearing, {kind}", "turned, 10 m away", differences)
 
     round_off = np.finfo(float).eps * np.array(DISTANCES)
-    dotted = {"mode": "lines", "line": {"dash": "dot"}}
-    traces.append({**line(DISTANCES, round_off, "round-off of the coordinates, 1 m"), **dotted})
+    label = "round-off of the coordinates, 1 m"
+    traces.append(trace(label, DISTANCES, round_off, line={"dash": "dot"}))
     chart = Chart(
         caption="Largest relative difference of results, turned and taken away from the origin",
         figure={

@@ -10,7 +10,8 @@ from scipy import sparse
 
 from fe_drivetrain import interfaces
 from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import Floats, assemble, face_weights
+from fe_drivetrain.elasticity import Floats, assemble
+from fe_drivetrain.facets import MEANS, face_weights
 from fe_drivetrain.interfaces import Constraint, ReferencePoint
 from fe_drivetrain.loads import body_loads, pressure, traction_loads
 from fe_drivetrain.model import Model, joint_pairs
@@ -126,7 +127,7 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
     points = {}
     for key, face in faces.items():
         nodes = mesh.face_nodes(face)
-        weights = face_weights(mesh.points, mesh.faces[face], n)[nodes]
+        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
         position = turn @ model.points[key].position + shift
         point = interfaces.averaged_point(key, nodes, weights, mesh.points, position, n_freedoms)
         own_axes = (sparse.csr_array(twice(turn).T) @ point.motion).tocsr()

@@ -19,8 +19,8 @@ RATIOS = {
 def run(run: Run) -> Any:
     """Judge series of known order, the published set, and series without order."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import grid_convergence
     from fe_drivetrain.results import Section, Table, Text, judge
 

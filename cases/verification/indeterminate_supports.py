@@ -15,7 +15,6 @@ def run(run: Run) -> Any:
     """Several sets of supports under a hub force and a hub moment."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         Spring,
         Tube,
@@ -25,6 +24,7 @@ def run(run: Run) -> Any:
     )
 
     from fe_drivetrain.beams import torsional_spring_reaction
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.frame import Beam, Support, solve
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge

@@ -18,7 +18,6 @@ LEVELS = (1, 2, 4)
 def run(run: Run) -> Any:
     """Close the misfit between a quarter of the shaft and of the ring, free to slide axially."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, interference_pressure
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -30,6 +29,7 @@ def run(run: Run) -> Any:
     from scipy.spatial import cKDTree
 
     from fe_drivetrain.blocks import Block
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import Constraint, held_nodes
     from fe_drivetrain.materials import Material
     from fe_drivetrain.results import AssumptionRow, Measure, Section, Table, Text, judge

@@ -17,13 +17,13 @@ def run(run: Run) -> Any:
     """The solid's compliance, and what one joint makes of each load, over the split d."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
         evenly_loaded_shear,
         parabola_shortfall,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge
 

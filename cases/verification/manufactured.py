@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from fe_drivetrain.cases.main_bearing.study import line
 from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.blocks import Block, brick
-from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian, shape_functions
+from fe_drivetrain.charts import trace
+from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian
 from fe_drivetrain.loads import body_loads, traction_loads
 from fe_drivetrain.materials import MATERIALS
 from fe_drivetrain.results import Chart, Table
@@ -256,8 +256,7 @@ def relative_errors(
     lam, mu = lame
     kind = element_kind(cells.shape[1])
     X, W = get_quadrature(kind.element.refdom, degree)
-    values, gradients = shape_functions(kind.element, X)
-    values, gradients = values[:, kind.order], gradients[:, :, kind.order]
+    values, gradients = kind.shape(X)
     U = u[: 3 * len(points)].reshape(-1, 3)
     sums = np.zeros((2, 2))
     for start in range(0, len(cells), _CHUNK):
@@ -367,12 +366,12 @@ def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Char
         h = np.array(one.sizes)
         for k, (name, values) in enumerate(one.errors.items()):
             style = {"color": colour, "dash": ("solid", "dash", "dashdot")[k]}
-            trace = line(h, values, f"{one.label}, {name}: {one.order(name)[0]:.2f}")
-            data.append({**trace, "mode": "lines+markers", "line": style})
+            label = f"{one.label}, {name}: {one.order(name)[0]:.2f}"
+            data.append(trace(label, h, values, mode="lines+markers", line=style))
             theory = values[-1] * (h / h[-1]) ** one.orders[name]
             dots = {"color": colour, "dash": "dot", "width": 1}
-            trace = line(h, theory, f"order {one.orders[name]:g}")
-            data.append({**trace, "mode": "lines", "line": dots, "showlegend": False})
+            label = f"order {one.orders[name]:g}"
+            data.append(trace(label, h, theory, line=dots, showlegend=False))
     return Chart(
         caption=f"{caption}. In the legend the observed order of the two finest meshes; thin "
         "dotted lines have the order of theory",

@@ -26,10 +26,10 @@ def run(run: Run) -> Any:
 
     import numpy as np
     from fe_drivetrain.cases.verification import shaft_ends
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
 
     from fe_drivetrain.axisymmetric import end_stiffness
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import grid_convergence, richardson
     from fe_drivetrain.results import Section, Table, Text, judge
 

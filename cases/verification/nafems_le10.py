@@ -28,10 +28,10 @@ NAMES = {
 def run(run: Run) -> Any:
     """Solve the quarter plate with several elements, on ever finer meshes."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
 
     from fe_drivetrain.blocks import brick
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_freedoms
     from fe_drivetrain.loads import pressure, traction_loads
     from fe_drivetrain.materials import Material

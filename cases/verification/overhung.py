@@ -11,7 +11,6 @@ def run(run: Run) -> Any:
     """A force and a moment at the hub."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         Spring,
         Tube,
@@ -21,6 +20,7 @@ def run(run: Run) -> Any:
     )
 
     from fe_drivetrain.beams import pinned_reaction
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.frame import Beam, Support, solve
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge

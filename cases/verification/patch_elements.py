@@ -11,10 +11,10 @@ DEGREES = (1, 2, 3, 4, 5, 6)
 def run(run: Run) -> Any:
     """Six strain states on distorted blocks: displacements given all round, then tractions."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing.study import line
     from fe_drivetrain.cases.verification import distorted
     from fe_drivetrain.cases.verification.manufactured import LAME
 
+    from fe_drivetrain.charts import trace
     from fe_drivetrain.elasticity import element_kind
     from fe_drivetrain.interfaces import freedoms
     from fe_drivetrain.loads import traction_loads
@@ -121,9 +121,9 @@ def run(run: Run) -> Any:
                     for degree in DEGREES
                 ]
             own = element_kind(cells.shape[1]).degree
-            trace = line(DEGREES, np.maximum(forces, 1e-17), patch.label)
             marks = {"size": [14 if d == own else 6 for d in DEGREES]}
-            traces.append({**trace, "mode": "lines+markers", "marker": marks})
+            shown = np.maximum(forces, 1e-17)
+            traces.append(trace(patch.label, DEGREES, shown, mode="lines+markers", marker=marks))
 
     worst = max(v.computed for v in verdicts if "displacements given" in v.quantity)
     chart = Chart(

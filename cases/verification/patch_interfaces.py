@@ -32,8 +32,8 @@ SPRING = (2.0, 3.0, 5.0, 1.0, 0.7, 0.4)  # N/m along x, y, z; N m/rad about them
 def run(run: Run) -> Any:
     """Every interface under constant stress."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart
 
+    from fe_drivetrain.charts import chart
     from fe_drivetrain.results import Section, Table, Text, judge
 
     with run.step("ties"):

@@ -15,7 +15,6 @@ def run(run: Run) -> Any:
     """Two masses in closed form, by eigenvalues, and with the shaft's own inertia."""
     import numpy as np
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         chain_frequencies,
         polar_moment,
@@ -23,6 +22,7 @@ def run(run: Run) -> Any:
         two_mass_frequencies,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
 
     generator = GENERATOR * RATIO**2

@@ -18,9 +18,9 @@ def run(run: Run) -> Any:
     """The tube by finite elements, and what other descriptions of it would give."""
     import numpy as np
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import polar_moment
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
 
     length = sum(LENGTHS)

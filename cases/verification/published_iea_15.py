@@ -14,9 +14,9 @@ POLAR, HAWC2_G, SECTION_LENGTH, BODY_LENGTH = 3.9532, 7.93e10, 5.118, 6.12988012
 def run(run: Run) -> Any:
     """Closed form, finite elements, and the arithmetic behind the HAWC2 shaft."""
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import polar_moment
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.results import Section, Table, Text, judge
 
     length = sum(LENGTHS)

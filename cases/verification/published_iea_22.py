@@ -15,10 +15,10 @@ def run(run: Run) -> Any:
     """The thin tube by finite elements and by its closed forms."""
     import numpy as np
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import polar_moment
 
     from fe_drivetrain.axisymmetric import end_stiffness
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
 
     length = sum(LENGTHS)

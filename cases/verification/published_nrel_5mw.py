@@ -15,7 +15,6 @@ def run(run: Run) -> Any:
     """The shaft by finite elements beside the published stiffness."""
     import numpy as np
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         chain_frequencies,
         polar_moment,
@@ -23,6 +22,7 @@ def run(run: Run) -> Any:
         two_mass_frequencies,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
 
     length = sum(LOW_LENGTHS)

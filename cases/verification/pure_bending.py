@@ -12,7 +12,6 @@ def run(run: Run) -> Any:
     """Linear tractions on both ends, on three meshes each."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
         anticlastic_error,
@@ -21,6 +20,8 @@ def run(run: Run) -> Any:
         recovery_error,
     )
 
+    from fe_drivetrain.charts import chart, trace
+    from fe_drivetrain.facets import face_weights
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge
@@ -62,7 +63,7 @@ def run(run: Run) -> Any:
                 )
             u = found.u[:, 0].reshape(-1, 3)
             rear = mesh.section_facets(mesh.rear)
-            weights = solid_shafts.face_weights(mesh.points, rear)
+            weights = face_weights(mesh.points, rear, len(mesh.points))
             z = mesh.points[:, 2]
             slope = -(weights @ (z * u[:, 0])) / (weights @ z**2)
             moment = traction_loads(mesh.points, rear, traction).reshape(-1, 3)[:, 0] @ -z

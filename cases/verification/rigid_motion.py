@@ -13,11 +13,11 @@ DIVISIONS = (3, 6, 3)
 def run(run: Run) -> Any:
     """Move one face of a body as a rigid body: the rest must follow, and no force may be needed."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import study
     from fe_drivetrain.cases.verification import distorted, scenes
     from fe_drivetrain.cases.verification import manufactured as m
 
     from fe_drivetrain.blocks import brick
+    from fe_drivetrain.charts import trace
     from fe_drivetrain.elasticity import rigid_motions
     from fe_drivetrain.elements import renumbered
     from fe_drivetrain.interfaces import freedoms
@@ -104,8 +104,8 @@ def run(run: Run) -> Any:
             )
         worst = [float(v.max()) for v in (follows, reaction, stress)]
         rows.append([label, len(cells), 3 * len(points), *worst])
-        trace = study.line(range(6), np.maximum(stress, 1e-17), label)
-        traces.append({**trace, "x": list(MOTIONS), "mode": "lines+markers"})
+        curve = trace(label, range(6), np.maximum(stress, 1e-17), mode="lines+markers")
+        traces.append(curve | {"x": list(MOTIONS)})
 
     chart = Chart(
         caption="Largest stress by rigid motion, relative to that of a strain of 1 m over the "

@@ -25,7 +25,6 @@ _LONGEST = 0.25  # rad: stress turns with the angle, and its recovery is linear 
 def run(run: Run) -> Any:
     """Squeeze rings of several thicknesses, by finite elements and by four formulas."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.plane_rings import (
         Lame,
         even_amplitudes,
@@ -41,6 +40,7 @@ def run(run: Run) -> Any:
         sector_symmetry,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import Material
     from fe_drivetrain.results import Measure, Section, Table, Text, judge

@@ -15,7 +15,6 @@ LEVELS = (1, 2, 4)
 def run(run: Run) -> Any:
     """Solve one half wave of the ring for each order."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.plane_rings import harmonics, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -26,6 +25,7 @@ def run(run: Run) -> Any:
         sector_symmetry,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import Material
     from fe_drivetrain.results import AssumptionRow, Measure, Section, Table, Text, judge

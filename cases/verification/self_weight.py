@@ -14,13 +14,13 @@ def run(run: Run) -> Any:
     """Gravity on the solid, its root held by its mean motion."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
         evenly_loaded_shear,
         parabola_shortfall,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.frame import Beam, Support, solve
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge

@@ -18,7 +18,6 @@ QUICK_LEVELS = ((1, 1), (2, 1), (3, 2))
 def run(run: Run) -> Any:
     """Move, turn and press the joint on several meshes."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.spherical_shells import (
         AXIS,
         JOINTS,
@@ -34,6 +33,7 @@ def run(run: Run) -> Any:
         turning_stiffness,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import grid_convergence
     from fe_drivetrain.materials import Material
     from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge

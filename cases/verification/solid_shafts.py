@@ -19,9 +19,9 @@ from numpy.typing import ArrayLike
 from scipy import sparse
 
 from fe_drivetrain.convergence import DOUBTFUL, grid_convergence
-from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian, shape_functions
+from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.facets import facet_points, local_facets
+from fe_drivetrain.facets import face_weights, local_facets
 from fe_drivetrain.hexahedra import SAME_LENGTH, UNGRADED, Grading, shaft_hexahedra
 from fe_drivetrain.interfaces import averaged_point
 from fe_drivetrain.loads import body_loads
@@ -151,14 +151,6 @@ def mesh_band(refinements: Sequence[int], values: ArrayLike, order: float = 4.0)
     return DOUBTFUL * float(abs(v[1] - v[0]) / ((h[0] / h[1]) ** order - 1))
 
 
-def face_weights(points: Floats, facets: Ints) -> Floats:
-    """(n,) integrals of the shape functions over the facets [m^2]."""
-    at = facet_points(points, facets)
-    weights = np.zeros(len(points))
-    np.add.at(weights, facets, at.areas @ at.values)
-    return weights
-
-
 def meshed_moment(mesh: Solid) -> float:
     """Integral of y^2 + z^2 over the mesh [m^5], with the quadrature of its stiffness."""
     kind = element_kind(27)
@@ -166,7 +158,7 @@ def meshed_moment(mesh: Solid) -> float:
     from skfem.quadrature import get_quadrature
 
     X, _ = get_quadrature(kind.element.refdom, kind.degree)
-    values = shape_functions(kind.element, X)[0][:, kind.order]
+    values, _ = kind.shape(X)
     determinant = jacobian(mesh.points, mesh.cells, gradients)[1]
     at = np.einsum("qn,eni->eqi", values, mesh.points[mesh.cells])
     return float((determinant * weights * (at[..., 1] ** 2 + at[..., 2] ** 2)).sum())
@@ -292,7 +284,7 @@ def sectional_compliance(
 
 
 def _weighted(mesh: Solid, x: float) -> tuple[Ints, Floats]:
-    weights = face_weights(mesh.points, mesh.section_facets(x))
+    weights = face_weights(mesh.points, mesh.section_facets(x), len(mesh.points))
     nodes = np.flatnonzero(weights != 0.0)
     return nodes, weights[nodes]
 

@@ -15,9 +15,9 @@ BENDING = ("hub.Fy", "hub.Fz", "hub.My", "hub.Mz")
 def run(run: Run) -> Any:
     """Solve the three forms, and a bonded bearing beside them."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import trace
 
     from fe_drivetrain.beams import pinned_model
+    from fe_drivetrain.charts import trace
     from fe_drivetrain.model import LOADS, build_model, mesh_scene
     from fe_drivetrain.response import unit_load_response
     from fe_drivetrain.results import Chart, Section, Table, Text, judge

@@ -31,8 +31,8 @@ def run(run: Run) -> Any:
     """Estimate the errors of bars and shafts, and compare."""
     import numpy as np
     from fe_drivetrain.cases.verification import exact_blocks, rigid_ended_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.error_estimate import recovery_estimate
     from fe_drivetrain.results import Section, Table, Text, judge
 

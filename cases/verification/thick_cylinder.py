@@ -25,7 +25,6 @@ NAMES = {
 def run(run: Run) -> Any:
     """Solve an eighth of the ring on ever finer meshes."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -36,6 +35,7 @@ def run(run: Run) -> Any:
         sector_symmetry,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import observed_order
     from fe_drivetrain.interfaces import held_nodes
     from fe_drivetrain.loads import pressure, traction_loads

@@ -18,8 +18,8 @@ QUICK_UNCUT = (1, 2, 3)
 def run(run: Run) -> Any:
     """Stiffness of the tied bar beside that of the whole one."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import grid_convergence
     from fe_drivetrain.results import Section, Table, Text, judge
 

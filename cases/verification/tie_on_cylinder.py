@@ -23,8 +23,8 @@ QUICK_PATCH = (8, 16)
 def run(run: Run) -> Any:
     """Torsion and radial stiffness of tied rings, and stress through the curved tie."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import grid_convergence
     from fe_drivetrain.results import Section, Table, Text, judge
 

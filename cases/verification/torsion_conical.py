@@ -14,12 +14,12 @@ def run(run: Run) -> Any:
     """A cone between flat ends: Michell's displacements prescribed there, then rigid ends."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import michell_torque, parabola_shortfall
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge
     from fe_drivetrain.statics import solve_solid

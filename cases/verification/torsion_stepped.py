@@ -16,12 +16,12 @@ def run(run: Run) -> Any:
     """Two bounds from the meridian, the solid in three dimensions, and the series sum."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import parabola_shortfall, polar_moment
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.hexahedra import Grading
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge

@@ -14,7 +14,6 @@ def run(run: Run) -> Any:
     """Turn the ends by an exact rotation, on three meshes each."""
     import numpy as np
     from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
         parabola_shortfall,
@@ -22,6 +21,7 @@ def run(run: Run) -> Any:
         recovery_error,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.convergence import grid_convergence
     from fe_drivetrain.materials import MATERIALS
     from fe_drivetrain.results import Section, Table, Text, judge

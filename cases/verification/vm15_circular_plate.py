@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.cases.verification.units import INCH, PSI
 
-INCH, PSI = 0.0254, 6894.757293168  # m, Pa
+from fe_drivetrain.case import Case, Run
 
 RADIUS, THICKNESS = 40.0 * INCH, 1.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -25,10 +25,10 @@ LAYERS = 2
 def run(run: Run) -> Any:
     """Solve both plates as solids, their edges carried by the shear that plate theory has there."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.quarter_disc import quarter_disc
     from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_freedoms
     from fe_drivetrain.loads import pressure, traction_loads
     from fe_drivetrain.materials import Material

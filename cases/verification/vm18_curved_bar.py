@@ -2,10 +2,9 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 
-INCH, PSI = 0.0254, 6894.757293168  # m, Pa
-POUND = PSI * INCH**2  # N
+from fe_drivetrain.case import Case, Run
 
 RADIUS, DIAMETER = 100.0 * INCH, 2.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -29,9 +28,9 @@ def run(run: Run) -> Any:
         section_motion,
         section_stresses,
     )
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.ring_solids import band_of, facets_where, node_at
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import fixed
     from fe_drivetrain.loads import traction_loads
     from fe_drivetrain.materials import Material

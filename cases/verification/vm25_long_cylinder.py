@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.cases.verification.units import INCH, PSI
 
-INCH, PSI = 0.0254, 6894.757293168  # m, Pa
+from fe_drivetrain.case import Case, Run
 
 INNER, INSIDE, OUTER = 4.0 * INCH, 5.43 * INCH, 8.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -34,7 +34,6 @@ LEVELS = ((4, 1, 3), (8, 2, 6), (16, 4, 12))
 def run(run: Run) -> Any:
     """Solve a sector of the cylinder, and of a thin disc."""
     import numpy as np
-    from fe_drivetrain.cases.verification.line_charts import chart, trace
     from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, Rotating, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -45,6 +44,7 @@ def run(run: Run) -> Any:
         sector_symmetry,
     )
 
+    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_nodes
     from fe_drivetrain.loads import body_loads, pressure, traction_loads
     from fe_drivetrain.materials import Material
