@@ -13,12 +13,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import block_diag
 from scipy.sparse.linalg import splu
 
+from fe_drivetrain import fronts
 from fe_drivetrain.elasticity import Floats, Ints
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.geometry import Shaft
@@ -31,10 +34,6 @@ COMPONENTS = ("xx", "rr", "tt", "xr", "xt", "rt")
 
 Traction = Callable[[Floats, Floats], Floats]
 """Of (k, 2) positions [m] and outward normals, each x and radius: (k, 3) amplitudes [Pa]."""
-
-
-Motion = tuple[Ints, int, tuple[float | Floats | None, ...]]
-"""Nodes, the number of their rigid motion, and its components, None where it has none."""
 
 
 @dataclass(frozen=True)
@@ -268,32 +267,139 @@ def end_stiffness(
     return stiffness_between_ends(mesh, material)
 
 
-def stiffness_between_ends(mesh: Meridian, material: Material) -> Floats:
-    """The same of a meridian, whose ends are its nodes of least and of greatest x."""
+def seat_stiffness(
+    shaft: Shaft,
+    material: Material,
+    seats: Sequence[tuple[float, float]],
+    size: float | None = None,
+    *,
+    order: int | None = None,
+    layers: int = 4,
+    per_fillet: int = 6,
+) -> Floats:
+    """Stiffness of a shaft between any of its seats, each rigid.
+
+    Parameters
+    ----------
+    shaft, size, order, layers, per_fillet
+        As for `fe_drivetrain.meridian.meridian`. Elements are graded towards the seats' ends, but
+        not on a shaft with fillets: give that a smaller size.
+    material
+        Of the shaft.
+    seats
+        x of both ends of each [m]: the outer surface of one section between them; twice the x of
+        the shaft's front or rear for that end face.
+
+    Returns
+    -------
+    (6 s, 6 s) from displacements [m] and rotations [rad] along and about x, y, z at the middle of
+    each seat, on the axis, to the forces [N] and moments [N m] there.
+
+    Raises
+    ------
+    InputError
+        A seat is not on the shaft, reaches over a step, or meets another.
+    """
+    radii = [_seat(shaft, seat) for seat in seats]
+    wide = [(seat, radius) for seat, radius in zip(seats, radii, strict=True) if _wide(seat)]
+    mesh = meridian(
+        shaft.cut(x for seat, _ in wide for x in seat),
+        size,
+        order=order,
+        layers=layers,
+        per_fillet=per_fillet,
+        corners=[end for seat, radius in wide for end in zip(seat, radius, strict=True)],
+    )
     x, r = mesh.nodes.T
-    faces = [np.flatnonzero(np.abs(x - end) < SAME_LENGTH) for end in (x.min(), x.max())]
-    products = _products(mesh)
-    K = np.zeros((12, 12))
+    nodes = []
+    for seat, radius in zip(seats, radii, strict=True):
+        low, high = seat[0] - SAME_LENGTH, seat[1] + SAME_LENGTH
+        here = (x > low) & (x < high)
+        if _wide(seat):
+            here &= np.abs(r - np.interp(x, seat, radius)) < SAME_LENGTH
+        nodes.append((np.flatnonzero(here), 0.5 * (seat[0] + seat[1])))
+    return stiffness_between_seats(mesh, material, nodes)
 
-    stretched, twisted = _stretched(products, material.lame), _twisted(products, material.lame)
-    axial: list[Motion] = [(face, k, (1.0, None)) for k, face in enumerate(faces)]
-    K[np.ix_([0, 6], [0, 6])] = turn(0) * _between(mesh, stretched, 0, 2, axial)
-    twist: list[Motion] = [(face, k, (r[face],)) for k, face in enumerate(faces)]
-    K[np.ix_([3, 9], [3, 9])] = turn(0) * _between(mesh, twisted, 0, 1, twist)
 
-    one = _element_matrices(products, material.lame, 1)
+def stiffness_between_ends(mesh: Meridian, material: Material) -> Floats:
+    """`end_stiffness` of a meridian, whose ends are its nodes of least and of greatest x."""
+    x = mesh.nodes[:, 0]
+    ends = [(np.flatnonzero(np.abs(x - end) < SAME_LENGTH), end) for end in (x.min(), x.max())]
+    return stiffness_between_seats(mesh, material, ends)
+
+
+def stiffness_between_seats(
+    mesh: Meridian, material: Material, seats: Sequence[tuple[Ints, float]]
+) -> Floats:
+    """Stiffness between rigid sets of nodes of a meridian.
+
+    Parameters
+    ----------
+    mesh, material
+        The meridian and what it is of.
+    seats
+        Nodes (k,) of each, and the x of its reference point on the axis [m].
+
+    Returns
+    -------
+    (6 s, 6 s) as of `seat_stiffness`.
+
+    Raises
+    ------
+    InputError
+        Two seats share a node.
+    """
+    met = np.concatenate([nodes for nodes, _ in seats])
+    if len(np.unique(met)) < len(met):
+        raise InputError("two seats meet: leave some of the shaft's surface between them")
+    grams = _grams(mesh)
+    order = fronts.dissection(mesh.nodes[mesh.cells].mean(axis=1))
+
+    def between(n: int, components: slice, which: slice) -> Floats:
+        motions = [
+            (nodes, _motions(mesh.nodes[nodes] - [x, 0.0], n)[:, components, which])
+            for nodes, x in seats
+        ]
+        law = _law(material.lame, n)[components, components]
+        return turn(n) * _between(mesh, grams, law, order, n, motions, components)
+
+    K = np.zeros((6 * len(seats), 6 * len(seats)))
+    first: Ints = 6 * np.arange(len(seats))
+    K[np.ix_(first, first)] = between(0, slice(0, 2), slice(0, 1))
+    K[np.ix_(first + 3, first + 3)] = between(0, slice(2, 3), slice(1, 2))
+    flexural = between(1, slice(0, 3), slice(0, 2))
     # along y, and about z
-    bent: list[Motion] = [
-        motion
-        for k, face in enumerate(faces)
-        for motion in ((face, 2 * k, (None, 1.0, -1.0)), (face, 2 * k + 1, (-r[face], None, None)))
-    ]
-    flexural = turn(1) * _between(mesh, one, 1, 3, bent)
-    K[np.ix_([1, 5, 7, 11], [1, 5, 7, 11])] = flexural
+    rows: Ints = np.add.outer(first, np.array([1, 5])).ravel()
+    K[np.ix_(rows, rows)] = flexural
     # along z, and about y: a rotation about y lifts z's side the other way
-    signs = np.array([1.0, -1.0, 1.0, -1.0])
-    K[np.ix_([2, 4, 8, 10], [2, 4, 8, 10])] = flexural * np.outer(signs, signs)
+    rows = np.add.outer(first, np.array([2, 4])).ravel()
+    signs = np.tile([1.0, -1.0], len(seats))
+    K[np.ix_(rows, rows)] = flexural * np.outer(signs, signs)
     return K
+
+
+def _wide(seat: tuple[float, float]) -> bool:
+    return seat[1] - seat[0] > SAME_LENGTH
+
+
+def _seat(shaft: Shaft, seat: tuple[float, float]) -> tuple[float, float]:
+    """Outer radius of a seat at its ends [m]; of an end face what stands there twice."""
+    low, high = seat
+    if not _wide(seat):
+        if min(abs(low - shaft.front), abs(low - shaft.rear)) > SAME_LENGTH or high < low:
+            raise InputError(
+                f"seat from x = {low:g} m to {high:g} m has no width: give its two ends in "
+                f"ascending order, or twice {shaft.front:g} m or {shaft.rear:g} m for an end face"
+            )
+        return 0.0, 0.0
+    for piece, (start, end) in zip(shaft.pieces, pairwise(shaft.stations), strict=True):
+        if start - SAME_LENGTH <= low and high <= end + SAME_LENGTH:
+            widths = np.interp(seat, [start, end], [piece.outer_diameter, piece.end_diameter])
+            return float(widths[0] / 2), float(widths[1] / 2)
+    raise InputError(
+        f"seat from x = {low:g} m to {high:g} m is not on one section of the shaft, which ends or "
+        f"steps at x = {', '.join(f'{x:g}' for x in shaft.stations)} m: move or shorten it"
+    )
 
 
 def turn(n: int) -> float:
@@ -307,35 +413,45 @@ def element_matrices(mesh: Meridian, lame: tuple[float, float], n: int) -> Float
     Freedoms u_x of all its m nodes, then u_r, then u_t. On the axis entries are large that cancel
     once its conditions hold.
     """
-    return turn(n) * _element_matrices(_products(mesh), lame, n)
+    return np.asarray(turn(n) * fronts.element_matrices(_grams(mesh), _law(lame, n)))
 
 
 def rigid_motions(mesh: Meridian, n: int) -> Floats:
     """(3 n_nodes, k) motions without strain: n = 0 along x, about x; n = 1 along y, about z."""
-    x, r = mesh.nodes.T
+    return _motions(mesh.nodes, n).reshape(3 * len(mesh.nodes), -1)
+
+
+def _motions(nodes: Floats, n: int) -> Floats:
+    """(n_nodes, 3, k) of `rigid_motions`."""
+    x, r = nodes.T
     one, zero = np.ones_like(x), np.zeros_like(x)
     motions = {
         0: [(one, zero, zero), (zero, zero, r)],
         1: [(zero, one, -one), (-r, x, -x)],
     }.get(n, [])
-    return np.array([np.column_stack(m).ravel() for m in motions]).reshape(-1, 3 * len(x)).T
+    return np.array(motions).reshape(len(motions), 3, len(x)).transpose(2, 1, 0)
 
 
-def _products(mesh: Meridian) -> tuple[Floats, ...]:
-    """Integrals (ne, m, m) of products of a = N,x, b = N,r and c = N / r: aa, bb, cc, ab, ac, bc.
+def _grams(mesh: Meridian) -> Floats:
+    """Integrals (ne, 3 m, 3 m) of products of a = N,x, b = N,r and c = N / r, per radian.
 
     They are all that any harmonic and any material needs.
     """
     element = mesh.element
     nodes = mesh.nodes[mesh.cells]
-    shared = np.broadcast_to(element.gradients, (len(nodes), *element.gradients.shape))
-    physical, determinant = _physical(nodes, shared)
+    m = nodes.shape[1]
+    J = (element.gradients.reshape(-1, m) @ nodes).reshape(len(nodes), -1, 2, 2)
+    (xs, rs), (xt, rt) = np.moveaxis(J, (2, 3), (0, 1))
+    determinant = xs * rt - rs * xt
     r = nodes[..., 1] @ element.values.T
-    weight = np.sqrt(determinant * element.weights * r)[..., None]
-    a, b = physical[:, :, 0] * weight, physical[:, :, 1] * weight
-    c = element.values * (weight / r[..., None])
-    at, bt, ct = (v.transpose(0, 2, 1) for v in (a, b, c))
-    return at @ a, bt @ b, ct @ c, at @ b, at @ c, bt @ c
+    weight = np.sqrt(determinant * element.weights * r)
+    along, across = element.gradients[:, 0], element.gradients[:, 1]
+    share = (weight / determinant)[..., None]
+    G = np.empty((*weight.shape, 3 * m))
+    G[..., :m] = (share * rt[..., None]) * along - (share * rs[..., None]) * across
+    G[..., m : 2 * m] = (share * xs[..., None]) * across - (share * xt[..., None]) * along
+    G[..., 2 * m :] = (weight / r)[..., None] * element.values
+    return np.asarray(G.transpose(0, 2, 1) @ G)
 
 
 def _physical(nodes: Floats, gradients: Floats) -> tuple[Floats, Floats]:
@@ -347,45 +463,22 @@ def _physical(nodes: Floats, gradients: Floats) -> tuple[Floats, Floats]:
     return (inverse / determinant[..., None, None]) @ gradients, determinant
 
 
-def _element_matrices(products: tuple[Floats, ...], lame: tuple[float, float], n: int) -> Floats:
-    """From strains a u_x, b u_r, c (u_r + n u_t), b u_x + a u_r, a u_t - n c u_x and
-    (b - c) u_t - n c u_r, per radian."""
-    aa, _, cc, _, ac, bc = products
+def _law(lame: tuple[float, float], n: int) -> Floats:
+    """(3, 3, 3, 3): of components p and q and derivatives s and t, per product of the latter.
+
+    From strains a u_x, b u_r, c (u_r + n u_t), b u_x + a u_r, a u_t - n c u_x and
+    (b - c) u_t - n c u_r.
+    """
+    strains = np.zeros((6, 3, 3))
+    strains[0, 0, 0] = strains[1, 1, 1] = strains[2, 1, 2] = 1.0
+    strains[3, 0, 1] = strains[3, 1, 0] = strains[4, 2, 0] = strains[5, 2, 1] = 1.0
+    strains[2, 2, 2] = n
+    strains[4, 0, 2] = strains[5, 1, 2] = -n
+    strains[5, 2, 2] = -1.0
     lam, mu = lame
-    m = aa.shape[1]
-    K = np.zeros((len(aa), 3 * m, 3 * m))
-    x, r, t = (slice(k * m, (k + 1) * m) for k in range(3))
-    K[:, : 2 * m, : 2 * m] = _stretched(products, lame)
-    K[:, t, t] = _twisted(products, lame)
-    if n:
-        ca, cb = (p.transpose(0, 2, 1) for p in (ac, bc))
-        K[:, x, x] += (mu * n * n) * cc
-        K[:, r, r] += (mu * n * n) * cc
-        K[:, t, t] += ((lam + 2.0 * mu) * n * n) * cc
-        K[:, x, t] = n * (lam * ac - mu * ca)
-        K[:, r, t] = n * ((lam + 2.0 * mu) * cc + lam * bc - mu * (cb - cc))
-        K[:, t, x] = K[:, x, t].transpose(0, 2, 1)
-        K[:, t, r] = K[:, r, t].transpose(0, 2, 1)
-    return K
-
-
-def _stretched(products: tuple[Floats, ...], lame: tuple[float, float]) -> Floats:
-    """(ne, 2 m, 2 m) of u_x and u_r in harmonic 0, per radian."""
-    aa, bb, cc, ab, ac, bc = products
-    lam, mu = lame
-    m = aa.shape[1]
-    K = np.empty((len(aa), 2 * m, 2 * m))
-    K[:, :m, :m] = (lam + 2.0 * mu) * aa + mu * bb
-    K[:, :m, m:] = lam * (ab + ac) + mu * ab.transpose(0, 2, 1)
-    K[:, m:, :m] = K[:, :m, m:].transpose(0, 2, 1)
-    K[:, m:, m:] = (lam + 2.0 * mu) * (bb + cc) + lam * (bc + bc.transpose(0, 2, 1)) + mu * aa
-    return K
-
-
-def _twisted(products: tuple[Floats, ...], lame: tuple[float, float]) -> Floats:
-    """(ne, m, m) of u_t in harmonic 0, per radian."""
-    aa, bb, cc, _, _, bc = products
-    return np.asarray(lame[1] * (aa + bb - bc - bc.transpose(0, 2, 1) + cc))
+    elastic = np.diag([2.0 * mu] * 3 + [mu] * 3)
+    elastic[:3, :3] += lam
+    return np.asarray(np.einsum("aps,ab,bqt->pqst", strains, elastic, strains))
 
 
 def _on_axis(mesh: Meridian, n: int) -> tuple[Ints, Floats]:
@@ -444,55 +537,54 @@ def _factor(K: sparse.csc_array) -> Any:
 
 def _between(
     mesh: Meridian,
-    matrices: Floats,
+    grams: Floats,
+    law: Floats,
+    order: Ints,
     n: int,
-    components: int,
-    motions: Sequence[Motion],
+    seats: Sequence[tuple[Ints, Floats]],
+    components: slice,
 ) -> Floats:
-    """Stiffness between motions of rigid faces; nodes inside elements are eliminated in each."""
-    m, edge = mesh.cells.shape[1], mesh.element.corners * mesh.element.order
-    matrices = _without_inside(matrices, components, m, edge)
-    cells = mesh.cells[:, :edge]
-    total = len(mesh.nodes)
-    first = 3 - components if components == 1 else 0
-    target, share = np.full((components, total), -1), np.ones((components, total))
-    free = np.zeros((components, total), dtype=bool)
-    free[:, cells] = True
-    axis = np.flatnonzero(mesh.nodes[:, 1] == 0.0)
+    """Stiffness per radian between rigid motions, all else eliminated.
+
+    Parameters
+    ----------
+    mesh, n
+        The meridian and the harmonic.
+    grams, law, order
+        As for `fronts.condensed`; the law of the components only.
+    seats
+        Nodes (k,) and their motions (k, components, m).
+    components
+        Those that the harmonic has.
+    """
+    # what is kept goes first
+    kept, held, rows = 0, [], []
+    for nodes, motions in seats:
+        follows = motions != 0.0
+        moved = follows.any(axis=2)
+        if (follows.sum(axis=2) <= 1).all():  # each freedom follows one motion
+            number, share, row = follows.argmax(axis=2), motions.sum(axis=2), np.eye(len(motions.T))
+        else:
+            number, share, row = (
+                moved.cumsum().reshape(moved.shape) - 1,
+                1.0 * moved,
+                motions[moved],
+            )
+        held.append((nodes, np.where(moved, kept + number, -1), share))
+        rows.append(row)
+        kept += len(row)
     _, coefficient = _on_axis(mesh, n)
-    allowed = coefficient.reshape(-1, 3).T[first : first + components]
-    free[allowed != 1.0] = False
-    for nodes, _, _ in motions:
-        free[:, nodes] = False
-    count = int(free.sum())
-    target[free] = np.arange(count)
+    shares = coefficient.reshape(-1, 3)[:, components].copy()
+    ids = np.where(shares != 0.0, kept + np.arange(shares.size).reshape(shares.shape), -1)
     if n == 1:
-        target[2, axis], share[2, axis] = target[1, axis], -1.0
-    share[target < 0] = 0.0
-    for nodes, number, amounts in motions:
-        for component, amount in enumerate(amounts):
-            if amount is not None:
-                target[component, nodes], share[component, nodes] = count + number, amount
-    local = (np.arange(components)[:, None] * total + cells[:, None]).reshape(len(cells), -1)
-    size = count + 1 + max(number for _, number, _ in motions)
-    K = _assembled(matrices, target.ravel()[local], share.ravel()[local], size)
-    coupling = K[:count, count:].toarray()
-    inside = _factor(K[:count, :count]).solve(coupling)
-    condensed = K[count:, count:].toarray() - coupling.T @ inside
-    return np.asarray(0.5 * (condensed + condensed.T))
-
-
-def _without_inside(matrices: Floats, components: int, m: int, edge: int) -> Floats:
-    """Element matrices (ne, k, k) without the nodes inside, from the edge-th of m on."""
-    if edge == m:
-        return matrices
-    ne = len(matrices)
-    blocks = matrices.reshape(ne, components, m, components, m)
-    outer, inner = components * edge, components * (m - edge)
-    inside = blocks[:, :, edge:, :, edge:].reshape(ne, inner, inner)
-    between = blocks[:, :, edge:, :, :edge].reshape(ne, inner, outer)
-    kept = blocks[:, :, :edge, :, :edge].reshape(ne, outer, outer)
-    return kept - between.transpose(0, 2, 1) @ np.linalg.solve(inside, between)
+        axis = np.flatnonzero(mesh.nodes[:, 1] == 0.0)
+        ids[axis, 2] = ids[axis, 1]
+    for nodes, number, share in held:
+        ids[nodes], shares[nodes] = number, share
+    ids = ids[mesh.cells].transpose(0, 2, 1).reshape(len(mesh.cells), -1)
+    shares = shares[mesh.cells].transpose(0, 2, 1).reshape(len(mesh.cells), -1)
+    T = block_diag(*rows)
+    return np.asarray(T.T @ fronts.condensed(grams, law, ids, shares, kept, order) @ T)
 
 
 def _by_side(mesh: Meridian, sides: Ints) -> list[tuple[int, Ints]]:

@@ -21,7 +21,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_drivetrain.files import atomic_path
+from fe_drivetrain.files import atomic_path, remove_abandoned
 
 VARIABLE = "FE_DRIVETRAIN_CACHE"
 """Environment variable: a folder to keep things in, or "off"."""
@@ -34,7 +34,8 @@ Kind = Literal["hub-loads", "meshes"]
 
 _OFF = ("off", "0", "no", "false")
 # Only names of our own making are ever deleted: the user may have named any folder.
-_OURS = re.compile(r"(\.[0-9a-f]{32,64}\.npz\.[0-9a-f]+\.tmp|[0-9a-f]{32,64}\.npz)")
+_OURS = re.compile(r"[0-9a-f]{32,64}\.npz")
+_UNFINISHED = r"\.[0-9a-f]{32,64}\.npz\.[0-9a-f]{32}\.tmp"
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,7 @@ class Cache:
             return
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
+            remove_abandoned(file.parent, _UNFINISHED)
             with atomic_path(file) as temporary, temporary.open("wb") as stream:
                 np.savez(stream, **dict(arrays))  # type: ignore[arg-type]
             self._drop_oldest()

@@ -13,6 +13,7 @@ import os
 import re
 import shutil
 import subprocess
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -24,11 +25,12 @@ from scipy import sparse
 from fe_drivetrain import kernels
 from fe_drivetrain.elasticity import Floats, Ints, element_kind, sparsity
 from fe_drivetrain.errors import InputError, MissingToolError
-from fe_drivetrain.export import FRAME
 from fe_drivetrain.files import atomic_path
+from fe_drivetrain.incompressible import warn_of_averaging
 from fe_drivetrain.interfaces import Constraint, ReferencePoint, eliminate
 from fe_drivetrain.model import LOADS, Model
 from fe_drivetrain.response import resultant
+from fe_drivetrain.superelement import FRAME
 
 INSTALL = "apt-get install calculix-ccx"
 
@@ -163,7 +165,20 @@ def write_inp(
     InputError
         There is no such folder or load, names of bearings are the same once written in capitals,
         or the gearbox's springs are not along the axes.
+
+    Warns
+    -----
+    UserWarning
+        A part is nearly incompressible: CalculiX's elements lock there, this program's do not.
     """
+    for part in model.mesh.part_names:
+        if warn_of_averaging(part, model.scene.material_of(part).lame):
+            warnings.warn(
+                f"{part} is nearly incompressible (nu = "
+                f"{model.scene.material_of(part).poisson_ratio:g}): the deck's C3D10 elements lock "
+                "there, and CalculiX will find it too stiff",
+                stacklevel=2,
+            )
     target = Path(path)
     if not target.parent.is_dir():
         raise InputError(f"deck {target}: there is no folder {target.parent}: create it first")

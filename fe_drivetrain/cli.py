@@ -6,13 +6,13 @@ stopped with Ctrl-C. Nothing heavy is imported before a case is looked for, so h
 
 from __future__ import annotations
 
-import errno
 import os
 import re
 import signal
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.files import sentence_about
 from fe_drivetrain.parallel import hold_threads
 
 if TYPE_CHECKING:
@@ -31,20 +32,10 @@ if TYPE_CHECKING:
     from fe_drivetrain.case import Case
     from fe_drivetrain.parallel import Report
     from fe_drivetrain.results import Results, Verdict
+    from fe_drivetrain.scene import Scene
     from fe_drivetrain.suite import Problem
 
 PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
-
-# what a user can mend about a folder or a disk; any other OSError is ours
-_USERS_ERRORS = {
-    errno.EACCES,
-    errno.EDQUOT,
-    errno.ENAMETOOLONG,
-    errno.ENOSPC,
-    errno.ENOTDIR,
-    errno.EPERM,
-    errno.EROFS,
-}
 
 _SUMMARY_SENTENCES = 3
 _EXPORTS = (".inp", ".vtu", ".msh")
@@ -84,6 +75,7 @@ _QuickOption = Annotated[
 def main() -> None:
     """Entry point of ``fe-drivetrain``."""
     _forgive_narrow_encodings()
+    warnings.showwarning = _show_warning
     _app(prog_name="fe-drivetrain")
 
 
@@ -100,7 +92,13 @@ def main_of_case(case: Case) -> None:
         raise typer.Exit(_run(lambda: [case], out, set_ or (), quick))
 
     _forgive_narrow_encodings()
+    warnings.showwarning = _show_warning
     app()
+
+
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """What the library warns of, as one sentence and without its line of code."""
+    _write(sys.stderr, f"fe-drivetrain: warning: {message}\n")
 
 
 def _show_version(wanted: bool) -> None:
@@ -193,22 +191,62 @@ def _run_named(
 @_app.command("export")
 def _export(
     scene: Annotated[
-        str,
+        str | None,
         typer.Argument(
             metavar="SCENE",
             help="A scene file, or a scene of the library by its name: main_bearing_bonded, "
             "main_bearing_spherical.",
         ),
-    ],
+    ] = None,
     out: Annotated[
-        Path,
+        Path | None,
         typer.Option(
             "--out",
             metavar="FILE",
-            help="What its ending says: .inp is the whole model for CalculiX, with interfaces, "
-            "supports and unit loads; .vtu (ParaView) and .msh (gmsh) are the mesh.",
+            help="The file. Without --format its ending says what it is: .inp is the whole model "
+            "for CalculiX, with interfaces, supports and unit loads; .vtu (ParaView) and .msh "
+            "(gmsh) are the mesh.",
         ),
-    ],
+    ] = None,
+    format_: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="Condense to points, and write stiffness and mass in this format: see --list.",
+        ),
+    ] = None,
+    what: Annotated[
+        str | None,
+        typer.Option(
+            "--what",
+            metavar="NAME",
+            help="Which part is condensed: shaft, the free shaft, where left out; drivetrain, the "
+            "shaft on its supports; or a bearing by its name, with its housing on the ground.",
+        ),
+    ] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            "--at",
+            metavar="POINTS",
+            help="Points that are kept, as in hub,gearbox: hub, gearbox and bearings by name. Left "
+            "out, all points of the shaft, and the hub of the drivetrain.",
+        ),
+    ] = None,
+    level: Annotated[
+        str | None,
+        typer.Option(
+            "--level",
+            metavar="LEVEL",
+            help="1 beam, 2 meridian, 3 solid shaft, 4 assembly of solids (drivetrain at its hub, "
+            "and bearings); auto, where left out, is 2, and 4 of a bearing.",
+        ),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace a file that is there.")
+    ] = False,
+    formats: Annotated[bool, typer.Option("--list", help="List the formats, and exit.")] = False,
     set_: Annotated[
         list[str] | None,
         typer.Option(
@@ -219,42 +257,240 @@ def _export(
         ),
     ] = None,
 ) -> None:
-    """Write a scene for other programs: a model for CalculiX, or its mesh."""
+    """Write a scene for other programs: condensed matrices, a model for CalculiX, or its mesh."""
 
     def work() -> int:
+        if formats:
+            _write(sys.stdout, _formats_table())
+            return PASSED
         hold_threads()
         changes = parse_settings(set_ or ())
-        if out.suffix not in _EXPORTS:
-            raise InputError(f"--out {out} ends in {out.suffix!r}: use {', '.join(_EXPORTS)}")
+        if scene is None or out is None:
+            missing = "SCENE" if scene is None else "--out FILE"
+            raise InputError(f"Missing {missing}: name it, or give --list for the formats")
+        condensing = {"--what": what, "--at": at, "--level": level}
+        if format_ is None:
+            given = [option for option, value in condensing.items() if value is not None]
+            if given:
+                raise InputError(f"{given[0]} needs --format: name one that --list shows")
+            if out.suffix not in _EXPORTS:
+                raise InputError(
+                    f"--out {out} ends in {out.suffix!r}: use {', '.join(_EXPORTS)}, or give "
+                    "--format"
+                )
+        else:
+            from fe_drivetrain.export import FORMATS
+
+            if format_ not in FORMATS:
+                raise InputError(f"--format {format_!r} is unknown: use {', '.join(FORMATS)}")
         if out.is_dir() or not out.resolve().parent.is_dir():
             raise InputError(f"--out {out} must be a file in a folder that exists: name one")
-        from fe_drivetrain.scene import change_scene, library_scene, read_scene
-
-        is_file = Path(scene).suffix != "" or Path(scene).exists()
-        found = read_scene(scene, changes) if is_file else library_scene(scene)
-        if not is_file:
-            found = change_scene(found, changes)
-        from fe_drivetrain.calculix import write_inp
-        from fe_drivetrain.mesh import write
-        from fe_drivetrain.model import build_model, mesh_scene
-
-        with _progress() as report:
-            report("mesh")
-            mesh = mesh_scene(found)
-            if out.suffix == ".inp":
-                report("model")
-                model = build_model(found, mesh)
-                report("write")
-                write_inp(model, out)
-            else:
-                report("write")
-                write(mesh, out)
-            report("")
-        _write(sys.stdout, f"{out}: {len(mesh.cells):,} elements, {len(mesh.points):,} nodes\n")
+        found = _scene_of(scene, changes)
+        if out.exists() and not overwrite:
+            raise InputError(f"--out {out} exists: name another file, or add --overwrite")
+        if format_ is None:
+            said = _export_model(found, out)
+        else:
+            said = _export_condensed(found, out, format_, what, at, level, overwrite)
+        _write(sys.stdout, f"{out}: {said}\n")
         return PASSED
 
     with _stopped_by_terminate():
         raise typer.Exit(_guarded(work, lambda: "a file of that name is as it was"))
+
+
+def _export_model(scene: Scene, out: Path) -> str:
+    """Write the whole model, or its mesh; what that is."""
+    from fe_drivetrain.calculix import write_inp
+    from fe_drivetrain.mesh import write
+    from fe_drivetrain.model import build_model, mesh_scene
+
+    with _progress() as report:
+        report("mesh")
+        mesh = mesh_scene(scene)
+        if out.suffix == ".inp":
+            report("model")
+            model = build_model(scene, mesh)
+            for warning in model.warnings:
+                report(f"warning: {warning}")
+            report("write")
+            write_inp(model, out)
+        else:
+            report("write")
+            write(mesh, out)
+        report("")
+    return f"{len(mesh.cells):,} elements, {len(mesh.points):,} nodes"
+
+
+def _export_condensed(
+    scene: Scene,
+    out: Path,
+    format: str,
+    what: str | None,
+    at: str | None,
+    level: str | None,
+    overwrite: bool,
+) -> str:
+    """Write the condensed part of a scene; what that is."""
+    from fe_drivetrain import export
+    from fe_drivetrain.scene_export import AUTO, SHAFT, superelement_of
+
+    points = None if at is None else [name.strip() for name in at.split(",") if name.strip()]
+    wanted = AUTO if level is None else level
+    with _progress() as report:
+        report("condense")
+        element = superelement_of(
+            scene, what or SHAFT, points, int(wanted) if re.fullmatch("[0-9]", wanted) else wanted
+        )
+        report("write")
+        export.write(out, element, format, overwrite)
+        report("")
+    supports = "on its supports" if element.supported else "free"
+    return (
+        f"{element.name} at {', '.join(element.points)}, {supports}, level {element.origin.level}, "
+        f"{'with' if element.mass is not None else 'without'} mass"
+    )
+
+
+def _formats_table() -> str:
+    """The formats: name, usual ending, what it is for, and the extra that it needs."""
+    from fe_drivetrain.export import FORMATS
+
+    head = ("format", "ending", "read by", "needs")
+    rows = [head] + [
+        (f.name, f.suffix, f.reader, f"fe-drivetrain[{f.extra}]" if f.extra else "")
+        for f in FORMATS.values()
+    ]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    return "".join(f"{line}\n" for line in lines)
+
+
+_SceneArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENE",
+        help="A scene file, or a scene of the library by its name, as in main_bearing_bonded.",
+    ),
+]
+
+
+@_app.command("advise")
+def _advise(
+    scene: _SceneArgument,
+    quantity: Annotated[
+        str,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="What has to be right: a reaction, as main_bearing.My or gearbox.Fz, or "
+            "hub.stiffness.uz to hub.stiffness.rz.",
+        ),
+    ],
+    tolerance: Annotated[
+        str, typer.Option("--tolerance", metavar="SHARE", help="Allowed error, as in 1% or 0.01.")
+    ] = "1%",
+    load: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--load",
+            metavar="NAME=VALUE",
+            help="The load: hub.Fx to hub.Mz [N, N m], gravity.x to gravity.z [m/s^2], "
+            "gearbox.weight [N]; may be given several times. Left out, all six hub loads count.",
+        ),
+    ] = None,
+    to_the_top: Annotated[
+        bool,
+        typer.Option("--to-the-top", help="Run every level, whether or not a cheaper is enough."),
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Result folder; reports/advise/SCENE where left out."
+        ),
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scene."),
+    ] = None,
+) -> None:
+    """Find the cheapest model of a scene that is good enough for a quantity.
+
+    Runs the ladder from cheap to dear as far as needed: statics, beam, meridian in harmonics,
+    assembly of solids; and ranks the details of the scene by what leaving each out does.
+
+    The exit status is 0 where a level is known to be within the tolerance, 1 where none is.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = _scene_of(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.advice_page import advised
+        from fe_drivetrain.adviser import Quantity
+        from fe_drivetrain.case import Case, run_case
+
+        name = Path(scene).stem
+        asked = Quantity(quantity, _parse_load(load or ()))
+        asked.check(found)
+        share = _parse_share(tolerance)
+        case = Case(
+            name=f"advise/{name}",
+            title=f"{found.title}: which level {quantity} needs",
+            source=f"the scene {name}",
+            run=lambda run: advised(case, run, found, asked, share, to_the_top),
+        )
+        folder = Path("reports", "advise", name) if out is None else out
+        with _progress() as report:
+            results = run_case(case, folder.resolve(), report=report)
+        _write(sys.stdout, _outcome(results, folder / "report.html"))
+        return PASSED if results.passed else FAILED
+
+    with _stopped_by_terminate():
+        raise typer.Exit(_guarded(work))
+
+
+def _scene_of(scene: str, changes: Mapping[str, Any]) -> Scene:
+    """The scene in a file, or the library's of that name, with the user's changes."""
+    from fe_drivetrain.scene import change_scene, library_scene, read_scene
+
+    if Path(scene).suffix != "" or Path(scene).exists():
+        return read_scene(scene, changes)
+    return change_scene(library_scene(scene), changes)
+
+
+def _parse_load(texts: Iterable[str]) -> Any:
+    """(10,) factors of `model.LOADS`; None where there are none."""
+    import numpy as np
+
+    from fe_drivetrain.model import LOADS
+
+    factors = np.zeros(len(LOADS))
+    values = parse_settings(texts)
+    for name, value in values.items():
+        if name not in LOADS:
+            raise InputError(f"--load {name!r} is unknown: use one of {', '.join(LOADS)}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e15:
+            raise InputError(f"--load {name}: {value!r} must be a number, as in --load hub.Fz=-3e5")
+        factors[LOADS.index(name)] = value
+    if values and not factors.any():
+        raise InputError("--load: all loads are zero: give at least one that is not")
+    return factors if values else None
+
+
+def _parse_share(text: str) -> float:
+    number, percent, rest = text.partition("%")
+    try:
+        share = float(number) / (100.0 if percent else 1.0)
+    except ValueError:
+        share = 0.0
+    if rest or not 0.0 < share < 1.0:
+        raise InputError(
+            f"--tolerance {text!r} must be a share between 0 and 100 %: write it as in 1% or 0.01"
+        )
+    return share
 
 
 def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
@@ -269,52 +505,33 @@ def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
     """
     import yaml
 
-    loader = _loader()
+    from fe_drivetrain.plain_yaml import PlainLoader, shown
+
     settings = {}
     for text in texts:
         key, equals, value = text.partition("=")
         key = key.strip()
         if not equals or not key:
             raise InputError(
-                f"--set {text!r} must be KEY=VALUE: write it as in --set gearbox.weight=4e5"
+                f"--set {shown(text)} must be KEY=VALUE: write it as in --set gearbox.weight=4e5"
             )
         try:
             # To YAML an asterisk begins an alias; in a file pattern it is a letter.
             is_pattern = value.lstrip().startswith("*")
-            parsed = value if is_pattern else yaml.load(value, Loader=loader)
+            parsed = value if is_pattern else yaml.load(value, Loader=PlainLoader)
             plain = _is_plain(parsed)
         except (yaml.YAMLError, ValueError, RecursionError) as error:
             reason = " ".join(str(getattr(error, "problem", None) or error).split())
             raise InputError(
-                f"--set {key}: value {value!r} is no YAML ({reason}): put text in quotes"
+                f"--set {key}: value {shown(value)} is no plain YAML ({reason}): put text in quotes"
             ) from error
         if not plain:
             raise InputError(
-                f"--set {key}: value {value!r} must be a number, a word or a list of them: set "
-                "the keys below it one by one, as in --set shaft.material=steel"
+                f"--set {key}: value {shown(value)} must be a number, a word or a list of them: "
+                "set the keys below it one by one, as in --set shaft.material=steel"
             )
         settings[key] = parsed
     return settings
-
-
-def _loader() -> Any:
-    """PyYAML's safe loader with the numbers of YAML 1.2."""
-    import yaml
-
-    class Loader(yaml.SafeLoader):
-        pass
-
-    numbers = {f"tag:yaml.org,2002:{kind}" for kind in ("float", "int", "timestamp")}
-    Loader.yaml_implicit_resolvers = {
-        first: [(tag, pattern) for tag, pattern in resolvers if tag not in numbers]
-        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
-    }
-    whole = re.compile(r"[-+]?(0|[1-9][0-9]*)$")
-    real = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$")
-    first = list("-+.0123456789")
-    Loader.add_implicit_resolver("tag:yaml.org,2002:int", whole, first)
-    Loader.add_implicit_resolver("tag:yaml.org,2002:float", real, first)
-    return Loader
 
 
 def _is_plain(value: object) -> bool:
@@ -421,7 +638,7 @@ def _guarded(work: Callable[[], int], kept: Callable[[], str] = lambda: _KEPT) -
     except KeyboardInterrupt:
         message, status = f"stopped; {kept()}", STOPPED
     except OSError as error:
-        sentence = _sentence(error)
+        sentence = sentence_about(error)
         if sentence is None:
             raise
         message, status = sentence, MISTAKE
@@ -432,19 +649,6 @@ def _guarded(work: Callable[[], int], kept: Callable[[], str] = lambda: _KEPT) -
         message, status = f"cannot write: {error}: give another folder with --out", MISTAKE
     _write(sys.stderr, f"fe-drivetrain: {message}\n")
     return status
-
-
-def _sentence(error: OSError) -> str | None:
-    """What to tell the user, where the user can mend it."""
-    if "cannot open shared object file" in str(error):
-        return (
-            f"a system library is missing ({error}): install it, on Debian and Ubuntu with the "
-            "packages libglu1-mesa, libxcursor1, libxft2, libxinerama1 and libxrender1"
-        )
-    if error.errno in _USERS_ERRORS:
-        where = f" {error.filename}" if error.filename else ""
-        return f"cannot write{where}: {error.strerror}: give a writable folder with --out"
-    return None
 
 
 def _outcome(results: Results, page: Path) -> str:

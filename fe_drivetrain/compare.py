@@ -23,7 +23,7 @@ from fe_drivetrain.errors import InputError
 Array = NDArray[np.float64]
 
 # A signal that varies by less than this share of its largest value is constant but for rounding.
-_CONSTANT = 1e-12
+CONSTANT = 1e-12
 
 
 def resultant(fy: ArrayLike, fz: ArrayLike) -> Array:
@@ -56,7 +56,7 @@ def relative_scatter(reference: ArrayLike, model: ArrayLike) -> Array:
     deviation (ddof = 1).
     """
     r, m = _pair(reference, model)
-    return _ratio(_difference(r, m).std(axis=-1, ddof=1), _rms(r))
+    return ratio(_difference(r, m).std(axis=-1, ddof=1), _rms(r))
 
 
 def relative_error(reference: ArrayLike, model: ArrayLike) -> Array:
@@ -66,7 +66,16 @@ def relative_error(reference: ArrayLike, model: ArrayLike) -> Array:
     no harm. NaN for a reference that is zero throughout.
     """
     r, m = _pair(reference, model)
-    return _ratio(_mean_absolute(_difference(r, m)), _mean_absolute(r))
+    return ratio(_mean_absolute(_difference(r, m)), _mean_absolute(r))
+
+
+def median_error(reference: ArrayLike, model: ArrayLike) -> Array:
+    """Median of the absolute difference, in the unit of the data, (..., n) -> (...).
+
+    The robust neighbour of `rmse`: whatever up to half of the samples do, it stays within the
+    differences of the others (Huber 1981, Robust Statistics, section 1.4).
+    """
+    return np.asarray(np.median(np.abs(_difference(*_pair(reference, model))), axis=-1))
 
 
 def mean_percentage_error(
@@ -77,7 +86,9 @@ def mean_percentage_error(
     The "mean percentage error" of Stirling 2023, section 3.2, there over resultant magnitudes.
     Samples near a zero of the reference would rule the mean, so those with |reference| at or below
     `exclude_below` times its rms are left out (`excluded_share` tells how many; 0 leaves out
-    exact zeros only).
+    exact zeros only). Of a reference that passes through zero it still says more about
+    `exclude_below` than about the model: 1 / |r| has no mean there, and that of what is left grows
+    with the logarithm of 1 / `exclude_below`. Read `relative_error` beside it.
 
     Returns
     -------
@@ -93,7 +104,7 @@ def mean_percentage_error(
     kept = _kept(r, exclude_below)
     share = np.zeros(r.shape)
     np.divide(np.abs(_difference(r, m)), np.abs(r), out=share, where=kept)
-    return 100.0 * _ratio(share.sum(axis=-1), kept.sum(axis=-1))
+    return 100.0 * ratio(share.sum(axis=-1), kept.sum(axis=-1))
 
 
 def excluded_share(reference: ArrayLike, exclude_below: float = 1e-3) -> Array:
@@ -112,7 +123,7 @@ def correlation(reference: ArrayLike, model: ArrayLike) -> Array:
     r, m = _pair(reference, model)
     a, b = _centred(r), _centred(m)
     product = np.einsum("...i,...i->...", a, b)
-    return np.clip(_ratio(product / r.shape[-1], _rms(a) * _rms(b)), -1.0, 1.0)
+    return np.clip(ratio(product / r.shape[-1], _rms(a) * _rms(b)), -1.0, 1.0)
 
 
 def model_uncertainty(reference: ArrayLike, model: ArrayLike) -> tuple[Array, Array]:
@@ -140,8 +151,8 @@ def model_uncertainty(reference: ArrayLike, model: ArrayLike) -> tuple[Array, Ar
     residual = r - slope_size[..., None] * unit
     scatter = _rms(residual) * np.sqrt(n / (n - 1))
     # Left of a model that is orthogonal to the reference is only rounding.
-    correlated = np.where(np.abs(slope_size) > _CONSTANT * _rms(r), np.abs(slope_size), 0.0)
-    return _ratio(slope_size, size), np.where(size > 0.0, _ratio(scatter, correlated), np.nan)
+    correlated = np.where(np.abs(slope_size) > CONSTANT * _rms(r), np.abs(slope_size), 0.0)
+    return ratio(slope_size, size), np.where(size > 0.0, ratio(scatter, correlated), np.nan)
 
 
 @dataclass(frozen=True, eq=False)
@@ -392,7 +403,7 @@ def _centred(values: Array) -> Array:
     """Values less their mean; exactly zero where only rounding is left."""
     centred = values - values.mean(axis=-1, keepdims=True)
     largest = np.abs(values).max(axis=-1)
-    constant = np.abs(centred).max(axis=-1) <= _CONSTANT * largest
+    constant = np.abs(centred).max(axis=-1) <= CONSTANT * largest
     centred[constant] = 0.0
     return np.asarray(centred)
 
@@ -406,7 +417,7 @@ def _kept(reference: Array, exclude_below: float) -> NDArray[np.bool_]:
     return np.asarray(np.abs(reference) > exclude_below * _rms(reference)[..., None])
 
 
-def _ratio(numerator: Array, denominator: Array) -> Array:
+def ratio(numerator: Array, denominator: Array) -> Array:
     """Quotient, NaN where the denominator is zero."""
     safe = np.where(denominator == 0.0, 1.0, denominator)
     return np.asarray(np.where(denominator == 0.0, np.nan, numerator / safe))

@@ -16,7 +16,9 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain import direct, kernels
-from fe_drivetrain.reduction import System
+from fe_drivetrain.elasticity import element_kind, jacobian
+from fe_drivetrain.facets import local_facets
+from fe_drivetrain.reduction import Elements, System
 
 
 class Direct(NamedTuple):
@@ -50,6 +52,25 @@ class Multigrid(NamedTuple):
 
 
 MULTIGRID = Multigrid(0.09, 4.5e-8, 4.8e-9, 5.4e-10, 6.0)
+
+
+class Schwarz(NamedTuple):
+    """Cost of patches with a spectral coarse space: seconds at once, per unknown; iterations, which
+    the threshold of the coarse space bounds; per entry that an iteration reads, at once and for
+    each right-hand side; bytes per unknown, and entries of the factors per unknown, twice."""
+
+    start: float
+    per_unknown: float
+    iterations: float
+    once: float
+    each: float
+    bytes: float
+    entries: float
+
+
+SCHWARZ = Schwarz(0.3, 6e-5, 40.0, 7e-10, 5e-10, 1600.0, 300.0)
+
+_THIN = 4.0  # iterations
 
 
 @dataclass(frozen=True)
@@ -95,21 +116,58 @@ def predict(system: System, n_rhs: int) -> list[Cost]:
             seconds = d.start + d.per_entry * nnz + d.per_operation * work
             costs.append((method, seconds + held * (d.solve + d.each * n_rhs), held))
     m = MULTIGRID
-    seconds = m.start + nnz * (m.per_entry + iterations(system.K) * (m.once + m.each * n_rhs))
+    expected = iterations(system)
+    seconds = m.start + nnz * (m.per_entry + expected * (m.once + m.each * n_rhs))
     costs.append(("multigrid", seconds, m.bytes * nnz))
+    if system.elements is not None:
+        s = SCHWARZ
+        read = 3 * nnz + s.entries * n
+        seconds = s.start + s.per_unknown * n + s.iterations * read * (s.once + s.each * n_rhs)
+        costs.append(("schwarz", seconds, s.bytes * n))
     found = [Cost(m, s, b, b < memory) for m, s, b in costs]
     return sorted(found, key=lambda cost: (not cost.fits, cost.seconds))
 
 
-def iterations(K: sparse.bsr_array) -> float:
-    """Iterations of multigrid to be expected, from how unlike its elements are.
+def iterations(system: System) -> float:
+    """Iterations of multigrid to be expected, from how unlike its elements are, and how thin it is.
 
     Sixteen to 25 were seen on shafts, whose diagonal blocks differ by four, and 41 to 47 on
-    assemblies of small and large elements of several parts, whose blocks differ by 11 to 17.
+    assemblies of small and large elements of several parts, whose blocks differ by 11 to 17. Thin
+    tubes and slender shafts: see `thinness`.
     """
-    size = np.asarray(K.diagonal()).reshape(-1, 3).sum(axis=1)
+    size = np.asarray(system.K.diagonal()).reshape(-1, 3).sum(axis=1)
     low, high = np.quantile(size[size > 0.0], (0.01, 0.99))
-    return max(15.0, 18.0 * math.log(high / low) - 5.0)
+    thin = 0.0 if system.elements is None else _THIN * thinness(system.elements)
+    return max(15.0, 18.0 * math.log(high / low) - 5.0, thin)
+
+
+def thinness(elements: Elements) -> float:
+    """Length of an element over the wall, times the root of half the solid's extent over the wall.
+
+    Multigrid took three to five times as many iterations on tubes of a wall of 1/5 to 1/20 of the
+    radius and on shafts of 5 to 100 diameters, ``cases/stability``: soft motions of a wall or a
+    rod are bending, and of that aggregates that move as rigid bodies know less, the longer the
+    elements are. The wall is twice the volume over the surface: half the diameter of a solid shaft.
+    """
+    kind = element_kind(elements.cells.shape[1])
+    corners = elements.cells[:, : kind.n_corners]
+    gradients, weights = element_kind(kind.n_corners).table(2)
+    volume = np.abs(jacobian(elements.points, corners, gradients)[1]) @ weights
+    local = local_facets(kind.n_corners)
+    facets = corners[:, local].reshape(-1, local.shape[1])
+    key = np.sort(facets, axis=1)
+    order = np.lexsort(key.T)
+    same = (np.diff(key[order], axis=0) == 0).all(axis=1)
+    alone = ~(np.append(same, False) | np.append(False, same))
+    outer = elements.points[facets[order[alone]]]
+    diagonal = outer[:, 2] - outer[:, 0]
+    # of a triangle half the product of two sides, of a quadrilateral that of its diagonals
+    beside = outer[:, 1] - outer[:, 0] if outer.shape[1] == 3 else outer[:, 3] - outer[:, 1]
+    area = 0.5 * np.linalg.norm(np.cross(diagonal, beside), axis=1)
+    wall = 2.0 * volume.sum() / area.sum()
+    longest = float(np.median(np.ptp(elements.points[corners], axis=1).max(axis=1)))
+    extent = float(np.linalg.norm(np.ptp(elements.points[corners.ravel()], axis=0)))
+    return float(longest / wall * math.sqrt(extent / (2.0 * wall)))
 
 
 def width(K: sparse.bsr_array) -> float:

@@ -5,8 +5,17 @@ class InputError(Exception):
     """A user's mistake: bad scene, bad file, bad option.
 
     The message is one sentence that names the object, the value, the allowed range and the mend.
-    The command line prints it without a traceback and exits with status 2.
+    The command line prints it without a traceback and exits with status 2. Whatever it quotes, it
+    is one line of characters that can be printed.
     """
+
+    def __init__(self, message: str) -> None:
+        line = " ".join(message.split())
+        super().__init__(
+            "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line)
+            if not line.isprintable()
+            else line
+        )
 
 
 class MissingToolError(InputError):

@@ -32,6 +32,8 @@ from fe_drivetrain.sections import Array, Section, element_integrals, transport
 _SAME_STATION = 1e-9
 # A rigid-body motion held by less than this share of a unit support is free.
 _FREE = 1e-9
+# A spring this many times softer than the shaft leaves no digit of what it does.
+_SOFT = 1e12
 _MOTION_GROUPS = (
     ((0,), "move along x"),
     ((3,), "turn about x"),
@@ -560,6 +562,15 @@ def _solve_saddle(
     matrix[:n, n:] = -held
     matrix[n:, :n] = held.T
     if np.linalg.cond(matrix) > 1e14:
+        # scale is what the shaft gives where the support stands, along the support's direction
+        soft = float(
+            np.max(np.diag(compliance) / np.where(scale > 0.0, scale, np.inf), initial=0.0)
+        )
+        if soft > _SOFT:
+            raise InputError(
+                f"a spring of the supports is {soft:.1g} times softer than the shaft, and cannot "
+                "be told from none: take it away, or make it stiffer."
+            )
         names = ", ".join(f"'{support.name}'" for support in beam.supports)
         raise InputError(
             f"supports {names} are rigid and so is the shaft between them, and their shares "

@@ -18,17 +18,22 @@ OpenFAST frames and signs, checked against the ElastoDyn sources and on a real o
 from __future__ import annotations
 
 import csv
+import math
 import os
 import re
+import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fe_drivetrain.compare import CONSTANT
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.files import atomic_path
+from fe_drivetrain.plain_yaml import shown
 
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
@@ -44,6 +49,9 @@ STEP_TOLERANCE = 0.25
 """Largest departure of one time step from the median step, as a fraction of it.  Time columns are
 often printed with three decimals (a step of 0.00625 s shows as 0.006 and 0.007, 17 % apart); one
 missing sample is a departure of 100 %."""
+
+SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e9
+"""Time steps [s] beyond these are a slip of the pen or of the unit."""
 
 Attribute = float | int | str
 Floats = NDArray[np.float64]
@@ -117,18 +125,18 @@ def read_hub_loads(path: str | os.PathLike[str]) -> LoadHistory:
     Raises
     ------
     InputError
-        If the file is missing, of another kind, or unsound.
+        If the file is missing, of another kind, or unsound, or if its loads never vary.
     """
     file = Path(path)
     suffix = file.suffix.lower()
-    if suffix in (".out", ".outb"):
-        return read_openfast(file)
-    if suffix == ".csv":
-        return read_csv(file)
-    raise InputError(
-        f"hub loads '{file}': the suffix '{file.suffix}' is not one of .out, .outb (OpenFAST) and "
-        ".csv; convert the file or rename it"
-    )
+    if suffix not in (".out", ".outb", ".csv"):
+        raise InputError(
+            f"hub loads '{file}': the suffix '{file.suffix}' is not one of .out, .outb (OpenFAST) "
+            "and .csv; convert the file or rename it"
+        )
+    history = read_csv(file) if suffix == ".csv" else read_openfast(file)
+    _require_variation(f"hub loads '{file}'", history.loads)
+    return history
 
 
 # --- OpenFAST ------------------------------------------------------------------------------------
@@ -301,11 +309,19 @@ def _openfast_channels(file: Path) -> dict[str, _Channel]:
             # would make it ask for any amount of memory.
             with file.open("rb") as stream:
                 identifier = int.from_bytes(stream.read(2), "little")
-            if identifier not in (1, 2, 3, 4):
-                raise ValueError(f"format identifier {identifier}, not 1 to 4")
+                if identifier not in (1, 2, 3, 4):
+                    raise ValueError(f"format identifier {identifier}, not 1 to 4")
+                stream.seek(4 if identifier == 4 else 2)  # 4 states the length of names before
+                channels, samples = struct.unpack("<2i", stream.read(8))
+            least = channels * samples * (8 if identifier == 3 else 2)
+            if channels < 1 or samples < 1 or least > file.stat().st_size:
+                raise ValueError(f"it states {channels} channels of {samples} samples")
             data, info, _ = load_binary_output(str(file))
         else:
             data, info = load_ascii_output(str(file))
+            with file.open("rb") as stream:
+                if any(re.search(rb"[_\x80-\xff]", line) for line in islice(stream, 8, None)):
+                    raise ValueError("a cell is not a number")
     except Exception as error:  # the reader raises bare Exception, struct.error, ValueError, ...
         where = _first_bad_cell(file) or f"it cannot be read as OpenFAST output ({error})"
         raise InputError(f"hub loads '{file}': {where}; run OpenFAST again") from error
@@ -318,13 +334,13 @@ def _openfast_channels(file: Path) -> dict[str, _Channel]:
             f"hub loads '{file}': {len(names)} channel names, {len(units)} units and data of shape "
             f"{data.shape} disagree; run OpenFAST again"
         )
-    channels: dict[str, _Channel] = {}
+    by_name: dict[str, _Channel] = {}
     for name, unit, values in zip(names, units, data.T, strict=True):
         # OutList takes a leading -, _, m or M to reverse a channel's sign.
         reversed_name = re.fullmatch(r"[-_m]((?:LSS|Rot|Azimuth).*)", name, re.IGNORECASE)
         key = (reversed_name[1] if reversed_name else name).lower()
-        channels.setdefault(key, _Channel(name, unit, -values if reversed_name else values))
-    return channels
+        by_name.setdefault(key, _Channel(name, unit, -values if reversed_name else values))
+    return by_name
 
 
 def _first_bad_cell(file: Path, header_lines: int = 8, name_line: int = 6) -> str | None:
@@ -344,9 +360,9 @@ def _first_bad_cell(file: Path, header_lines: int = 8, name_line: int = 6) -> st
             return f"line {number} has {len(cells)} values for {len(names)} channels"
         for name, cell in zip(names, cells, strict=True):
             try:
-                float(cell)
+                _number(cell)
             except ValueError:
-                return f"line {number}, channel {name}: '{cell}' is not a number"
+                return f"line {number}, channel {name}: {shown(cell)} is not a number"
     return None
 
 
@@ -385,22 +401,32 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
         elif line.strip():
             rows.append(number)
             kept.append(line)
-    cells = list(csv.reader(kept))
+    try:
+        cells = list(csv.reader(kept))
+    except csv.Error as error:
+        raise InputError(f"hub loads '{file}': {error}; correct the table") from error
     if not cells:
         raise InputError(f"hub loads '{file}': empty; begin with the header '{_CSV_EXAMPLE}'")
     header, rows, body = cells[0], rows[1:], cells[1:]
-
     places = _csv_places(file, header)
+    for number, row in zip(rows, body, strict=False):
+        # more cells than columns: decimal commas would shift every number into another column
+        if any(cell.strip() for cell in row[len(header) :]):
+            raise InputError(
+                f"hub loads '{file}': line {number} has {len(row)} values for {len(header)} "
+                "columns; write decimals with a point, and one value for each column"
+            )
     channels: dict[str, _Channel] = {}
     for name, (place, unit) in places.items():
         values = np.empty(len(body))
         for i, row in enumerate(body):
             text = row[place].strip() if place < len(row) else ""
             try:
-                values[i] = float(text)
+                values[i] = _number(text)
             except ValueError as error:
                 raise InputError(
-                    f"hub loads '{file}': line {rows[i]}, column {name}: '{text}' is not a number; "
+                    f"hub loads '{file}': line {rows[i]}, column {name}: {shown(text)} is not a "
+                    "number; "
                     "correct it or remove the line and all after it"
                 ) from error
         channels[name] = _Channel(name, unit, values)
@@ -463,11 +489,22 @@ def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]
     return places
 
 
+def _number(text: str) -> float:
+    """The number that a cell holds; ValueError where it holds none.
+
+    Python takes 1_0 for ten, and digits of any script: in a table these are slips.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError(text)
+    return float(text)
+
+
 def _number_or_text(text: str) -> Attribute:
     for kind in (int, float):
         try:
-            return kind(text)
-        except ValueError:
+            number = kind(text)
+            return number if math.isfinite(number) else text
+        except (ValueError, OverflowError):
             continue
     return text
 
@@ -488,7 +525,8 @@ def _in_si(source: str, channel: _Channel, units: Mapping[str, float]) -> Floats
             f"hub loads '{source}': channel {channel.name} has the unit '{channel.unit}', not one "
             f"of {', '.join(units)}; correct the unit or the channel"
         )
-    return channel.values * units[unit]
+    with np.errstate(over="ignore"):  # an infinity is refused with its place
+        return np.asarray(channel.values * units[unit])
 
 
 def _require_sound(
@@ -530,14 +568,20 @@ def _require_sound(
                 f"{source}: {name} is {values[huge[0]]:.3g} N or N m at {at(huge[0])}; a load must "
                 f"be at most {LARGEST_LOAD:.0e}, so check the unit in the column's heading"
             )
-    steps = np.diff(time)
+    with np.errstate(over="ignore"):
+        steps = np.diff(time)
+        median = float(np.median(steps))
     back = np.flatnonzero(steps <= 0.0)
     if back.size:
         raise InputError(
             f"{source}: time does not increase after {at(back[0])}, the next is "
             f"{time[back[0] + 1]:g} s; sort the samples and remove repeated ones"
         )
-    median = float(np.median(steps))
+    if not SHORTEST_STEP <= median <= LONGEST_STEP:
+        raise InputError(
+            f"{source}: the time step is {median:g} s but must be from {SHORTEST_STEP:g} to "
+            f"{LONGEST_STEP:g} s: check the unit of time"
+        )
     uneven = np.flatnonzero(np.abs(steps - median) > STEP_TOLERANCE * median)
     if uneven.size:
         i = uneven[0]
@@ -545,6 +589,16 @@ def _require_sound(
             f"{source}: the time step after {at(i)} is {steps[i]:g} s where the others are "
             f"{median:g} s (allowed: within {STEP_TOLERANCE:.0%}); samples are missing or the step "
             "changes, so resample to one step or cut the history there"
+        )
+
+
+def _require_variation(source: str, loads: Floats) -> None:
+    """Raise InputError where all samples are one load but for rounding, and that is not zero."""
+    largest = np.abs(loads).max(axis=0)
+    if largest.any() and (np.ptp(loads, axis=0) <= CONSTANT * largest).all():
+        raise InputError(
+            f"{source}: all {len(loads)} samples are the same load, so that nothing can be said "
+            "about how two models vary with it; give a history whose loads vary"
         )
 
 

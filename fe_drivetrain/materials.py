@@ -2,7 +2,13 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from fe_drivetrain.plain_yaml import no_truth_value
+
+HIGHEST_POISSON_RATIO = 0.499999
+"""Nearer to 1/2 lambda swamps mu, and stiffnesses lose digits without a word
+(``cases/stability/volumetric_locking.py``); and here already they are those of 1/2."""
 
 
 class Material(BaseModel):
@@ -10,10 +16,12 @@ class Material(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    _truth = field_validator("*", mode="before")(no_truth_value)
+
     youngs_modulus: Annotated[
         float, Field(ge=1e6, le=1e13, description="E [Pa], as in 2.1e11 for steel")
     ]
-    poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5, description="nu [-]")]
+    poisson_ratio: Annotated[float, Field(gt=-1, le=HIGHEST_POISSON_RATIO, description="nu [-]")]
     density: Annotated[float, Field(ge=0, le=1e5, description="rho [kg/m^3]")]
 
     @property

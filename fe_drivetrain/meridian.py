@@ -8,7 +8,7 @@ arc.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -116,6 +116,7 @@ def meridian(
     order: int | None = None,
     layers: int = 4,
     per_fillet: int = 6,
+    corners: Sequence[Place] = (),
 ) -> Meridian:
     """Mesh the meridian of a shaft.
 
@@ -133,6 +134,9 @@ def meridian(
         outline and at the corners of its ends.
     per_fillet
         Elements along each fillet.
+    corners
+        x and radius [m] of more places on the outline, at corners of the sections, towards which
+        elements are graded: ends of a seat. On a shaft with fillets they are not.
 
     Raises
     ------
@@ -159,12 +163,14 @@ def meridian(
         nodes, cells, places = meridian_triangles(shaft, size, order, per_fillet, corner)
         return _checked(Meridian(_on_axis(nodes), cells, _element(3, order, places.tobytes())))
     nodes, quads = shaft_quadrilaterals(shaft, size)
-    corners = quads[:, ::2, ::2]
-    cells = corners[:, [0, 1, 1, 0], [0, 0, 1, 1]]
+    ends = quads[:, ::2, ::2]
+    cells = ends[:, [0, 1, 1, 0], [0, 0, 1, 1]]
     used, local = np.unique(cells, return_inverse=True)
     nodes, cells = nodes[used], local.reshape(-1, 4)
     if layers:
-        nodes, cells = _graded(nodes, cells, _sharp_corners(shaft), layers)
+        sharp = [(x, r) for x, r in _sharp_corners(shaft).tolist()]
+        more = [c for c in corners if all(math.dist(c, s) > SAME_LENGTH for s in sharp)]
+        nodes, cells = _graded(nodes, cells, np.array(sharp + more), layers)
     return _raised(_on_axis(nodes), cells, order)
 
 
@@ -257,8 +263,10 @@ def _raised(nodes: Floats, quads: Ints, order: int) -> Meridian:
 
 def _checked(mesh: Meridian) -> Meridian:
     """The mesh, none of whose elements is inside out."""
-    J = np.einsum("qkm,emi->eqik", mesh.element.gradients, mesh.nodes[mesh.cells])
-    if (J[..., 0, 0] * J[..., 1, 1] <= J[..., 0, 1] * J[..., 1, 0]).any():
+    gradients = mesh.element.gradients
+    J = gradients.reshape(-1, gradients.shape[2]) @ mesh.nodes[mesh.cells]
+    (xs, rs), (xt, rt) = np.moveaxis(J.reshape(len(mesh.cells), -1, 2, 2), (2, 3), (0, 1))
+    if (xs * rt <= rs * xt).any():
         raise InputError(
             "meridian: an element folds over: give a smaller size, or more elements per fillet"
         )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -16,11 +15,10 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from skfem import MeshTet2
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTri
 
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.facets import local_facets
+from fe_drivetrain.facets import facet_points, local_facets
+from fe_drivetrain.files import atomic_path
 from fe_drivetrain.geometry import (
     Bearing,
     Housing,
@@ -42,6 +40,7 @@ GMSH_TO_VTK = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
 DEFAULT_SIZES = MeshSizes()
 
 ATTEMPTS = 4
+_AREA_DEGREE = 8
 REFINEMENT = 1.3
 """Where elements fold over, the mesh of that kind of part is refined so much, and tried again."""
 
@@ -155,7 +154,7 @@ def generate(
                 apply_local_sizes(local)
             gmsh.model.mesh.generate(3)
             gmsh.model.mesh.setOrder(2)
-            mesh = relax_flat_cells(_read(joints))
+            mesh = relax_flat_cells(read_gmsh(joints))
         inverted = inverted_cells(mesh)
         if len(inverted) == 0:
             return mesh
@@ -169,9 +168,10 @@ def _inversion(mesh: Mesh, cells: Ints) -> str:
     part = mesh.part_names[mesh.part[cells[0]]]
     x, y, z = mesh.points[mesh.cells[cells[0], :4]].mean(axis=0)
     return (
-        f"part {part!r}: {len(cells)} of its curved elements fold over, the first near "
-        f"({x:.3g}, {y:.3g}, {z:.3g}) m, where the scaled Jacobian must be greater than 0: reduce "
-        f"the mesh size {size_name(part)!r}, raise elements_per_turn, or leave out the detail there"
+        f"part {part!r}: {len(cells)} of its curved elements fold over, the first, element "
+        f"{cells[0]}, near ({x:.3g}, {y:.3g}, {z:.3g}) m, where the scaled Jacobian "
+        f"must be greater than 0: reduce the mesh size {size_name(part)!r}, raise "
+        "elements_per_turn, or leave out the detail there"
     )
 
 
@@ -208,7 +208,7 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
     return replace(mesh, points=points)
 
 
-def _read(split: Sequence[str]) -> Mesh:
+def read_gmsh(split: Sequence[str]) -> Mesh:
     """Read the mesh of the open gmsh model, doubling the bore nodes of the housings in `split`."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     points = np.asarray(coordinates).reshape(-1, 3)
@@ -289,7 +289,7 @@ def _outward(triangles: Ints, cells: Ints) -> Ints:
     return facets[found]
 
 
-def _lattice(order: int) -> Ints:
+def lattice(order: int) -> Ints:
     """Multi-indices of a tetrahedral lattice, (n, 4), each row summing to `order`."""
     rows = [
         (order - i - j - k, i, j, k)
@@ -319,12 +319,12 @@ def shape_gradients(points: Floats) -> Floats:
     return np.concatenate([corners, mids], axis=1)
 
 
-CUBIC = _lattice(3) / 3
+CUBIC = lattice(3) / 3
 """The 20 points that determine the Jacobian of a quadratic tetrahedron, a cubic polynomial."""
 
 _FACTORIALS = np.array([1, 1, 2, 6])
-_CHOOSE = 6 / _FACTORIALS[_lattice(3)].prod(axis=1)
-TO_BERNSTEIN = np.linalg.inv(_CHOOSE * (CUBIC[:, None, :] ** _lattice(3)[None]).prod(axis=2))
+_CHOOSE = 6 / _FACTORIALS[lattice(3)].prod(axis=1)
+TO_BERNSTEIN = np.linalg.inv(_CHOOSE * (CUBIC[:, None, :] ** lattice(3)[None]).prod(axis=2))
 """Values at `CUBIC` times the transpose of this: the Bernstein coefficients."""
 
 # the ten nodes of a tetrahedron, and the eight that halve its edges: one at each corner, and the
@@ -399,11 +399,20 @@ def inverted_cells(mesh: Mesh, depth: int = 3) -> Ints:
     -------
     Indices of the cells, ascending.
     """
-    values = jacobians(mesh.points, mesh.cells)
+    # of an element straight to round-off, the Jacobian at its centre is that everywhere
+    nodes = mesh.points[mesh.cells]
+    first, second = np.array(EDGES).T
+    sagitta = nodes[:, 4:] - (nodes[:, first] + nodes[:, second]) / 2
+    round_off = 1e-14 * np.abs(mesh.points).max(initial=0.0)
+    curved = np.abs(sagitta).reshape(-1, 18).max(axis=1, initial=0.0) > round_off
+    straight = np.flatnonzero(~curved)
+    centre = jacobians(mesh.points, mesh.cells[straight], np.full((1, 4), 0.25))[:, 0]
+    curved_cells = np.flatnonzero(curved)
+    values = jacobians(mesh.points, mesh.cells[curved_cells])
     negative = values.min(axis=1, initial=np.inf) <= 0
     undecided = ((values @ TO_BERNSTEIN.T).min(axis=1, initial=np.inf) <= 0) & ~negative
-    invalid = list(np.flatnonzero(negative))
-    for cell in np.flatnonzero(undecided):
+    invalid = [*straight[centre <= 0], *curved_cells[negative]]
+    for cell in curved_cells[undecided]:
         pieces = EIGHTHS
         for level in range(depth):
             at = np.einsum("qc,pcb->pqb", CUBIC, pieces)
@@ -485,32 +494,16 @@ def volume(mesh: Mesh, part: str | None = None) -> float:
     return float((jacobians(mesh.points, cells) @ weights).sum())
 
 
-def _facet_normals(points: Floats, facets: Ints) -> tuple[Floats, Floats]:
-    """Normals (nf, q, 3) of length dA at quadrature points, with their weights (q,)."""
-    at, weights = get_quadrature(RefTri, 8)
-    r, s = at
-    t = 1 - r - s
-    zero = np.zeros_like(r)
-    d_r = np.stack([1 - 4 * t, 4 * r - 1, zero, 4 * (t - r), 4 * s, -4 * s])
-    d_s = np.stack([1 - 4 * t, zero, 4 * s - 1, -4 * r, 4 * r, 4 * (t - s)])
-    corners = points[facets]
-    along_r = np.einsum("fai,aq->fqi", corners, d_r)
-    along_s = np.einsum("fai,aq->fqi", corners, d_s)
-    return np.cross(along_r, along_s), weights
-
-
 def area(mesh: Mesh, face: str) -> float:
     """Area of a named face, m2, over its curved facets."""
     mesh.face_nodes(face)
-    normals, weights = _facet_normals(mesh.points, mesh.faces[face])
-    return float((np.linalg.norm(normals, axis=2) @ weights).sum())
+    return float(facet_points(mesh.points, mesh.faces[face], _AREA_DEGREE).areas.sum())
 
 
 def area_vectors(points: Floats, facets: Ints) -> Floats:
     """Integral of the normal over each curved facet, (nf, 3), m2; zero in sum when closed."""
-    normals, weights = _facet_normals(points, facets)
-    result: Floats = np.einsum("fqi,q->fi", normals, weights)
-    return result
+    at = facet_points(points, facets, _AREA_DEGREE)
+    return np.asarray(np.einsum("fqi,fq->fi", at.normals, at.areas))
 
 
 def boundary(mesh: Mesh, part: str | None = None) -> Ints:
@@ -578,7 +571,5 @@ def write(
     content = meshio.Mesh(
         mesh.points, blocks, point_data=data, cell_data=cell_data, field_data=field_data
     )
-    with tempfile.TemporaryDirectory(dir=target.parent, prefix=f".{target.name}.") as folder:
-        unfinished = Path(folder) / target.name
+    with atomic_path(target) as unfinished:
         meshio.write(unfinished, content, **options)
-        unfinished.replace(target)

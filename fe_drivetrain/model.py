@@ -8,12 +8,15 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 
 from fe_drivetrain import interfaces
-from fe_drivetrain.elasticity import Floats, Ints, assemble, face_weights, volume_weights
+from fe_drivetrain.elasticity import Floats, Ints, volume_weights
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.facets import MEANS, face_weights
+from fe_drivetrain.incompressible import assemble_unlocked, warn_of_averaging
 from fe_drivetrain.interfaces import Constraint, ReferencePoint
-from fe_drivetrain.mechanisms import refuse_mechanisms
+from fe_drivetrain.mechanisms import refuse_mechanisms, warn_of_weak_restraints
 from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.mesh_cache import cached_mesh
+from fe_drivetrain.mesh_checks import refuse_unsound
 from fe_drivetrain.scene import BearingUnit, Scene
 
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
@@ -51,6 +54,9 @@ class Model:
         Reference points with their (6, 6) stiffness to ground.
     n_freedoms
         Three a node, and six for each rigid reference point.
+    warnings
+        Sentences for the user, about motions that soft springs hardly restrain, and parts that are
+        nearly incompressible.
     """
 
     scene: Scene
@@ -61,6 +67,7 @@ class Model:
     constraints: tuple[Constraint, ...]
     springs: tuple[tuple[ReferencePoint, Floats], ...]
     n_freedoms: int
+    warnings: tuple[str, ...] = ()
 
     @property
     def stiffness(self) -> sparse.bsr_array:
@@ -115,8 +122,12 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     Raises
     ------
     InputError
-        The scene is a mechanism; the message names the part and its free motion.
+        The mesh has a fault, see `mesh_checks`; or the scene is a mechanism, or but for round-off;
+        the message names the part and its place or motion.
     """
+    units = scene.bearing_units
+    apart = [u.bearing.name for u in units if u.interface != "bonded"]
+    refuse_unsound(mesh, needed_faces(scene), apart)
     n = len(mesh.points)
     extra: dict[str, int] = {}  # freedoms beside the nodes' own
     for name, coupling in (("hub", scene.hub.coupling), ("gearbox", scene.gearbox.coupling)):
@@ -141,7 +152,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             point = interfaces.rigid_point(name, position, first_freedom[name], n_freedoms)
             constraints.append(interfaces.rigid_face(name, nodes, mesh.points, point))
             return point
-        weights = face_weights(mesh.points, mesh.faces[face], n)[nodes]
+        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
         return interfaces.averaged_point(name, nodes, weights, mesh.points, position, n_freedoms)
 
     points["hub"] = couple("hub", "shaft.front", np.array([scene.shaft.front, 0.0, 0.0]))
@@ -167,16 +178,38 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     k = np.diag([0.0 if k == "rigid" else float(k) for k in scene.gearbox.stiffness])
     springs = ((points["gearbox"], k),) if k.any() else ()
     refuse_mechanisms(mesh, constraints, springs)
+    moduli = {part: scene.material_of(part).youngs_modulus for part in mesh.part_names}
+    warnings = warn_of_weak_restraints(mesh, constraints, springs, moduli)
 
     part_stiffness, part_mass = {}, {}
     for part in mesh.part_names:
         material = scene.material_of(part)
         cells = mesh.cells[mesh.part_cells(part)]
-        part_stiffness[part] = assemble(mesh.points, cells, material.lame, n_freedoms)
+        part_stiffness[part] = assemble_unlocked(mesh.points, cells, material.lame, n_freedoms)
+        warnings += warn_of_averaging(part, material.lame)
         part_mass[part] = material.density * volume_weights(mesh.points, cells, n)
     return Model(
-        scene, mesh, part_stiffness, part_mass, points, tuple(constraints), springs, n_freedoms
+        scene,
+        mesh,
+        part_stiffness,
+        part_mass,
+        points,
+        tuple(constraints),
+        springs,
+        n_freedoms,
+        warnings,
     )
+
+
+def needed_faces(scene: Scene) -> list[str]:
+    """Names of the faces of a mesh that the loads, supports and interfaces of a scene need."""
+    names = ["shaft.front", "shaft.rear"]
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        names += [f"shaft.seat.{name}", f"{name}.housing.base"]
+        if unit.interface != "bonded":
+            names += [f"{name}.outer", f"{name}.housing.bore"]
+    return names
 
 
 def joint_pairs(mesh: Mesh, bearing: str) -> tuple[Ints, Ints]:
@@ -215,7 +248,7 @@ def _spherical_joint(
         return interfaces.sliding_sphere(label, inner, outer, points, centre, n_freedoms)
     inner_weights, outer_weights = (
         interfaces.centred_weights(
-            face_weights(points, mesh.faces[face], len(points))[nodes], points[nodes], centre
+            face_weights(points, mesh.faces[face], len(points), MEANS)[nodes], points[nodes], centre
         )
         for face, nodes in ((f"{name}.outer", inner), (f"{name}.housing.bore", outer))
     )

@@ -20,11 +20,17 @@ with errors of 2e-6 and 2e-3. Small entries cannot be dropped instead: without t
 a row's largest 893 of 962 are left, without those below 1e-12 756, and linear displacements no
 longer pass to round-off.
 
+The finer face is to be the slave. A coarse slave couples all nodes of a fine master with one
+another: one element on 20 by 20, with 1681 nodes, leaves a full block of 25 million entries in the
+stiffness. With dual multipliers, or node by node, stress beside it is wrong as well, by a tenth and
+more. A tie whose slave is much the coarser warns.
+
 Sources: C. Bernardi, Y. Maday, A. T. Patera, College de France Seminar XI (1994) 13-51; B. I.
 Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012; M. A. Puso, Int. J. Numer. Meth. Engng 59 (2004)
 315-336; A. Popp et al., SIAM J. Sci. Comput. 34 (2012) B421-B446.
 """
 
+import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -35,7 +41,7 @@ from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from fe_drivetrain.elasticity import Floats, Ints, shape_functions
+from fe_drivetrain.elasticity import Floats, Ints
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.facets import FacetKind, facet_kind, facet_points
 from fe_drivetrain.interfaces import Constraint
@@ -44,6 +50,7 @@ Multipliers = Literal["dual", "standard"]
 
 _COVERED = 1e-6  # share of a plane slave face that may be left uncovered
 _REACH = 0.25  # of a facet's size: faces further apart do not touch
+_FAR = 4.0  # of a facet's size: faces this far apart may have been meant to touch
 _OUTSIDE = 0.05  # of a facet: a node this far outside of it still belongs to it
 _OPPOSED = -0.5  # cosine between the normals of facets that can touch
 _NEAR = 1.05  # on the sum of two facets' radii: they may be a little apart
@@ -52,6 +59,8 @@ _SLIVER = 1e-14  # of a window: pieces that are smaller are none
 _STEP = 1e-12  # of a facet: Newton's last step, which squares itself once more
 _STEPS = 20
 _CHUNK = 2048  # windows at a time
+_FINER = 2.0  # nodes to an area of the master, over the slave's: more is warned of
+_APART = 0.01  # of the slave's radius: faces that lie further apart are warned of
 _BLOCK = 256  # columns that are dense at a time
 _DROP = 1e-15  # of a row's largest: smaller entries are round-off
 
@@ -84,7 +93,7 @@ def mortar_tie(
 
     The finer face, or that of the softer body, is best the slave: it gets as many conditions as it
     has nodes. The other way round it holds as well, but fine nodes between coarse ones move
-    freely.
+    freely, and all of them are coupled with one another.
 
     On plane faces every linear displacement passes, and every constant stress. On curved ones
     both pass as well as the facets meet the surface; see `settled`.
@@ -114,8 +123,16 @@ def mortar_tie(
     ------
     InputError
         The faces share nodes, or the master does not cover the slave.
+
+    Warns
+    -----
+    UserWarning
+        The master has more than twice as many nodes to an area as the slave, or the faces lie apart
+        by more than a hundredth of the slave's radius: reactions are then out of balance by as
+        much, unless the points are `settled`.
     """
     nodes, rows, columns = _numbered(name, slave, master)
+    _warn_of_coarse_slave(name, points, slave, master)
     pieces = _pieces(points, slave, master)
     _check_coverage(name, points, slave, master, pieces)
 
@@ -125,7 +142,7 @@ def mortar_tie(
     if multipliers == "standard":
         D = _summed(mass, rows, rows, (n_slave, n_slave))
         M = _summed(pieces.across, rows[pieces.slave], columns[pieces.master], size)
-        return _following(name, nodes, _solved(D, M), n_freedoms)
+        return _warned_of_gap(_following(name, nodes, _solved(D, M), n_freedoms), points)
     # phi = diag(d) B^-T mass^-1 N is biorthogonal to the positive shape functions B N, facet by
     # facet: u~ = diag(1/d) M u_master are the coefficients of these, and u = B^T u~.
     positive = _positive(slave.shape[1])
@@ -139,7 +156,7 @@ def mortar_tie(
     same = np.broadcast_to(positive.T, mass.shape)  # on every facet that has the node
     spread = _summed(same, rows, rows, (n_slave, n_slave))
     P = sparse.diags_array(1.0 / count) @ spread @ sparse.diags_array(1.0 / d) @ M
-    return _following(name, nodes, P.tocsr(), n_freedoms)
+    return _warned_of_gap(_following(name, nodes, P.tocsr(), n_freedoms), points)
 
 
 def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_freedoms: int) -> Constraint:
@@ -158,8 +175,14 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_freedoms: i
     ------
     InputError
         The faces share nodes, or a slave node lies outside the master face.
+
+    Warns
+    -----
+    UserWarning
+        As `mortar_tie`.
     """
     nodes, rows, columns = _numbered(name, slave, master)
+    _warn_of_coarse_slave(name, points, slave, master)
     kind = facet_kind(master.shape[1])
     normals = _nodal_normals(points, slave, rows)
     outline = points[master]
@@ -183,7 +206,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_freedoms: i
         )
     size = (len(nodes.slave), len(nodes.master))
     P = _summed(at.values[best][:, None, :], node[best][:, None], columns[facet[best]], size)
-    return _following(name, nodes, P, n_freedoms)
+    return _warned_of_gap(_following(name, nodes, P, n_freedoms), points)
 
 
 def settled(points: Floats, *ties: Constraint) -> Floats:
@@ -227,6 +250,37 @@ def _numbered(name: str, slave: Ints, master: Ints) -> tuple[_Nodes, Ints, Ints]
             f"tie {name!r}: slave and master face share nodes: give faces of two separate meshes"
         )
     return _Nodes(own, others), rows.reshape(slave.shape), columns.reshape(master.shape)
+
+
+def _warn_of_coarse_slave(name: str, points: Floats, slave: Ints, master: Ints) -> None:
+    own, others = (
+        len(np.unique(facets)) / facet_points(points, facets).areas.sum()
+        for facets in (slave, master)
+    )
+    if others > _FINER * own:
+        warnings.warn(
+            f"tie {name!r}: the master face has {others / own:.3g} times as many nodes to an area "
+            f"as the slave, but {_FINER:g} times is as much as is sound: take the finer face as "
+            "the slave, else stress beside the tie may be wrong and all nodes of the master are "
+            "coupled with one another",
+            stacklevel=3,
+        )
+
+
+def _warned_of_gap(tie: Constraint, points: Floats) -> Constraint:
+    """The tie, with a warning where slave nodes lie far from where it sees the master face."""
+    own = points[tie.pivots[::3] // 3]
+    gap = np.abs(tie.rows[:, : points.size] @ points.ravel()).reshape(-1, 3)
+    apart = float(np.linalg.norm(gap, axis=1).max())
+    radius = float(np.linalg.norm(own - own.mean(axis=0), axis=1).max())
+    if apart > _APART * radius:
+        warnings.warn(
+            f"tie {tie.name!r}: slave and master face lie up to {apart:.3g} m apart, "
+            f"{100.0 * apart / radius:.2g} % of the face's radius, by which moments fail to "
+            "balance: move the nodes with `settled`, or mesh the curved face finer",
+            stacklevel=3,
+        )
+    return tie
 
 
 def _positive(n_nodes: int) -> Floats:
@@ -300,7 +354,7 @@ class _Pieces:
     across: Floats
 
 
-def _pieces(points: Floats, slave: Ints, master: Ints) -> _Pieces:
+def _pieces(points: Floats, slave: Ints, master: Ints, reach: float = _REACH) -> _Pieces:
     """Cut the slave's facets by the outlines of the master's, and integrate over the pieces.
 
     The cut is made in the planes of triangular windows, into which the slave's facets are divided:
@@ -328,7 +382,9 @@ def _pieces(points: Floats, slave: Ints, master: Ints) -> _Pieces:
         pair, triangles = _cut(polygons)
         owner, local = np.divmod(start + window[pair], len(reference))
         found.append(
-            _integrated(points, slave, master, owner, facet[pair], reference[local], triangles)
+            _integrated(
+                points, slave, master, owner, facet[pair], reference[local], triangles, reach
+            )
         )
     return _Pieces(
         *(
@@ -341,20 +397,16 @@ def _pieces(points: Floats, slave: Ints, master: Ints) -> _Pieces:
 def _windows(points: Floats, facets: Ints) -> Floats:
     """(n, 3, 2) reference coordinates of the triangles that a facet is divided into."""
     kind, n_nodes = facet_kind(facets.shape[1]), facets.shape[1]
-    nodes = _reference_nodes(kind)
+    nodes = kind.places
     triangular = n_nodes in (3, 6)
     if _affine(points, facets, nodes, 2 if triangular else 3):
         corners = [(0, 1, 2)] if triangular else [(0, 1, 2), (0, 2, 3)]
     elif triangular:
         corners = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
     else:
-        nodes, ring = _reference_nodes(facet_kind(9)), _OUTLINE[9]
+        nodes, ring = facet_kind(9).places, _OUTLINE[9]
         corners = [(8, a, b) for a, b in zip(ring, (*ring[1:], ring[0]), strict=True)]
     return np.asarray(nodes[np.array(corners)])
-
-
-def _reference_nodes(kind: FacetKind) -> Floats:
-    return np.asarray(kind.element.doflocs[kind.order], dtype=float)
 
 
 def _affine(points: Floats, facets: Ints, nodes: Floats, last: int) -> bool:
@@ -369,7 +421,7 @@ def _affine(points: Floats, facets: Ints, nodes: Floats, last: int) -> bool:
 def _placed(points: Floats, facets: Ints, reference: Floats) -> Floats:
     """(nf, n, 3, 3) positions of windows (n, 3, 2) of every facet."""
     kind = facet_kind(facets.shape[1])
-    values = shape_functions(kind.element, reference.reshape(-1, 2).T)[0][:, kind.order]
+    values, _ = kind.shape(reference.reshape(-1, 2).T)
     placed = np.einsum("vk,fki->fvi", values, points[facets])
     return np.asarray(placed.reshape(len(facets), *reference.shape[:2], 3))
 
@@ -402,7 +454,7 @@ def _normals(points: Floats, facets: Ints) -> Floats:
 def _nodal_normals(points: Floats, facets: Ints, numbers: Ints) -> Floats:
     """(n_nodes, 3) unit normals at the nodes of a face, the mean of the facets there."""
     kind = facet_kind(facets.shape[1])
-    gradients = shape_functions(kind.element, _reference_nodes(kind).T)[1][:, :, kind.order]
+    _, gradients = kind.shape(kind.places.T)
     tangents = np.einsum("qkn,fni->fqki", gradients, points[facets])
     normals = np.zeros((numbers.max() + 1, 3))
     np.add.at(normals, numbers, np.cross(tangents[:, :, 0], tangents[:, :, 1]))
@@ -483,6 +535,7 @@ def _integrated(
     master_facet: Ints,
     windows: Floats,
     triangles: Floats,
+    reach: float,
 ) -> _Pieces:
     """Integrals over triangles (n, 3, 2) in windows (n, 3, 2) of the slave's facets."""
     # Exact for the products on straight facets; two more for the area element of curved ones.
@@ -504,8 +557,8 @@ def _integrated(
     opposite = _opposite(
         facet_kind(master.shape[1]), np.repeat(nodes, n_q, axis=0), x, vectors / lengths[:, None]
     )
-    reach = _REACH * np.repeat(_circles(nodes)[1], n_q)
-    touches = (np.abs(opposite.distance) < reach) & (np.abs(opposite.coordinates) < 3.0).all(axis=0)
+    near = reach * np.repeat(_circles(nodes)[1], n_q)
+    touches = (np.abs(opposite.distance) < near) & (np.abs(opposite.coordinates) < 3.0).all(axis=0)
     weights = np.where(touches.reshape(n, n_q), weights, 0.0)
     others = np.where(touches[:, None], opposite.values, 0.0)
 
@@ -522,8 +575,7 @@ def _integrated(
 
 def _on_facets(kind: FacetKind, nodes: Floats, at: Floats) -> tuple[Floats, Floats, Floats]:
     """Shape functions (q, k), positions (q, 3) and tangents (q, 2, 3), each point on its facet."""
-    values, gradients = shape_functions(kind.element, at)
-    values, gradients = values[:, kind.order], gradients[:, :, kind.order]
+    values, gradients = kind.shape(at)
     return values, np.einsum("qk,qki->qi", values, nodes), gradients @ nodes
 
 
@@ -538,7 +590,7 @@ class _Opposite:
 
 def _opposite(kind: FacetKind, nodes: Floats, x: Floats, direction: Floats) -> _Opposite:
     """Where lines from x (q, 3) meet facets with these nodes (q, k, 3): Newton's method."""
-    at = np.repeat(_reference_nodes(kind).mean(axis=0)[:, None], len(x), axis=1)
+    at = np.repeat(kind.places.mean(axis=0)[:, None], len(x), axis=1)
     distance = np.zeros(len(x))
     for _ in range(_STEPS):
         _, position, tangents = _on_facets(kind, nodes, at)
@@ -561,10 +613,20 @@ def _check_coverage(name: str, points: Floats, slave: Ints, master: Ints, pieces
     # of curved facets and of their windows differ.
     curved = sum(_curvature(points, facets) for facets in (slave, master))
     if abs(share - 1.0) > _COVERED + curved or (covered < 0.5 * areas).any():
+        far = _pieces(points, slave, master, _FAR)
+        if share < 1.0 and far.area.sum() > 1.01 * covered.sum():
+            mend = (
+                "which must be all of it; in part they face one another but lie further apart than "
+                f"{_REACH:g} of a master facet: take the finer face as the slave, mesh curved "
+                "faces finer or with curved elements, or bring the faces together"
+            )
+        else:
+            mend = (
+                "which must be all of it, once: take the smaller face as the slave, or cut the "
+                "slave face to what both have in common"
+            )
         raise InputError(
-            f"tie {name!r}: the master face covers {100.0 * share:.6g} % of the slave face, which "
-            "must be all of it, once: take the smaller face as the slave, or cut the slave face to "
-            "what both have in common"
+            f"tie {name!r}: the master face covers {100.0 * share:.6g} % of the slave face, {mend}"
         )
 
 

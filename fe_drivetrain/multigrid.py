@@ -19,7 +19,7 @@ from threadpoolctl import threadpool_limits
 from fe_drivetrain import kernels
 from fe_drivetrain.elasticity import Floats, Ints
 from fe_drivetrain.errors import SINGULAR, InputError
-from fe_drivetrain.reduction import System, in_blocks
+from fe_drivetrain.reduction import System, diagonal_blocks, in_blocks
 
 MAX_ITERATIONS = 150
 
@@ -185,10 +185,7 @@ def build(system: System, options: Options = DEFAULTS) -> Hierarchy:
 
 
 def _level(K: sparse.bsr_array, prolongation: sparse.csr_array) -> Level:
-    n_blocks = len(K.indptr) - 1
-    here = np.repeat(np.arange(n_blocks), np.diff(K.indptr)) == K.indices
-    diagonal = np.zeros((n_blocks, 3, 3))
-    diagonal[K.indices[here]] = K.data[here]
+    diagonal = diagonal_blocks(K)
     block, i = np.nonzero(np.einsum("nii->ni", diagonal) <= 0.0)
     diagonal[block, i, i] = 1.0
     inverse = np.linalg.inv(diagonal).astype(np.float64, copy=False)

@@ -24,7 +24,7 @@ import threading
 import traceback
 from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from types import TracebackType
 from typing import IO, Any, Generic, NoReturn, Protocol, TypeVar
 
@@ -116,7 +116,13 @@ class Processes:
         How many there are at most; 0 where jobs are done in this process.
     """
 
-    def __init__(self, jobs: int, report: Report = silent, always: bool = False) -> None:
+    def __init__(
+        self,
+        jobs: int,
+        report: Report = silent,
+        always: bool = False,
+        each_for_itself: bool = False,
+    ) -> None:
         """State how many there may be; they start when jobs come.
 
         Parameters
@@ -127,7 +133,11 @@ class Processes:
             Shows the steps of all processes; it is called from several threads.
         always
             Take a process even for one job or on one core, so that the job starts afresh.
+        each_for_itself
+            What one job raises, or the death of its process, is told by its result alone, and does
+            not end the others.
         """
+        self._each_for_itself = each_for_itself
         available = cores()
         self.count = max(1, min(jobs, available))
         # A process that is itself one of several has its share of the cores already.
@@ -170,7 +180,8 @@ class Processes:
         while waiting:
             done = [job for job in waiting if job.is_done()] or waiting[:1] * (not self.count)
             for job in done:
-                job.result()
+                if not self._each_for_itself or not self.count:
+                    job.result()
                 waiting.remove(job)
                 yield job
             if not done:
@@ -183,7 +194,7 @@ class Processes:
             return
         while True:
             unfinished = []
-            for other in self._futures:
+            for other in [future] if self._each_for_itself else self._futures:
                 if other.done():
                     other.result()
                 else:
@@ -201,7 +212,8 @@ class Processes:
         try:
             if kind is None:
                 for future in self._futures:
-                    self.wait_for(future)
+                    with suppress(Exception) if self._each_for_itself else nullcontext():
+                        self.wait_for(future)
         finally:
             if self.count:
                 self._end()
@@ -235,6 +247,7 @@ class Processes:
             return result
         except _GoneError:
             if not self._ended:
+                self._of_thread.worker = None  # the next job has a process of its own
                 worker.explain(_text(self._said))
             raise
         finally:

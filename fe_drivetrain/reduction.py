@@ -7,12 +7,36 @@ whatever an interface took from them, and solvers learn of nodes, rigid motions 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain import kernels
 from fe_drivetrain.elasticity import Floats, Ints, element_kind, rigid_motions
 from fe_drivetrain.interfaces import Elimination
+
+
+@dataclass(frozen=True)
+class Elements:
+    """What a system was made of, for methods that cut it up.
+
+    Attributes
+    ----------
+    points
+        (n_nodes, 3) [m].
+    cells
+        (n_cells, k) node numbers in VTK's order.
+    diagonal
+        (n_nodes, 3, 3) diagonal blocks of the stiffness before any constraint [N/m].
+    T, free
+        Of the `fe_drivetrain.interfaces.Elimination`.
+    """
+
+    points: Floats
+    cells: Ints
+    diagonal: Floats
+    T: sparse.csr_array
+    free: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -34,6 +58,8 @@ class System:
         six rigid motions.
     n_free
         Number of freedoms that are left.
+    elements
+        What it was made of; None where that is not known.
     """
 
     K: sparse.bsr_array
@@ -41,6 +67,7 @@ class System:
     near_nullspace: Floats
     body: Ints
     n_free: int
+    elements: Elements | None = None
 
 
 def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimination) -> System:
@@ -67,7 +94,17 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
         prolongation, corners = _prolongation(cells, len(points), T, free)
         motions, body = motions[corners], body[corners[::3] // 3]
     reduced = reduced_stiffness(K, elimination)
-    return System(reduced, prolongation, motions, body, int(free.sum()))
+    elements = Elements(points, cells, diagonal_blocks(K)[: len(points)], T, free)
+    return System(reduced, prolongation, motions, body, int(free.sum()), elements)
+
+
+def diagonal_blocks(K: sparse.bsr_array) -> Floats:
+    """(n_blocks, 3, 3) diagonal blocks; zero where there are none."""
+    n_blocks = len(K.indptr) - 1
+    here = np.repeat(np.arange(n_blocks), np.diff(K.indptr)) == K.indices
+    diagonal = np.zeros((n_blocks, 3, 3))
+    diagonal[K.indices[here]] = K.data[here]
+    return diagonal
 
 
 def bodies(cells: Ints, n_nodes: int) -> Ints:

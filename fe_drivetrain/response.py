@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.elasticity import Floats, Ints
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.errors import SINGULAR, InputError
 from fe_drivetrain.interfaces import eliminate, freedoms
 from fe_drivetrain.model import COMPONENTS, LOADS, Model
 from fe_drivetrain.reduction import reduce
@@ -123,6 +123,11 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         Solver, see `solvers.solve`.
     seed
         Of the random load vector of the superposition check.
+
+    Raises
+    ------
+    InputError
+        The system is singular, see `solvers.factorise`; with what the model warned of.
     """
     loads = model.unit_loads()
     n_loads = len(LOADS)
@@ -136,7 +141,12 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     elimination = eliminate(model.constraints, model.n_freedoms)
     T = elimination.T
     system = reduce(model.mesh.points, model.mesh.cells, K, elimination)
-    solution = solve(system, T.T @ F, method)
+    try:
+        solution = solve(system, T.T @ F, method)
+    except InputError as error:
+        if str(error) == SINGULAR and model.warnings:
+            raise InputError(f"{SINGULAR}: {'; '.join(model.warnings)}") from error
+        raise
     U = T @ solution.x
     reactions = _reactions(model, elimination.multipliers(K @ U - F), U, cases)
 

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
 from fe_drivetrain.materials import MATERIALS, Material
+from fe_drivetrain.plain_yaml import PlainLoader, no_truth_value, shown
 
 #: How the bearing's outer face meets the housing's bore.
 Interface = Literal["bonded", "sliding", "averaged", "rigid"]
@@ -18,7 +19,6 @@ Interface = Literal["bonded", "sliding", "averaged", "rigid"]
 Coupling = Literal["averaged", "rigid"]
 
 _MAX_BYTES = 1_000_000
-_MAX_DEPTH = 20
 _STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
 
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -26,6 +26,8 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 class _Part(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    _truth = field_validator("*", mode="before")(no_truth_value)
 
 
 class BearingUnit(_Part):
@@ -77,6 +79,25 @@ class Gearbox(_Part):
         return [c for c, k in enumerate(self.stiffness) if k == "rigid"]
 
 
+class Spread(_Part):
+    """How certain a value is, relative to it: half the width of an even distribution, the standard
+    deviation of a normal one, or the coefficient of variation of a lognormal one about its median.
+    """
+
+    uniform: float | None = Field(default=None, gt=0, lt=1)
+    normal: float | None = Field(default=None, gt=0, lt=1)
+    lognormal: float | None = Field(default=None, gt=0, lt=10)
+
+    @model_validator(mode="after")
+    def _one(self) -> "Spread":
+        given = [k for k in ("uniform", "normal", "lognormal") if getattr(self, k) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"give one of uniform, normal and lognormal, not {' and '.join(given) or 'none'}"
+            )
+        return self
+
+
 class Scene(_Part):
     """A drivetrain: one shaft on any number of bearing units, with a hub and a gearbox."""
 
@@ -87,6 +108,7 @@ class Scene(_Part):
     gearbox: Gearbox
     materials: Mapping[str, Material] = {}
     mesh: MeshSizes = MeshSizes()
+    uncertainty: Mapping[str, Spread] = {}
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
@@ -107,7 +129,7 @@ class Scene(_Part):
         for part, material in used:
             if material not in known:
                 raise ValueError(
-                    f"material {material!r} of {part} is unknown: use one of "
+                    f"material {shown(material)} of {part} is unknown: use one of "
                     f"{', '.join(known)}, or define it under 'materials'"
                 )
         return self
@@ -149,7 +171,7 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
         if len(content) > _MAX_BYTES:
             raise InputError(f"{path} is larger than {_MAX_BYTES} bytes, the most of a scene file")
         text = content.decode("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:  # no file, no text, or no name of a file
         raise InputError(f"cannot read scene file {path}: {error}") from error
     return parse_scene(text, changes, source=str(path))
 
@@ -159,7 +181,7 @@ def parse_scene(
 ) -> Scene:
     """A scene from YAML text; see `read_scene`."""
     try:
-        data = yaml.load(text, Loader=_PlainLoader)
+        data = yaml.load(text, Loader=PlainLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         reason = " ".join(str(error).split())
         raise InputError(f"{source} is not plain YAML: {reason}") from error
@@ -198,7 +220,7 @@ def validated(model: type[_Model], data: Any, source: str) -> _Model:
         faults = error.errors(include_url=False)
         fault = min(faults, key=lambda f: f["type"] != "extra_forbidden")
         where = ".".join(str(part) for part in fault["loc"] if not _is_type_tag(part))
-        raise InputError(f"{source}: {_sentence(where, fault, model)}") from error
+        raise InputError(f"{source}: {_sentence(_cut(where), fault, model)}") from error
 
 
 _WORDS = {
@@ -208,6 +230,7 @@ _WORDS = {
     "less_than": "must be less than {lt}",
     "less_than_equal": "must be at most {le}",
     "literal_error": "must be {expected}",
+    "finite_number": "must be a finite number",
     "float_parsing": "must be a number, in SI and without its unit",
     "float_type": "must be a number, in SI and without its unit",
     "string_type": "must be a text",
@@ -223,8 +246,8 @@ def _sentence(where: str, fault: Any, model: type[BaseModel]) -> str:
     """One fault of pydantic's as object, value, allowed range, mend."""
     if fault["type"] == "extra_forbidden":
         return f"{where}: unknown key; known here: {', '.join(_known_keys(model, fault['loc']))}"
-    shown = fault["input"]
-    value = f" = {shown!r}" if isinstance(shown, int | float | str) else ""
+    given = fault["input"]
+    value = f" = {shown(given)}" if isinstance(given, int | float | str) else ""
     words = _WORDS.get(fault["type"])
     if words is None:
         message = str(fault["msg"]).removeprefix("Value error, ")
@@ -234,6 +257,10 @@ def _sentence(where: str, fault: Any, model: type[BaseModel]) -> str:
     return f"{where}{value if fault['type'] != 'missing' else ''} " + words.format(
         **fault.get("ctx", {})
     )
+
+
+def _cut(text: str, most: int = 100) -> str:
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def _is_type_tag(part: object) -> bool:
@@ -268,49 +295,35 @@ def _set(data: Any, key: str, value: Any) -> None:
         target = _step(target, part, key)
     if isinstance(target, dict):
         target[last] = value
-    elif isinstance(target, list) and last.isdigit() and int(last) < len(target):
-        target[int(last)] = value
+    elif isinstance(target, list) and (at := _place(last, target)) is not None:
+        target[at] = value
     else:
-        raise InputError(f"key {key!r}: there is no {last!r} to set{_choices(target)}")
+        raise InputError(
+            f"key {shown(key)}: there is no {shown(last)} to set{_choices(target)}: name another"
+        )
 
 
 def _step(target: Any, part: str, key: str) -> Any:
     if isinstance(target, dict):
         return target.setdefault(part, {})
     if isinstance(target, list):
-        if part.isdigit() and int(part) < len(target):
-            return target[int(part)]
+        if (at := _place(part, target)) is not None:
+            return target[at]
         default = Bearing.model_fields["name"].default
         for unit in target:
             bearing = unit.get("bearing") if isinstance(unit, dict) else None
             if isinstance(bearing, dict) and bearing.get("name", default) == part:
                 return unit
-    raise InputError(f"key {key!r}: there is no {part!r}{_choices(target)}")
+    raise InputError(f"key {shown(key)}: there is no {shown(part)}{_choices(target)}: name another")
+
+
+def _place(part: str, target: Sequence[Any]) -> int | None:
+    """The place in a list that part of a key names by its number, if it does."""
+    # not int(part) first: it takes numerals of any script, and fails for very many digits
+    places = range(len(target))
+    return next((k for k in places if str(k) == part), None) if part.isdecimal() else None
 
 
 def _choices(target: Any) -> str:
     """What a list offers, for a message."""
     return f"; there are 0 to {len(target) - 1}" if isinstance(target, list) and target else ""
-
-
-class _PlainLoader(yaml.SafeLoader):
-    """Safe YAML without aliases, and not nested deeper than a scene ever is."""
-
-    _depth = 0
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.YAMLError("anchors and aliases are not allowed in a scene file")
-        self._depth += 1
-        if self._depth > _MAX_DEPTH:
-            raise yaml.YAMLError(f"nested deeper than {_MAX_DEPTH} levels")
-        node = super().compose_node(parent, index)
-        self._depth -= 1
-        return node
-
-    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        keys = [key.value for key, _ in node.value]
-        twice = {key for key in keys if keys.count(key) > 1}
-        if twice:
-            raise yaml.YAMLError(f"key {sorted(twice)[0]!r} stands twice in one mapping")
-        return super().construct_mapping(node, deep)

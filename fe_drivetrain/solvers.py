@@ -9,18 +9,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain import direct, multigrid
+from fe_drivetrain import direct, multigrid, schwarz
 from fe_drivetrain.cost import predict
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import SINGULAR, InputError
 from fe_drivetrain.reduction import System
+from fe_drivetrain.round_off import round_off
 
-METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid")
+METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz")
+
+ITERATIVE = ("multigrid", "schwarz")
 
 TOLERANCE = 1e-9
 """Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
 
 _USELESS = 1e-2  # a direct solver's residual; 1e-7 is seen in slender solids whose answer is right
+_DOUBTFUL, _LOST = 1e-4, 0.1
+"""Bounds of what rounding does, above which it is told, and refused: of first order, they bound
+nothing where they are not small. Mostly it does a tenth to a hundredth of that, see
+``cases/stability/slender_shafts.py``."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +43,9 @@ class Solution:
     energy_error
         Estimate of the largest relative error in the energy norm. Of a direct solver, what one
         step of refinement changed.
+    round_off
+        What the rounding of the stiffness' own entries may have done to the energy of a solution,
+        relative, at worst: no solver can do better, see `round_off.round_off`.
     iterations
         Of conjugate gradients; 0 of a direct solver.
     method, reason
@@ -49,6 +59,7 @@ class Solution:
     x: Floats
     residual: float
     energy_error: float
+    round_off: float
     iterations: int
     method: str
     reason: str
@@ -85,8 +96,8 @@ class Solver:
         Raises
         ------
         InputError
-            The system is singular, or the iteration stopped short of its tolerance and there is
-            not the memory for a direct factor.
+            The system is singular, or so soft that rounding decides, or the iteration stopped short
+            of its tolerance and there is not the memory for what could take its place.
         """
         start = time.perf_counter()
         found = self.iterate(F)
@@ -95,18 +106,30 @@ class Solver:
         size = np.linalg.norm(F, axis=0)
         size[size == 0.0] = 1.0
         residual = float((np.linalg.norm(K @ found.x - F, axis=0) / size).max())
+        iterative = self.method in ITERATIVE
         # A factor of a singular matrix may well come out, by round-off, with anything in it.
-        if not np.isfinite(residual) or (self.method != "multigrid" and residual > _USELESS):
+        if not np.isfinite(residual) or (not iterative and residual > _USELESS):
             raise InputError(SINGULAR)
-        if found.energy_error > self.tolerance and self.method == "multigrid":
+        if found.energy_error > self.tolerance and iterative:
             return self._instead(F, found, residual, seconds)
+        lost = round_off(K, found.x)
+        if lost > _LOST:
+            raise InputError(
+                f"the body is so soft beside its elements, or so softly held, that rounding may "
+                f"change its motion by {100 * lost:.2g} %, with any solver: use longer elements "
+                "along a slender body, or a beam, or stiffer supports"
+            )
+        reason = self.reason
+        if lost > _DOUBTFUL:
+            reason += f"; rounding may change the answer by {100 * lost:.2g} %"
         return Solution(
             found.x,
             residual,
             found.energy_error,
+            lost,
             found.iterations,
             self.method,
-            self.reason,
+            reason,
             self.setup_seconds,
             seconds,
             self.bytes,
@@ -115,19 +138,19 @@ class Solver:
     def _instead(
         self, F: Floats, found: multigrid.Iteration, residual: float, seconds: float
     ) -> Solution:
-        """A direct solution in place of an iteration that did not get there."""
+        """Another solver's solution in place of an iteration that did not get there."""
         short = (
-            f"multigrid stopped after {found.iterations} iterations at an energy error of about "
-            f"{found.energy_error:.1e} (relative residual {residual:.1e}), short of "
+            f"{self.method} stopped after {found.iterations} iterations at an energy error of "
+            f"about {found.energy_error:.1e} (relative residual {residual:.1e}), short of "
             f"{self.tolerance:.0e}"
         )
-        costs = predict(self.system, F.shape[1])
-        cost = min(
-            (c for c in costs if c.method != "multigrid"), key=lambda c: (not c.fits, c.seconds)
-        )
+        tried = ITERATIVE if self.method == "schwarz" else ("multigrid",)
+        costs = [c for c in predict(self.system, F.shape[1]) if c.method not in tried]
+        cost = min(costs, key=lambda c: (not c.fits, c.seconds))
         if not cost.fits:
+            what = "patches" if cost.method == "schwarz" else "a direct factor"
             raise InputError(
-                f"{short}, and a direct factor of {self.system.n_free} unknowns needs about "
+                f"{short}, and {what} of {self.system.n_free} unknowns needs about "
                 f"{cost.bytes / 2**30:.1f} GiB of memory, more than there is: use a coarser mesh "
                 "or thicker walls"
             )
@@ -135,7 +158,7 @@ class Solver:
         solution = other.solve(F)
         return replace(
             solution,
-            reason=f"{short}; {cost.method} instead",
+            reason=f"{short}; {cost.method} instead" + solution.reason.removeprefix("as asked"),
             setup_seconds=self.setup_seconds + seconds + solution.setup_seconds,
         )
 
@@ -143,15 +166,16 @@ class Solver:
 def factorise(
     system: System, method: str = "auto", n_rhs: int = 1, tolerance: float = TOLERANCE
 ) -> Solver:
-    """Set up a solver: a factor, or a hierarchy of coarser levels.
+    """Set up a solver: a factor, a hierarchy of coarser levels, or patches.
 
     Parameters
     ----------
     system
         From `reduction.reduce`.
     method
-        ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``, or
-        ``auto``: the one with the least predicted time, see `cost.predict`.
+        ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
+        ``schwarz`` (for thin and slender solids of any size), or ``auto``: the one with the least
+        predicted time, see `cost.predict`.
     n_rhs
         How many right-hand sides will come, for ``auto``.
     tolerance
@@ -175,12 +199,12 @@ def factorise(
             "or choose 'multigrid' or 'superlu'"
         )
     start = time.perf_counter()
-    if method == "multigrid":
-        hierarchy = multigrid.build(system)
-        held = hierarchy.bytes
+    if method in ITERATIVE:
+        made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
+        held = made.bytes
 
         def iterate(F: Floats) -> multigrid.Iteration:
-            return multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, tolerance)
+            return multigrid.conjugate_gradients(system.K, F, made.precondition, tolerance)
 
     else:
         factor = direct.factorise(system.K, method)

@@ -1,17 +1,21 @@
 """One solid or several under given forces and displacements: the shortest way to an answer."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
 from fe_drivetrain.elasticity import Floats, Ints, assemble
+from fe_drivetrain.errors import InputError
 from fe_drivetrain.interfaces import Constraint, eliminate, held_freedoms
 from fe_drivetrain.reduction import reduce
 from fe_drivetrain.solvers import Solution, solve
 
 Lame = tuple[float, float]
+
+Assembly = Callable[[Floats, Ints, Lame, int], sparse.bsr_array]
+"""Of points, cells, Lame's constants and n_freedoms, as `elasticity.assemble`."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,7 @@ def solve_solid(
     F: Floats,
     prescribed: tuple[Ints, Floats] | None = None,
     method: str = "auto",
+    assembly: Assembly = assemble,
 ) -> Static:
     """Solve a solid for one load or several.
 
@@ -68,16 +73,25 @@ def solve_solid(
         Freedoms (k,) and their displacements (k,) or (k, m) [m].
     method
         Solver, see `fe_drivetrain.solvers.solve`.
+    assembly
+        Of the stiffness: that of `elasticity`, or `incompressible.assemble` for solids with nu near
+        1/2, or `incompatible.assemble` for hexahedra of 8 nodes that must bend.
 
     Raises
     ------
     InputError
-        The solid is not held, or two constraints hold one freedom.
+        The solid is not held, two constraints hold one freedom, or an element has no volume.
     """
     parts = _parts(cells, lame)
     loads = F.reshape(len(F), -1)
     n = len(loads)
-    K = sum(assemble(points, some, constants, n) for some, constants in parts)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        K = sum(assembly(points, some, constants, n) for some, constants in parts)
+    if not np.isfinite(K.data).all():
+        raise InputError(
+            "the stiffness has entries that are no numbers: an element of the mesh has no volume; "
+            "find it with fe_drivetrain.mesh.jacobians, and mesh there anew"
+        )
     held = list(constraints)
     if prescribed is not None:
         held.append(held_freedoms("prescribed", prescribed[0], n))

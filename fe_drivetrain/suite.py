@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import traceback
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any, NamedTuple
 
 from fe_drivetrain.case import Case, new_folder, put_in_place, run_into
 from fe_drivetrain.errors import InputError, MissingToolError
+from fe_drivetrain.files import HiddenFolder, sentence_about
 from fe_drivetrain.parallel import Job, Processes, Report, silent
 
 
@@ -62,7 +62,7 @@ def run_cases(
 
     out = Path(out)
     problems: dict[str, Problem] = {}
-    folders: dict[str, Path] = {}
+    folders: dict[str, HiddenFolder] = {}
 
     finished: list[str] = []
 
@@ -77,26 +77,36 @@ def run_cases(
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
         beside = [case for case in cases if not case.alone]
-        with Processes(len(beside), report) as processes:
+        with Processes(len(beside), report, each_for_itself=True) as processes:
             jobs: dict[Job[Problem | None], Case] = {
-                processes.start(_run, case, folders[case.name], dict(settings or {}), quick): case
+                processes.start(
+                    _run, case, folders[case.name].path, dict(settings or {}), quick
+                ): case
                 for case in beside
             }
             for job in processes.finished(jobs):
-                finish(jobs[job], job.result())
+                finish(jobs[job], _outcome(job))
         for case in cases:
             if case.alone:
-                with Processes(1, report, always=True) as processes:
+                with Processes(1, report, always=True, each_for_itself=True) as processes:
                     job = processes.start(
-                        _run, case, folders[case.name], dict(settings or {}), quick
+                        _run, case, folders[case.name].path, dict(settings or {}), quick
                     )
-                    finish(case, job.result())
+                    finish(case, _outcome(job))
     finally:
         for folder in folders.values():
-            shutil.rmtree(folder, ignore_errors=True)
+            folder.discard()
         if finished:  # when stopped, those that were done by then
             write_index(out, problems)
     return problems
+
+
+def _outcome(job: Job[Problem | None]) -> Problem | None:
+    """What a case's process said of it, or how it died."""
+    try:
+        return job.result()
+    except (InputError, RuntimeError) as error:
+        return Problem(str(error))
 
 
 def _run(
@@ -112,6 +122,9 @@ def _run(
     except InputError as error:
         return Problem(str(error), isinstance(error, MissingToolError))
     except Exception as error:
+        sentence = sentence_about(error) if isinstance(error, OSError) else None
+        if sentence is not None:
+            return Problem(sentence)
         traceback.print_exc()
         return Problem(f"ended by an error of its own, {type(error).__name__}: {error}")
     return None

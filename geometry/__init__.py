@@ -1,14 +1,16 @@
 """Parametric drivetrain parts, built with gmsh's OpenCASCADE kernel; no mechanics in here."""
 
-from .assembly import MeshSizes, build, size_name
+from .assembly import WIDEST, MeshSizes, build, refuse_millimetres, size_name
 from .bearing import Bearing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
+from .masses import Solid, unit_solids
 from .part import Assumption, Part
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
 
 __all__ = [
+    "WIDEST",
     "Assumption",
     "Bearing",
     "Flange",
@@ -18,8 +20,11 @@ __all__ = [
     "Part",
     "Section",
     "Shaft",
+    "Solid",
     "apply_local_sizes",
     "build",
     "gmsh_session",
+    "refuse_millimetres",
     "size_name",
+    "unit_solids",
 ]

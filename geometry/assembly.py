@@ -22,8 +22,15 @@ CAD_TOLERANCE = 1e-6
 GROWTH = 0.4
 """Growth of the element size with the distance from a tightly curved face, m per m."""
 
-MOST_ELEMENTS = 3e6
-"""More elements than this in one part are taken for a slip of the pen in its mesh size."""
+MOST_ELEMENTS = 1e6
+"""More elements than this in one part, four million unknowns, are taken for a slip of the pen in
+its mesh size or in a detail."""
+
+WIDEST, LONGEST = 50.0, 1000.0
+"""A part wider or longer than this (m) is in millimetres: the widest rotors of turbines have 12 m.
+"""
+
+_PER_VOLUME = 6 * math.sqrt(2)  # regular tetrahedra of edge 1 in a volume of 1
 
 SIZE_PER_WALL = 3.0
 """Largest mesh size, in thicknesses of the thinnest wall: elements flatter than this fold over."""
@@ -112,6 +119,7 @@ def build(
         The parts do not fit together.
     """
     _check_names(shaft, bearings, housings, bonded)
+    _check_units(shaft, bearings, housings)
     bores = {b.name: _bore(shaft, b) for b in bearings}
     for bearing in bearings:
         bearing.check_bore(bores[bearing.name])
@@ -223,6 +231,44 @@ def _check_names(
                 f"bonded bearing {name!r} has no bearing and housing of that name: use one of "
                 f"{', '.join(housings) or 'none'}"
             )
+
+
+def _check_units(
+    shaft: Shaft | None, bearings: Sequence[Bearing], housings: Mapping[str, Housing]
+) -> None:
+    """Refuse parts of a size that only millimetres taken for metres explain."""
+    extents = [(f"bearing {b.name!r}", b.width, b.raceway_diameter) for b in bearings]
+    extents += [
+        (f"housing of {name!r}", max(h.width, h.foot_width), max(h.foot_length, h.centre_height))
+        for name, h in housings.items()
+    ]
+    if shaft is not None:
+        wide = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
+        extents.append(("shaft", shaft.length, wide))
+    for part, long, wide in extents:
+        refuse_millimetres(part, long, wide)
+
+
+def refuse_millimetres(part: str, long: float, wide: float) -> None:
+    """Refuse a part of implausible size.
+
+    Parameters
+    ----------
+    part
+        What it is, for the message.
+    long, wide
+        Its extents along x and across, m.
+
+    Raises
+    ------
+    InputError
+    """
+    if long > LONGEST or wide > WIDEST:
+        raise InputError(
+            f"{part} is {long:g} m long and {wide:g} m wide, but must be at most {LONGEST:g} m "
+            f"long and {WIDEST:g} m wide: lengths are in metres, {long / 1000:g} and "
+            f"{wide / 1000:g} m if these were millimetres"
+        )
 
 
 def _bore(shaft: Shaft | None, bearing: Bearing) -> float:
@@ -390,7 +436,7 @@ def _apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str,
     fields = []
     for name, tag in parts.items():
         size = getattr(sizes, size_name(name))
-        elements = gmsh.model.occ.getMass(3, tag) / (size**3 / (6 * math.sqrt(2)))
+        elements = near_faces = gmsh.model.occ.getMass(3, tag) * _PER_VOLUME / size**3
         if elements > MOST_ELEMENTS:
             raise InputError(
                 f"part {name!r}: mesh size {size_name(name)!r} is {size:g} m, which makes about "
@@ -404,6 +450,8 @@ def _apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str,
         for face in sorted(faces[name]):
             limit = _size_limit(face, sizes.elements_per_turn)
             if limit < size:
+                near_faces += _elements_beside(face, limit)
+                _refuse_too_many(name, face, limit, near_faces)
                 fields.append(field.add("MathEval"))
                 field.setString(fields[-1], "F", f"{limit:.9f} + {GROWTH} * {_distance(face)}")
         if size_name(name) == "bearing":
@@ -413,6 +461,33 @@ def _apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str,
     field.setAsBackgroundMesh(least)
 
 
+def _elements_beside(face: int, size: float) -> float:
+    """About how many elements a face of small ones makes, those that grow away from it included.
+
+    The integral of 6 sqrt(2) / h^3 with h = h0 + g d at the distance d: over one side of a wide
+    face A / (2 g h0^2), over half the space round a narrow one of length L pi L / (2 g^2 h0).
+    """
+    area, meridian = gmsh.model.occ.getMass(2, face), _meridian(face)
+    box = gmsh.model.getBoundingBox(2, face)
+    length = math.dist(box[:3], box[3:])
+    if meridian is not None:
+        x0, x1, r0, r1 = meridian
+        length = max(2 * math.pi * r1, math.hypot(x1 - x0, r1 - r0))
+    wide, narrow = area / (2 * GROWTH * size**2), math.pi * length / (2 * GROWTH**2 * size)
+    return float(_PER_VOLUME * (wide + narrow))
+
+
+def _refuse_too_many(name: str, face: int, size: float, elements: float) -> None:
+    if elements > MOST_ELEMENTS:
+        x0, y0, _, x1, y1, _ = gmsh.model.getBoundingBox(2, face)
+        raise InputError(
+            f"part {name!r}: a bore, fillet or narrow face at x = {x0:.6g} to {x1:.6g} m, "
+            f"y = {y0:.6g} to {y1:.6g} m needs elements of {size:.2g} m, which make about "
+            f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: leave that "
+            "detail out, enlarge it, or lower elements_per_turn"
+        )
+
+
 def _finer_along_edges(tag: int, size: float) -> int:
     """A field of small elements along the edges of a bearing, growing away from them.
 
@@ -420,12 +495,21 @@ def _finer_along_edges(tag: int, size: float) -> int:
     up the convergence of the stiffness.
     """
     field = gmsh.model.mesh.field
-    distance = field.add("Distance")
     circles = [
         curve
         for curve in _boundary([(2, face) for face in _boundary([(3, tag)])])
         if gmsh.model.getType(1, curve) != "Line"
     ]
+    length = math.fsum(gmsh.model.occ.getMass(1, curve) for curve in circles) / 2  # each is twice
+    # a quarter of a turn round each edge, elements growing away from it
+    elements = _PER_VOLUME * length * math.pi / 4 / (GROWTH**2 * size)
+    if elements > MOST_ELEMENTS:
+        raise InputError(
+            f"mesh size 'bearing_edge' is {size:g} m, which makes about {elements:.1g} elements, "
+            f"but must make at most {MOST_ELEMENTS:.0e}: choose "
+            f"{size * elements / MOST_ELEMENTS:.2g} m or more"
+        )
+    distance = field.add("Distance")
     field.setNumbers(distance, "CurvesList", circles)
     field.setNumber(distance, "Sampling", 200)
     growing = field.add("MathEval")

@@ -10,14 +10,19 @@ from pydantic import (
     Field,
     ModelWrapValidatorHandler,
     ValidationError,
+    field_validator,
     model_validator,
 )
 from pydantic.fields import FieldInfo
 
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.plain_yaml import no_truth_value, shown
 
 LENGTH_TOLERANCE = 1e-9
 """Two lengths closer than this (m) are the same length."""
+
+SMALLEST, LARGEST = 1e-6, 1e4
+"""A length (m) beyond these is a slip of the pen: CAD cannot tell it from nothing, or from far."""
 
 
 class Assumption(NamedTuple):
@@ -51,13 +56,17 @@ def dimension(
     source
         Where the default comes from: a catalogue, or 'assumed: reason'.
     gt, ge
-        Lower bounds, exclusive and inclusive.
+        Lower bounds, exclusive and inclusive. A length lies between `SMALLEST` and `LARGEST`, too,
+        where it must be greater than 0; else it is at most `LARGEST`, with either sign.
     """
+    if unit == "m":
+        ge = SMALLEST if gt == 0 else -LARGEST if ge is None else ge
     return Field(
         default,
         description=f"{of}, {unit}" if unit != "-" else of,
         gt=gt,
         ge=ge,
+        le=LARGEST if unit == "m" else None,
         json_schema_extra={"unit": unit, "source": source},
     )
 
@@ -88,11 +97,16 @@ def _sentence(owner: str, fields: dict[str, FieldInfo], error: ValidationError) 
     if kind == "missing":
         return f"{owner} lacks {path} ({meaning}): add it"
     if kind == "extra_forbidden":
-        return f"{owner} has no {path!r}: use one of {', '.join(fields)}"
+        return f"{owner} has no {shown(path)}: use one of {', '.join(fields)}"
     if kind in _RANGES:
         allowed = _RANGES[kind].format(**first["ctx"])
-        return f"{owner}: {path} is {first['input']!r} but must be {allowed}: give {meaning}"
-    return f"{owner}: {path} is {first['input']!r}: {first['msg'].lower()}: give {meaning}"
+        if first["ctx"].get("ge") == SMALLEST:
+            allowed = f"greater than 0, at least {SMALLEST:g} m"
+        return f"{owner}: {path} is {shown(first['input'])} but must be {allowed}: give {meaning}"
+    message = str(first["msg"]).removeprefix("Value error, ").lower()
+    return f"{owner}: {path} is {shown(first['input'])}: {message}" + (
+        f": give {meaning}" if meaning else ""
+    )
 
 
 class Part(BaseModel):
@@ -103,6 +117,8 @@ class Part(BaseModel):
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    _truth = field_validator("*", mode="before")(no_truth_value)
 
     @model_validator(mode="wrap")
     @classmethod

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -15,7 +17,7 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
     """Open gmsh with an empty model, silent and deterministic, and close it whatever happens.
 
     No command-line arguments and no user's configuration file are read, so that the same input
-    gives the same mesh everywhere; gmsh leaves the signal handlers alone, so that Ctrl-C works.
+    gives the same mesh everywhere; signals do what they did before, so that Ctrl-C works.
 
     Parameters
     ----------
@@ -37,6 +39,7 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
         )
     gmsh.initialize(argv=[], readConfigFiles=False, run=False, interruptible=False)
     try:
+        _take_back_signals()
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", threads)
         gmsh.option.setNumber("Mesh.RandomSeed", 1)
@@ -54,3 +57,13 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
             ) from error
     finally:
         gmsh.finalize()
+
+
+def _take_back_signals() -> None:
+    """Undo what gmsh does behind Python's back: from then on a terminate signal ends it at once."""
+    if threading.current_thread() is not threading.main_thread():
+        return  # only there can it be undone
+    for number in (signal.SIGINT, signal.SIGTERM):
+        handler = signal.getsignal(number)
+        if handler is not None:  # None: not set from Python
+            signal.signal(number, handler)

@@ -14,6 +14,10 @@ from fe_drivetrain.errors import InputError
 
 from .part import LENGTH_TOLERANCE, Part, dimension
 
+FINEST = 1e-5
+"""Details of a meridian shorter than this (m) are refused: less than the tolerance of any turned
+part, and too near to that of the CAD kernel, which fails at 1e-7."""
+
 
 class Segment(NamedTuple):
     """One piece of a meridian, in (x, radius); an arc where `centre` is given."""
@@ -250,6 +254,23 @@ class Shaft(Part):
             "bearing, make it narrower, or lengthen that section"
         )
 
+    def cut(self, stations: Iterable[float]) -> Shaft:
+        """The same shaft, the flange a section, and sections divided at each x inside them, m."""
+        places = sorted(set(stations))
+        sections: list[Section] = []
+        for piece, low, high in zip(self.pieces, self.stations, self.stations[1:], strict=False):
+            inside = [x for x in places if low + LENGTH_TOLERANCE < x < high - LENGTH_TOLERANCE]
+            slope = (piece.end_diameter - piece.outer_diameter) / piece.length
+            for start, end in pairwise([low, *inside, high]):
+                change = {
+                    "length": end - start,
+                    "outer_diameter": piece.outer_diameter + slope * (start - low),
+                    "outer_diameter_end": piece.outer_diameter + slope * (end - low),
+                    "fillet": piece.fillet if end == high else 0.0,
+                }
+                sections.append(piece.model_copy(update=change))
+        return self.model_copy(update={"sections": tuple(sections), "flange": None})
+
     def build(self, seats: Iterable[tuple[float, float]] = ()) -> int:
         """Add the solid to the open gmsh model.
 
@@ -289,6 +310,27 @@ def split(segment: Segment, cuts: Iterable[float]) -> list[Segment]:
     return [*pieces, Segment(start, end)]
 
 
+def refuse_fine_details(outline: Iterable[Segment]) -> None:
+    """Refuse a meridian with a segment shorter than `FINEST`, or a bore narrower.
+
+    Raises
+    ------
+    InputError
+    """
+    for segment in outline:
+        (x0, r0), (x1, r1) = segment.start, segment.end
+        size, what = math.dist(segment.start, segment.end), "length"
+        if 0 < r0 < size or 0 < r1 < size:
+            size, what = min(r for r in (r0, r1) if r > 0), "radius"
+        if size < FINEST - LENGTH_TOLERANCE:
+            raise InputError(
+                f"a detail at x = {x0:.7g} to {x1:.7g} m, radius {r0:.7g} to {r1:.7g} m (a step, "
+                f"a bore, a fillet or what it leaves, or a rim beside a seat) has a {what} of "
+                f"{size:.2g} m but must have at least {FINEST:g} m, or none: enlarge it or leave "
+                "it out"
+            )
+
+
 def revolve(outline: Iterable[Segment]) -> int:
     """Turn a closed meridian round the x axis into a solid of the open gmsh model.
 
@@ -301,7 +343,14 @@ def revolve(outline: Iterable[Segment]) -> int:
     -------
     int
         Tag of the volume.
+
+    Raises
+    ------
+    InputError
+        A detail is finer than `FINEST`.
     """
+    outline = list(outline)
+    refuse_fine_details(outline)
     occ = gmsh.model.occ
     tags: dict[tuple[float, float], int] = {}
 

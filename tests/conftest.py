@@ -1,7 +1,9 @@
 """Scenes that several test modules solve: coarse, and built once a session."""
 
+import os
 from collections.abc import Iterator
 
+import hypothesis
 import numpy as np
 import pytest
 
@@ -10,6 +12,14 @@ from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.model import Model, build_model, mesh_scene
 from fe_drivetrain.response import Response, unit_load_response
 from fe_drivetrain.scene import Scene, change_scene, library_scene
+
+# The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
+# example takes depends on who else works on the machine, so there is no deadline.
+hypothesis.settings.register_profile(
+    "default", derandomize=True, max_examples=30, deadline=None, database=None
+)
+hypothesis.settings.register_profile("thorough", max_examples=1000, deadline=None)
+hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
 #: A short, coarse main bearing: thesis proportions, a tenth of the unknowns.
 COARSE = {

@@ -14,6 +14,7 @@ from fe_drivetrain.axisymmetric import (
     freedoms,
     harmonic_response,
     rigid_motions,
+    seat_stiffness,
     stiffness_between_ends,
     stress_at,
     stresses,
@@ -440,3 +441,88 @@ def test_stiffness_of_a_mesh_is_that_of_its_response():
             values[: 3 * len(front), 1] -= WILD.front * motions[moved, 0]
         energy = harmonic_response(mesh, STEEL, n, held=(which, values)).energy
         np.testing.assert_allclose(2 * energy, K[rows, rows], rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["stepped", "wild", "filleted"])
+def test_end_faces_are_seats_like_any(name):
+    shaft = SHAFTS[name]
+    ends = [(shaft.front, shaft.front), (shaft.rear, shaft.rear)]
+    K = end_stiffness(shaft, STEEL, layers=2)
+    np.testing.assert_allclose(
+        seat_stiffness(shaft, STEEL, ends, layers=2), K, atol=1e-12 * np.abs(K).max()
+    )
+
+
+def test_seats_are_held_together_by_the_shaft_alone():
+    """Symmetric, with six motions without force; each seat stiffer where it is wider."""
+    rows = []
+    for wide in (0.1, 0.3):
+        seats = [(-2.0, -2.0), (-1.7, -1.7 + wide), (-0.4, -0.4 + wide)]
+        K = seat_stiffness(STEPPED, STEEL, seats)
+        scale = np.sqrt(K.diagonal())
+        unit = K / np.outer(scale, scale)
+        np.testing.assert_allclose(unit, unit.T, atol=1e-12)
+        rigid = np.vstack(
+            [solid_motions(np.array([[(a + b) / 2, 0, 0]]), np.zeros(3)) for a, b in seats]
+        )
+        full = np.zeros((18, 6))
+        for k, (a, b) in enumerate(seats):
+            full[6 * k : 6 * k + 3] = rigid[3 * k : 3 * k + 3]
+            full[6 * k + 3 : 6 * k + 6] = np.eye(3, 6, 3)
+            assert full[6 * k + 2, 4] == -(a + b) / 2
+        assert np.abs((K @ full) / scale[:, None]).max() < 1e-7 * scale.max()
+        values = np.linalg.eigvalsh(unit)
+        assert np.abs(values[:6]).max() < 1e-8
+        assert values[6] > 1e-5
+        rows.append(K[[9, 15], [9, 15]])
+    assert np.all(rows[1] > rows[0])
+
+
+@pytest.mark.parametrize("name", ["stepped", "filleted"])
+def test_stiffness_of_a_seat_is_that_of_its_response(name):
+    """The outer surface between two stations, moved as a rigid body, and the front face held."""
+    shaft = SHAFTS[name]
+    low, high = shaft.rear - 0.6, shaft.rear - 0.35
+    outer = shaft.pieces[-1].outer_diameter / 2
+    K = seat_stiffness(shaft, STEEL, [(shaft.front, shaft.front), (low, high)], order=4, layers=1)
+    cut = Shaft(
+        front=shaft.front,
+        sections=[
+            shaft.sections[0],
+            *(
+                shaft.sections[1].model_copy(update={"length": length})
+                for length in (shaft.sections[1].length - 0.6, 0.25, 0.35)
+            ),
+        ],
+    )
+    corners = [(low, outer), (high, outer)]
+    mesh = meridian(cut, order=4, layers=1, corners=corners)
+    front = mesh.where(lambda x, r: np.abs(x - shaft.front) < 1e-9)
+    seat = mesh.where(
+        lambda x, r: (x > low - 1e-9) & (x < high + 1e-9) & (np.abs(r - outer) < 1e-9)
+    )
+    which = np.concatenate([freedoms(nodes, c) for nodes in (front, seat) for c in range(3)])
+    for n, numbers in ((0, (6, 9)), (1, (7, 11))):
+        motions = rigid_motions(mesh, n)
+        if n:  # about the seat's own middle
+            motions[:, 1] -= (low + high) / 2 * motions[:, 0]
+        values = np.zeros((len(which), 2))
+        values[3 * len(front) :] = motions[which[3 * len(front) :]]
+        energy = harmonic_response(mesh, STEEL, n, held=(which, values)).energy
+        np.testing.assert_allclose(2 * energy, K[numbers, numbers], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("seats", "message"),
+    [
+        ([(-1.2, -0.8), (0.0, 0.0)], "not on one section of the shaft"),
+        ([(-3.0, -1.8), (0.0, 0.0)], "not on one section of the shaft"),
+        ([(-1.5, -1.5), (0.0, 0.0)], "has no width"),
+        ([(-1.2, -1.5), (0.0, 0.0)], "has no width"),
+        ([(-1.8, -1.5), (-1.5, -1.3)], "two seats meet"),
+        ([(-2.0, -2.0), (-2.0, -1.8)], "two seats meet"),
+    ],
+)
+def test_wrong_seats_are_refused(seats, message):
+    with pytest.raises(InputError, match=message):
+        seat_stiffness(STEPPED, STEEL, seats, order=3, layers=0)

@@ -249,8 +249,21 @@ def test_correlation_survives_a_large_mean():
     assert cp.correlation(1e8 + wave, 1e8 - wave) == pytest.approx(-1.0, abs=1e-9)
 
 
+def test_median_error_does_not_feel_outliers():
+    """A minority of samples, however wrong, leaves it within the differences of the others."""
+    rng = np.random.default_rng(2)
+    r = rng.standard_normal(1001)
+    error = rng.uniform(0.1, 0.3, 1001) * np.where(rng.random(1001) < 0.5, -1.0, 1.0)
+    clean = cp.median_error(r, r + error)
+    assert clean == pytest.approx(np.sort(np.abs(error))[500], rel=1e-12)
+    error[:400] = 1e9
+    assert 0.1 <= cp.median_error(r, r + error) <= 0.3
+    assert cp.rmse(r, r + error) > 1e8
+
+
 STATISTICS = (
     cp.rmse,
+    cp.median_error,
     cp.bias,
     cp.relative_scatter,
     cp.relative_error,

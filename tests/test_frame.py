@@ -538,3 +538,12 @@ RIGID_COUPLED[0, 1] = RIGID_COUPLED[1, 0] = 0.1
 def test_bad_input_is_named(make, says):
     with pytest.raises(InputError, match=says):
         make()
+
+
+def test_a_spring_that_is_as_good_as_none_is_named_so() -> None:
+    supports = [
+        Support("bearing", 2.0, [np.inf, np.inf, np.inf, 0, 0, 0]),
+        Support("gearbox", 4.0, [0, 1e-9, 1e-9, np.inf, 0, 0]),
+    ]
+    with pytest.raises(InputError, match="times softer than the shaft"):
+        solve(Beam([BeamSection(4.0, 0.4)], supports), 0.0, [0, 0, 1e5, 0, 0, 0])

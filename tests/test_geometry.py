@@ -15,6 +15,7 @@ from fe_drivetrain.geometry import (
     build,
     gmsh_session,
 )
+from fe_drivetrain.geometry.assembly import _elements_beside, _size_limit
 from pydantic import ValidationError
 
 from fe_drivetrain.errors import InputError
@@ -499,6 +500,59 @@ def test_an_assembly_that_does_not_fit_is_refused_in_one_sentence(arguments, wor
 def test_a_housing_just_wide_enough_to_clear_the_shaft_is_built():
     # sqrt(0.3^2 - 0.22^2) = 0.20396 > 0.2
     assemble(plain_shaft(2.0), housings={"main_bearing": Housing(width=0.44, foot_width=0.44)})
+
+
+def two_sections(one, two):
+    return Shaft(front=0.0, sections=(section(**one), section(**two)))
+
+
+@pytest.mark.parametrize(
+    ("shaft", "words"),
+    [
+        # a step of two micrometres; a collar as short; a bore as narrow
+        (two_sections({}, {"outer_diameter": 0.400004}), "radius 0.2 to 0.200002 m"),
+        (two_sections({"length": 2e-6}, {"outer_diameter": 0.5}), "a length of 2e-06 m"),
+        (two_sections({}, {"inner_diameter": 4e-6}), "must have at least 1e-05 m, or none"),
+        # what a fillet leaves of its step
+        (two_sections({"fillet": 0.0499999}, {"outer_diameter": 0.5}), "a length of 1e-07 m"),
+        # a bore of a tenth of a millimetre is no detail too fine, but costs too many elements
+        (plain_shaft(inner=1e-4), "must make at most 1e+06: leave that detail out"),
+        (plain_shaft(2000.0, 700.0), "2 and 0.7 m if these were millimetres"),
+    ],
+)
+def test_details_that_no_mesh_can_follow_are_refused_at_once(shaft, words):
+    with pytest.raises(InputError) as caught:
+        assemble(shaft, [], {})
+    assert words in str(caught.value)
+    assert "gmsh" not in str(caught.value)
+
+
+def test_millimetres_are_refused_in_bearings_and_housings_too():
+    millimetres = Bearing(width=200.0, raceway_diameter=600.0, bore_diameter=400.0)
+    with pytest.raises(InputError, match="bearing 'main_bearing' is 200 m long and 600 m wide"):
+        assemble(None, [millimetres], {})
+    housing = Housing(foot_length=1250.0)
+    with pytest.raises(InputError, match=r"housing of 'main_bearing'.*1\.25 m if these were"):
+        assemble(SHAFT, housings={"main_bearing": housing})
+
+
+def test_lengths_within_the_tolerance_are_one_length_and_no_detail():
+    assemble(two_sections({}, {"outer_diameter": 0.4 + 1e-10}), [], {})
+
+
+def test_the_number_of_elements_beside_a_narrow_face_is_foreseen():
+    """A step of half a millimetre, within a factor of two of what gmsh makes of it."""
+    shaft = two_sections({"length": 0.5}, {"length": 0.5, "outer_diameter": 0.401})
+    with gmsh_session():
+        build(shaft, [], {}, MeshSizes(shaft=0.3))
+        annulus = [
+            tag for _, tag in gmsh.model.getEntities(2) if gmsh.model.occ.getMass(2, tag) < 1e-3
+        ]
+        foreseen = _elements_beside(annulus[0], _size_limit(annulus[0], 12))
+        gmsh.model.mesh.generate(3)
+        made = len(gmsh.model.mesh.getElementsByType(4)[0])
+    assert len(annulus) == 1
+    assert made / 2 < foreseen < made * 2
 
 
 # the session

@@ -415,7 +415,7 @@ def test_csv_round_trip_is_exact(
     attributes = {"wind_speed": 12.0, "turbulence": "high", "seed": 3, "source": "test"}
     history = LoadHistory("round", start + step * np.arange(7.0), loads, attributes)
     write_csv(history, tmp_path / "round.csv")
-    back = read_hub_loads(tmp_path / "round.csv")
+    back = read_csv(tmp_path / "round.csv")
     np.testing.assert_array_equal(back.time, history.time)
     np.testing.assert_array_equal(back.loads, history.loads)
     assert back.attributes == attributes
@@ -483,3 +483,44 @@ def test_a_load_beyond_reason_is_a_wrong_unit(tmp_path):
     path.write_text("time [s], Fx [N], Fy [N], Fz [N], Mx [N m], My [N m], Mz [N m]\n" + rows)
     with pytest.raises(InputError, match=r"Fx is 1e\+15 .* at line 2 .*check the unit"):
         read_csv(path)
+
+
+def test_a_history_that_never_varies_is_refused(tmp_path: Path) -> None:
+    """Whatever the value: with one sample that differs it is a history."""
+    rows = [f"{0.1 * k},1,2,-3,4,0,0.1" for k in range(5)]
+    header = "time [s],Fx [kN],Fy [kN],Fz [kN],Mx [kN m],My [kN m],Mz [kN m]"
+    file = tmp_path / "still.csv"
+    file.write_text("\n".join([header, *rows]))
+    with pytest.raises(InputError, match=r"still\.csv': all 5 samples are the same load"):
+        read_hub_loads(file)
+    file.write_text("\n".join([header, *rows[:-1], "0.4,1,2,-3.001,4,0,0.1"]))
+    assert len(read_hub_loads(file)) == 5
+
+
+@pytest.mark.parametrize(
+    ("rows", "says"),
+    [
+        (["0,1,2,nan,4,5,6", *(f"{k},1,{k},3,4,5,6" for k in range(1, 5))], "Fz is nan at line 2"),
+        (["0,1,2,3,4,5,6"], "1 samples, fewer than the 3"),
+        ([], "0 samples, fewer than the 3"),
+        ([f"{k},1,2,3,4,5,6" for k in range(5)], "all 5 samples are the same load"),
+    ],
+)
+def test_the_program_says_what_is_wrong_with_a_history(
+    tmp_path, capsys, monkeypatch, rows, says
+) -> None:
+    """Before any work: one sentence and status 2."""
+    from fe_drivetrain import cli
+
+    header = "time [s],Fx [kN],Fy [kN],Fz [kN],Mx [kN m],My [kN m],Mz [kN m]"
+    file = tmp_path / "loads.csv"
+    file.write_text("\n".join([header, *rows]))
+    words = ["run", "main_bearing/rmse", "--set", f"loads={file}", "--out", str(tmp_path / "out")]
+    monkeypatch.setattr("sys.argv", ["fe-drivetrain", *words])
+    with pytest.raises(SystemExit) as stopped:
+        cli.main()
+    said = capsys.readouterr().err.strip().splitlines()[-1]
+    assert stopped.value.code == 2
+    assert says in said
+    assert "Traceback" not in said
+    assert not (tmp_path / "out").exists()

@@ -13,7 +13,7 @@ from conftest import COARSE
 
 from fe_drivetrain.case import all_cases, find_cases, run_case
 from fe_drivetrain.cli import main
-from fe_drivetrain.export import read_stiffness_json
+from fe_drivetrain.export.stiffness_file import read_stiffness_json
 from fe_drivetrain.results import read_results
 
 ROOT = Path(__file__).parents[1]

@@ -518,6 +518,15 @@ def test_jacobians_agree_with_gmsh():
     assert scaled.min() < 0.9, "some elements must be curved for this to mean anything"
 
 
+def test_a_straight_element_turned_inside_out_is_found():
+    cell = one_cell()
+    mirrored = Mesh(cell.points * [-1, 1, 1], cell.cells, cell.part, cell.part_names, {}, {})
+    assert list(inverted_cells(cell)) == []
+    assert list(inverted_cells(mirrored)) == [0]
+    flat = Mesh(cell.points * [1, 1, 0], cell.cells, cell.part, cell.part_names, {}, {})
+    assert list(inverted_cells(flat)) == [0]
+
+
 def test_quality_counts_and_parts(joint):
     report = quality(joint)
     assert (report.elements, report.nodes) == (len(joint.cells), len(joint.points))

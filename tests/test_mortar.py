@@ -58,6 +58,7 @@ def following(constraint, points):
     return -constraint.rows[::3][:, : 3 * len(points) : 3]
 
 
+@pytest.mark.filterwarnings("ignore:tie 't'. the master face has:UserWarning")
 @pytest.mark.parametrize("multipliers", ["dual", "standard"])
 @pytest.mark.parametrize("nodes", KINDS)
 @pytest.mark.parametrize(("own", "other"), [(3, 2), (1, 4)])
@@ -214,3 +215,52 @@ def test_other_mistakes_are_named():
         mortar_tie("seat", points, slave, twice, points.size)
     with pytest.raises(InputError, match="share nodes"):
         mortar_tie("seat", points, slave, slave, points.size)
+
+
+def two_polygons(own, other):
+    """Rings of straight hexahedra: their faces are polygons, which lie apart."""
+    return two_rings(own, other, nodes=8)
+
+
+@pytest.mark.parametrize("make", [mortar_tie, node_tie])
+def test_a_slave_that_is_much_coarser_is_warned_of(make):
+    points, coarse, fine = two_blocks(1, 4)
+    with pytest.warns(UserWarning, match="take the finer face as the slave"):
+        make("t", points, coarse, fine, points.size)
+
+
+@pytest.mark.parametrize("make", [mortar_tie, node_tie])
+@pytest.mark.parametrize(("own", "other"), [(3, 3), (4, 3), (8, 1)])
+def test_a_finer_slave_is_not_warned_of(make, own, other, recwarn):
+    points, slave, master = two_blocks(own, other)
+    make("t", points, slave, master, points.size)
+    assert not recwarn.list
+
+
+@pytest.mark.parametrize("make", [mortar_tie, node_tie])
+def test_faces_that_lie_apart_are_warned_of_until_settled(make):
+    points, slave, master = two_polygons(16, 8)
+    with pytest.warns(UserWarning, match="by which moments fail to balance"):
+        tie = make("t", points, slave, master, points.size)
+    moments = rigid_motions(points)[:, 3:]
+    assert np.abs(tie.rows @ moments).max() > 0.01
+    assert np.abs(tie.rows @ rigid_motions(settled(points, tie))).max() < 1e-13
+
+
+@pytest.mark.parametrize("make", [mortar_tie, node_tie])
+def test_curved_facets_meet_their_cylinder_closely_enough(make, recwarn):
+    points, slave, master = two_rings(10, 8)
+    make("t", points, slave, master, points.size)
+    assert not recwarn.list
+
+
+def test_faces_too_far_apart_are_told_from_faces_that_do_not_cover():
+    points, slave, master = two_polygons(8, 64)
+    with (
+        pytest.warns(UserWarning, match="finer face"),
+        pytest.raises(InputError, match=r"lie further apart than 0\.25 of a master facet"),
+    ):
+        mortar_tie("seat", points, slave, master, points.size)
+    points, slave, master = two_blocks(3, 2, larger=-0.1)
+    with pytest.raises(InputError, match="take the smaller face as the slave"):
+        mortar_tie("seat", points, slave, master, points.size)

@@ -1,17 +1,19 @@
 """Every solver behind one interface, on systems whose answer is known."""
 
 import importlib.util
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy import sparse
 
 from fe_drivetrain import cost, direct, multigrid
+from fe_drivetrain.blocks import brick
 from fe_drivetrain.elasticity import assemble, rigid_motions
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.reduction import System, reduce
-from fe_drivetrain.solvers import METHODS, factorise, solve
+from fe_drivetrain.solvers import ITERATIVE, METHODS, factorise, solve
 
 
 def missing(method):
@@ -68,7 +70,8 @@ def test_recovers_a_known_solution(cube, method, rng):
     assert solution.residual < 1e-10
     assert solution.energy_error < 1e-12
     assert solution.bytes > 0
-    assert (solution.iterations > 0) == (method == "multigrid")
+    assert (solution.iterations > 0) == (method in ITERATIVE)
+    assert 0.0 < solution.round_off < 1e-10
 
 
 @pytest.mark.parametrize("method", EACH)
@@ -107,7 +110,7 @@ def test_zero_load_is_no_division_by_zero(cube, method):
     assert np.abs(solution.x).max() == 0.0
 
 
-@pytest.mark.parametrize("method", [m for m in EACH if "multigrid" not in m.values])
+@pytest.mark.parametrize("method", [m for m in EACH if m.values[0] not in ITERATIVE])
 def test_singular_matrix_is_refused(method):
     points, cells = tetrahedra(2)
     K = assemble(points, cells, (1.0, 1.0))
@@ -116,22 +119,24 @@ def test_singular_matrix_is_refused(method):
         solve(system, rigid_motions(points), method)
 
 
-def test_multigrid_refuses_a_floating_body():
+@pytest.mark.parametrize("method", ITERATIVE)
+def test_iterations_refuse_a_floating_body(method):
     """No solution exists: it must not pass one off, and the direct solver behind it neither."""
     points, cells = tetrahedra(3)
     K = assemble(points, cells, (1.0, 1.0))
     system = reduce(points, cells, K, eliminate([], points.size))
     with pytest.raises(InputError, match="singular"):
-        solve(system, rigid_motions(points)[:, :1], "multigrid")
+        solve(system, rigid_motions(points)[:, :1], method)
 
 
-def test_an_iteration_that_stalls_falls_back_and_says_so(cube, rng, monkeypatch):
+@pytest.mark.parametrize("method", ITERATIVE)
+def test_an_iteration_that_stalls_falls_back_and_says_so(cube, rng, monkeypatch, method):
     system, elimination = cube
     x, F = known(system, elimination, rng)
     monkeypatch.setattr(multigrid, "MAX_ITERATIONS", 3)
-    solution = solve(system, F, "multigrid")
+    solution = solve(system, F, method)
     assert solution.method in direct.PACKAGES
-    assert "multigrid stopped after 3 iterations" in solution.reason
+    assert f"{method} stopped after 3 iterations" in solution.reason
     np.testing.assert_allclose(solution.x, x, atol=1e-9 * np.abs(x).max())
 
 
@@ -199,3 +204,72 @@ def test_a_matrix_without_blocks_of_elements_is_solved(rng):
     system = System(K, None, motions, np.zeros(40, dtype=int), 120)
     x = rng.standard_normal((120, 2))
     np.testing.assert_allclose(solve(system, K @ x, "multigrid", 1e-12).x, x, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("size", "divisions", "chunky"),
+    [
+        ((2.0, 1.0, 1.0), (8, 4, 4), True),
+        ((1.0, 1.0, 0.01), (6, 6, 1), False),
+        ((100.0, 1.0, 1.0), (20, 1, 1), False),
+    ],
+)
+def test_thin_and_slender_solids_are_expected_to_take_multigrid_long(size, divisions, chunky):
+    """More than it tries; chunky ones are judged by their elements alone."""
+    block = brick(divisions, 27, lambda p: p * size)
+    K = assemble(block.points, block.cells, (1.0, 1.0))
+    wall = fixed("wall", block.face_nodes("x0"), block.points.size)
+    system = reduce(block.points, block.cells, K, eliminate([wall], block.points.size))
+    alone = cost.iterations(replace(system, elements=None))
+    if chunky:
+        assert cost.iterations(system) == alone
+    else:
+        assert cost.iterations(system) > multigrid.MAX_ITERATIONS > alone
+
+
+def test_thinness_of_a_plate_is_that_of_its_wall():
+    """A plate l x l x t of square elements h: wall t, in the limit, and extent l sqrt(2)."""
+    block = brick((10, 10, 1), 8, lambda p: p * [1.0, 1.0, 1e-4])
+    K = assemble(block.points, block.cells, (1.0, 1.0))
+    system = reduce(block.points, block.cells, K, eliminate([], block.points.size))
+    expected = 0.1 / 1e-4 * np.sqrt(np.sqrt(2.0) / 2e-4)
+    assert cost.thinness(system.elements) == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.skipif(missing("cholmod"), reason="cholmod is not installed")
+def test_entries_of_a_factor_are_counted(cube):
+    """Against CHOLMOD's own factor, which it copies to show; its supernodes keep some zeros."""
+    from sksparse.cholmod import cholesky
+
+    A = sparse.csc_matrix(cube[0].K)
+    factor = cholesky(A, ordering_method="metis", mode="simplicial")
+    counted = direct.entries_of_factor(A.indptr, A.indices, factor.P())
+    assert counted == factor.L().nnz
+    dense = sparse.csc_matrix(np.ones((7, 7)))
+    assert direct.entries_of_factor(dense.indptr, dense.indices, np.arange(7)) == 28
+
+
+def test_what_rounding_decides_is_refused_by_every_solver():
+    """A rod of a million times its width: no digit of its bending is left."""
+    block = brick((12, 1, 1), 27, lambda p: p * [1e6, 1.0, 1.0])
+    K = assemble(block.points, block.cells, (1.0, 1.0))
+    wall = fixed("wall", block.face_nodes("x0"), block.points.size)
+    system = reduce(block.points, block.cells, K, eliminate([wall], block.points.size))
+    F = np.zeros((block.points.size, 1))
+    F[3 * block.face_nodes("x1") + 2] = 1.0
+    for method in METHODS:
+        if not missing(method):
+            with pytest.raises(InputError):
+                solve(system, F, method)
+
+
+def test_doubt_by_rounding_is_told():
+    block = brick((8, 1, 1), 27, lambda p: p * [600.0, 1.0, 1.0])
+    K = assemble(block.points, block.cells, (1.0, 1.0))
+    wall = fixed("wall", block.face_nodes("x0"), block.points.size)
+    system = reduce(block.points, block.cells, K, eliminate([wall], block.points.size))
+    F = np.zeros((block.points.size, 1))
+    F[3 * block.face_nodes("x1") + 2] = 1.0
+    solution = solve(system, F, "superlu")
+    assert 1e-4 < solution.round_off < 0.1
+    assert "rounding may change the answer" in solution.reason

@@ -5,6 +5,7 @@ import pytest
 
 from fe_drivetrain.blocks import brick
 from fe_drivetrain.elasticity import rigid_motions
+from fe_drivetrain.errors import InputError
 from fe_drivetrain.interfaces import (
     fixed,
     freedoms,
@@ -111,3 +112,16 @@ def test_principal_stresses_do_not_turn_with_the_frame(rng):
     np.testing.assert_allclose(
         von_mises(s), np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))), rtol=1e-13
     )
+
+
+def test_an_element_without_volume_is_said() -> None:
+    block = brick((2, 2, 2), nodes=4)
+    points = block.points.copy()
+    corners = block.cells[0]
+    points[corners[3]] = points[corners[:3]].mean(axis=0)
+    n = points.size
+    held = fixed("x0", block.face_nodes("x0"), n)
+    F = np.zeros((n, 1))
+    F[3 * block.face_nodes("x1") + 2] = 1.0
+    with pytest.raises(InputError, match="an element of the mesh has no volume"):
+        solve_solid(points, block.cells, (1.2e11, 8e10), [held], F, method="multigrid")

@@ -17,6 +17,8 @@ from fe_drivetrain.stiffness import (
     without_gearbox,
 )
 
+pytestmark = pytest.mark.filterwarnings("ignore:tilt stiffness of:UserWarning")
+
 
 @pytest.fixture(scope="module")
 def free(bonded_model):
@@ -126,3 +128,25 @@ def test_rigid_joint_is_the_stiffest(spherical_responses):
     for axis in (0, 2):
         assert K["rigid"][axis] > K["sliding"][axis]
         assert K["rigid"][axis] > K["averaged"][axis]
+
+
+def test_four_nodes_that_mislead_are_warned_of(free):
+    """On the housing's outside they miss the give of ring and shell, in either plane."""
+    for plane in PLANES:
+        with pytest.warns(UserWarning, match=f"{plane.name} plane: four nodes .* above"):
+            found = tilt_stiffness(*free, "main_bearing", plane)
+        assert found["four nodes"] > 1.05 * found["averaged seat"]
+
+
+def test_four_nodes_that_agree_are_not_warned_of(free, recwarn):
+    """A response in which the line between the nodes turns as the seat does."""
+    model, response = free
+    turned = response.displacements.copy()
+    upper, lower = (model.mesh.named_points[f"main_bearing.housing.{p}"] for p in VERTICAL.nodes)
+    arm = np.linalg.norm(model.mesh.points[upper] - model.mesh.points[lower])
+    seat = response.motions["main_bearing.seat"][VERTICAL.moment]
+    turned[upper, 0] = turned[lower, 0] + arm * seat
+    alike = dataclasses.replace(response, displacements=turned)
+    found = tilt_stiffness(model, alike, "main_bearing", VERTICAL)
+    assert found["four nodes"] == pytest.approx(found["averaged seat"])
+    assert not recwarn.list

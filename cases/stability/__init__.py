@@ -1,0 +1,1 @@
+"""Where methods fail: sweeps of one parameter into failure."""

@@ -1,0 +1,393 @@
+"""A small case that is killed, starved and run twice at once; a program of its own.
+
+It is started afresh, so that it may fork: its children are what faults happen to.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import shutil
+import signal
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import ParseError
+
+import gmsh
+import meshio
+import numpy as np
+from fe_drivetrain.geometry import MeshSizes, Shaft
+from fe_drivetrain.geometry import Section as ShaftSection
+
+from fe_drivetrain import cli, report
+from fe_drivetrain.cache import VARIABLE, Cache
+from fe_drivetrain.case import Case, Run, run_case, run_into
+from fe_drivetrain.elasticity import rigid_motions, sparsity
+from fe_drivetrain.interfaces import freedoms
+from fe_drivetrain.materials import MATERIALS
+from fe_drivetrain.mesh import write
+from fe_drivetrain.mesh_cache import _content, cached_mesh
+from fe_drivetrain.results import Environment, Results, read_results
+from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.suite import run_cases
+
+OLD, NEW, BROKEN = "old", "new", "broken"
+FILES = ("report.html", "results.json", "shaft.vtu")
+SHAFT = Shaft(front=0.0, sections=(ShaftSection(length=0.6, outer_diameter=0.4),))
+SIZES = MeshSizes(shaft=0.4, elements_per_turn=6)
+
+
+def small(run: Run) -> Results:
+    """Torsional stiffness of a short shaft: mesh, solve, write."""
+    with run.step("mesh"):
+        mesh = cached_mesh(SHAFT, [], {}, SIZES, frozenset())
+    with run.step("solve"):
+        steel = MATERIALS["steel"]
+        ends = [mesh.face_nodes(f"shaft.{end}") for end in ("front", "rear")]
+        turned = rigid_motions(mesh.points)[:, 3].reshape(-1, 3)
+        turned[ends[0]] = 0.0
+        held = np.concatenate([freedoms(nodes).ravel() for nodes in ends])
+        loads = np.zeros(mesh.points.size)
+        prescribed = (held, turned.ravel()[held])
+        found = solve_solid(mesh.points, mesh.cells, steel.lame, [], loads, prescribed, "superlu")
+        stiffness = 2.0 * float(found.energy[0])
+    with run.step("write"):
+        mark = str(run.settings["mark"])
+        write(mesh, run.folder / "shaft.vtu", {mark: found.u.reshape(-1, 3)})
+    return results(mark, stiffness)
+
+
+def results(mark: str, stiffness: float) -> Results:
+    """Whose they are, and the one figure."""
+    return Results(
+        case="faults/small",
+        title="Small case",
+        source="Saint-Venant",
+        summary=[mark],
+        verdicts=[],
+        sections=[],
+        figures={"stiffness": stiffness},
+        environment=Environment(date="", python="", platform="", versions={}, settings={}),
+    )
+
+
+MESH_CONTENT = _content(SHAFT, [], {}, SIZES, frozenset())
+CASE_KILLED = Case("faults/small", "Small case", "Saint-Venant", small)
+
+
+@dataclass(frozen=True)
+class Killed:
+    """What a kill left.
+
+    Attributes
+    ----------
+    moment
+        Of the kill [s] after the start.
+    step
+        During which step of the run.
+    found
+        Whose results are there: `OLD`, `NEW`, or `BROKEN`.
+    hidden
+        Unfinished files and folders beside the results.
+    """
+
+    moment: float
+    step: str
+    found: str
+    hidden: int
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Another fault: what it is, what the program said and returned, and what was left."""
+
+    fault: str
+    said: str
+    status: int
+    found: str
+    hidden: int
+
+
+@dataclass(frozen=True)
+class Found:
+    """The whole experiment.
+
+    Attributes
+    ----------
+    seconds
+        One run, unharmed [s].
+    stiffness
+        What it computes [N m/rad].
+    killed, killed_in_place
+        As the program writes, and writing straight into the result folder.
+    left
+        Hidden files and folders after one more run.
+    faults
+        The others.
+    damaged
+        Damages of the cache tried, and for how many of them the stiffness was another.
+    """
+
+    seconds: float
+    stiffness: float
+    killed: list[Killed]
+    killed_in_place: list[Killed]
+    left: int
+    faults: list[Fault]
+    damaged: tuple[int, int]
+
+
+def state(out: Path) -> str:
+    """Whose results stand in a folder, every file of it read."""
+    try:
+        (mark,) = read_results(out / "results.json").summary
+        whole = sorted(p.name for p in out.iterdir()) == list(FILES)
+        whole = whole and mark in (out / "report.html").read_text("utf-8")
+        whole = whole and meshio.read(out / "shaft.vtu").point_data.keys() == {mark}
+    except (OSError, ValueError, ParseError, meshio.ReadError):
+        return BROKEN
+    return mark if whole else BROKEN
+
+
+def hidden(*folders: Path) -> int:
+    """Unfinished files and folders."""
+    return sum(1 for folder in folders for _ in folder.glob("**/.*"))
+
+
+def child(work: Callable[[], int]) -> tuple[int, int]:
+    """Start it in a child process: its number, and a pipe that tells what it says."""
+    read, write_end = os.pipe()
+    pid = os.fork()
+    if pid == 0:
+        status = 99
+        try:
+            os.dup2(write_end, 2)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            status = work()
+        finally:
+            os._exit(status)
+    os.close(write_end)
+    return pid, read
+
+
+def ended(pid: int, read: int) -> tuple[int, str]:
+    """Wait for a child: its status, and what it said."""
+    said = b""
+    while part := os.read(read, 65536):
+        said += part
+    os.close(read)
+    return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), said.decode(errors="replace")
+
+
+def run_new(out: Path) -> int:
+    """As the command line does it."""
+    return cli._run(lambda: [CASE_KILLED], out, [f"mark={NEW}"], quick=False)
+
+
+def run_in_place(out: Path) -> int:
+    """As a program does it that knows no better: it empties the folder and writes into it."""
+    shutil.rmtree(out)
+    out.mkdir()
+    with cli._progress() as report:
+        run_into(CASE_KILLED, out, {"mark": NEW}, False, report)
+    return 0
+
+
+def experiment(folder: Path, moments: int) -> Found:
+    """Make every fault happen in a folder of its own."""
+    caches, out = folder / "cache", folder / "reports" / "small"
+    os.environ[VARIABLE] = str(caches)
+
+    def afresh() -> None:
+        """Old results, and no mesh in the cache."""
+        for path in out.parent.glob("*"):
+            shutil.rmtree(path)
+        shutil.copytree(kept, out)
+        shutil.rmtree(caches, ignore_errors=True)
+
+    kept = folder / "kept"
+    pid, read = child(lambda: int(run_case(CASE_KILLED, kept, {"mark": OLD}) is None))
+    ended(pid, read)
+    stiffness = float(read_results(kept / "results.json").figures["stiffness"])
+    out.parent.mkdir()
+    afresh()
+    start = time.perf_counter()
+    ended(*child(lambda: run_new(out)))
+    seconds = time.perf_counter() - start
+
+    def sweep(work: Callable[[Path], int], moments: int) -> list[Killed]:
+        """Kill later and later, until a run ends before; in half steps again if that was soon."""
+        found: list[Killed] = []
+        step = seconds / moments
+        at = 0.5 * step
+        while len(found) < 4 * moments:
+            afresh()
+            start = time.perf_counter()
+            pid, read = child(lambda: work(out))
+            time.sleep(at)
+            moment = time.perf_counter() - start
+            os.kill(pid, signal.SIGKILL)
+            status, said = ended(pid, read)
+            steps = [line.split(" ... ")[0] for line in said.splitlines() if " ... " in line]
+            during = "over" if status == 0 else steps[-1] if steps else "start"
+            found.append(Killed(moment, during, state(out), hidden(out.parent, caches)))
+            at += step
+            if status == 0:
+                if len(found) > moments:
+                    break
+                step /= 2
+                at = 0.5 * step
+        return found
+
+    in_place = sweep(run_in_place, moments // 2)
+    killed = sweep(run_new, moments)
+    ended(*child(lambda: run_new(out)))
+    # keeping anything in the cache tidies it
+    Cache(caches).keep("meshes", {}, {"a": np.zeros(1)})
+    left = hidden(out.parent, caches)
+
+    def told(name: str, work: Callable[[], int], at: Path = out) -> Fault:
+        status, said = ended(*child(work))
+        (line,) = said.strip().splitlines()[-1:] or [""]
+        return Fault(name, line, status, state(at), hidden(out.parent, caches))
+
+    faults = []
+    for sent in (signal.SIGINT, signal.SIGTERM):
+        afresh()
+        faults.append(told(f"{sent.name} while it solves", partial(_signalled, sent, out)))
+    afresh()
+    faults.append(told("disk full from 5 kB a file on", lambda: _starved(5000, out)))
+    afresh()
+    blocked = folder / "file"
+    blocked.write_text("in the way")
+    faults.append(told("cache that cannot be written", lambda: _without_cache(blocked, out)))
+    afresh()
+    pids = [child(lambda: run_new(out)) for _ in range(2)]
+    both = [ended(*p) for p in pids]
+    faults.append(
+        Fault(
+            "two runs into one folder",
+            both[0][1].strip().splitlines()[-1],
+            max(status for status, _ in both),
+            state(out),
+            hidden(out.parent),
+        )
+    )
+    afresh()
+    many = folder / "many"
+    shutil.copytree(kept, many / "faults" / "fails")
+    faults.append(
+        told(
+            "gmsh fails in one case of three",
+            lambda: _one_of_three(many),
+            many / "faults" / "fails",
+        )
+    )
+    others = [state(many / "faults" / name) for name in ("first", "last")]
+    if others != [NEW, NEW]:
+        faults[-1] = replace(faults[-1], found=BROKEN)
+    return Found(
+        seconds, stiffness, killed, in_place, left, faults, _damaged(caches, out, stiffness)
+    )
+
+
+def _signalled(sent: signal.Signals, out: Path) -> int:
+    # a shell, or a worker process, that ignores Ctrl-C hands that on to its children
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def stop(*arguments: Any, **more: Any) -> Any:
+        os.kill(os.getpid(), sent)
+        time.sleep(10)
+
+    globals()["solve_solid"] = stop
+    try:
+        return run_new(out)
+    except SystemExit as end:
+        return int(end.code or 0)
+
+
+def _starved(size: int, out: Path) -> int:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+    return run_new(out)
+
+
+def _without_cache(file: Path, out: Path) -> int:
+    os.environ[VARIABLE] = str(file)
+    return run_new(out)
+
+
+def _one_of_three(out: Path) -> int:
+    def failing(run: Run) -> Results:
+        def refuse(dimension: int) -> None:
+            raise Exception("PLC Error: A segment and a facet intersect at point")
+
+        shutil.rmtree(os.environ[VARIABLE], ignore_errors=True)
+        generate, gmsh.model.mesh.generate = gmsh.model.mesh.generate, refuse
+        try:
+            return small(run)
+        finally:
+            gmsh.model.mesh.generate = generate
+
+    names = {"first": small, "fails": failing, "last": small}
+    cases = [Case(f"faults/{name}", "t", "s", work) for name, work in names.items()]
+    problems = run_cases(cases, out, {"mark": NEW})
+    sys.stderr.write("".join(f"{name}: {p.message}\n" for name, p in problems.items()))
+    return 2 if problems else 0
+
+
+def _damaged(caches: Path, out: Path, stiffness: float) -> tuple[int, int]:
+    """Damages of a kept mesh, and how many of them changed the mesh."""
+    shutil.rmtree(caches, ignore_errors=True)
+    ended(*child(lambda: run_new(out)))
+    (file,) = caches.rglob("*.npz")
+    content = file.read_bytes()
+    cache = Cache(caches)
+    sound = _mesh_arrays(file)
+    rng = np.random.default_rng(0)
+    wrong = count = 0
+    for place in rng.integers(0, len(content), 60).tolist():
+        for damage in ("flip", "cut", "zero"):
+            changed = bytearray(content)
+            if damage == "flip":
+                changed[place] ^= 1 << int(rng.integers(0, 8))
+            elif damage == "cut":
+                del changed[place:]
+            else:
+                changed[place : place + 256] = bytes(len(changed[place : place + 256]))
+            file.write_bytes(changed)
+            loaded = cache.load("meshes", MESH_CONTENT)
+            count += 1
+            wrong += loaded is not None and any(
+                loaded[name].tobytes() != array.tobytes()
+                for name, array in sound.items()
+                if name in loaded
+            )
+    file.write_bytes(content[: len(content) // 2])
+    ended(*child(lambda: run_new(out)))
+    again = float(read_results(out / "results.json").figures["stiffness"])
+    return count + 1, wrong + (again != stiffness)
+
+
+def _mesh_arrays(file: Path) -> dict[str, Any]:
+    with np.load(file, allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def main() -> None:
+    """The experiment in the folder and with as many moments as the command line says, as JSON."""
+    # what a run loads first, once for all children: a compiled kernel (one that starts no threads,
+    # for these do not survive a fork) and the template of the page
+    sparsity(np.arange(8).reshape(1, 8), 8)
+    report.render(results(OLD, 0.0), Path())
+    found = experiment(Path(sys.argv[1]), int(sys.argv[2]))
+    print(json.dumps(asdict(found)))
+
+
+if __name__ == "__main__":
+    main()

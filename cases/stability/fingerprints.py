@@ -1,0 +1,138 @@
+"""One process's answers, to the last bit: written to a file, to be compared with another's.
+
+Run as ``python -m fe_drivetrain.cases.stability.fingerprints FILE L/D ...``; the threads are those
+that the environment gives.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Arrays = Mapping[str, NDArray[np.float64]]
+
+_THREADS = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "NUMBA_NUM_THREADS",
+    "FE_DRIVETRAIN_CORES",
+)
+
+#: Compared as one number each; all else as arrays.
+STIFFNESS = "stiffness"
+
+
+def scene_arrays() -> dict[str, NDArray[np.float64]]:
+    """ "mesh" and "operator" of a main bearing, made anew where the cache is off."""
+    from fe_drivetrain.cases.stability import soft_springs
+
+    from fe_drivetrain.model import build_model, mesh_scene
+
+    scene = soft_springs.scene_of("bonded")
+    mesh = mesh_scene(scene)
+    return {"mesh": mesh.points, "operator": build_model(scene, mesh).stiffness.data}
+
+
+def tube_answers(
+    slenderness: Iterable[float], backwards: bool = False
+) -> dict[str, NDArray[np.float64]]:
+    """Displacements of tubes under a force across their end, and their bending stiffness.
+
+    Parameters
+    ----------
+    slenderness
+        Lengths over the diameter.
+    backwards
+        Nodes are numbered from the last to the first.
+
+    Returns
+    -------
+    arrays
+        "METHOD at L/D" (n,) in the order of the numbers, and "stiffness, METHOD at L/D" (1,); NaN
+        where the method refuses, or leaves it to another one.
+    """
+    from fe_drivetrain.geometry import Section, Shaft
+
+    from fe_drivetrain.elasticity import assemble
+    from fe_drivetrain.errors import InputError
+    from fe_drivetrain.hexahedra import shaft_hexahedra
+    from fe_drivetrain.interfaces import eliminate, fixed
+    from fe_drivetrain.materials import MATERIALS
+    from fe_drivetrain.reduction import reduce
+    from fe_drivetrain.solvers import factorise
+
+    lame = MATERIALS["steel"].lame
+    found: dict[str, NDArray[np.float64]] = {}
+    for value in slenderness:
+        length = 0.6 * value
+        tube = Shaft(
+            front=0.0,
+            sections=(Section(length=length, outer_diameter=0.6, inner_diameter=0.3),),
+        )
+        solid = shaft_hexahedra(tube, 1.001 * length / 6, 27, elements_per_turn=6)
+        number = np.arange(len(solid.points))[:: -1 if backwards else 1]
+        points = np.empty_like(solid.points)
+        points[number] = solid.points
+        cells = number[solid.cells]
+        n = points.size
+        elimination = eliminate([fixed("front", number[solid.front], n)], n)
+        system = reduce(points, cells, assemble(points, cells, lame, n), elimination)
+        F = np.zeros((n, 1))
+        F[3 * number[solid.rear] + 2, 0] = 1.0
+        for method in methods():
+            x = np.full(n, np.nan)
+            try:
+                answer = factorise(system, method).solve(F)
+                if answer.method == method:
+                    x = answer.x[:, 0]
+            except InputError:
+                pass
+            found[f"{method} at {value:g}"] = x
+            found[f"{STIFFNESS}, {method} at {value:g}"] = np.array([1.0 / (F[:, 0] @ x)])
+    return found
+
+
+def methods() -> list[str]:
+    """Solvers that are installed."""
+    from fe_drivetrain import direct
+
+    return [m for m in direct.PACKAGES if direct.is_installed(m)] + ["multigrid"]
+
+
+def elsewhere(
+    file: Path, slenderness: Iterable[float], threads: int
+) -> dict[str, NDArray[np.float64]]:
+    """Both of the above in a process of its own, with so many threads and no cache."""
+    environment = {**os.environ, **dict.fromkeys(_THREADS, str(threads))}
+    environment["FE_DRIVETRAIN_CACHE"] = "off"
+    command = [sys.executable, "-m", __spec__.name, str(file), json.dumps(list(slenderness))]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"a process that should repeat a run failed: {done.stderr[-2000:]}")
+    with np.load(file) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def different(a: Arrays, b: Arrays) -> list[str]:
+    """Names of the arrays that differ in any bit."""
+    return [name for name in a if a[name].tobytes() != b[name].tobytes()]
+
+
+def main() -> None:
+    """Compute, and write to the file that is named."""
+    file, slenderness = sys.argv[1], json.loads(sys.argv[2])
+    with Path(file).open("wb") as stream:
+        np.savez(stream, **scene_arrays(), **tube_answers(slenderness))  # type: ignore[arg-type]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,147 @@
+"""A short main bearing on gearbox springs of any stiffness, solved as the program does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.interfaces import Elimination, eliminate
+from fe_drivetrain.mechanisms import (
+    WeakMotion,
+    refuse_mechanisms,
+    warn_of_weak_restraints,
+    weak_restraints,
+)
+from fe_drivetrain.mesh import Mesh
+from fe_drivetrain.model import LOADS, Model, build_model
+from fe_drivetrain.reduction import reduce
+from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.solvers import solve
+
+#: A short shaft in a coarse mesh: what is judged holds on any mesh.
+CHANGES = {
+    "mesh.elements_per_turn": 8,
+    "mesh.shaft": 0.4,
+    "mesh.bearing": 0.2,
+    "mesh.housing": 0.25,
+    "mesh.bearing_edge": 0.2,
+    "shaft.front": -1.0,
+    "shaft.sections.0.length": 2.2,
+}
+
+
+def scene_of(kind: str, joint: str | None = None, rigid: Sequence[int] = (3,)) -> Scene:
+    """The library's scene, made small, with springs of the gearbox along and about all axes but
+    those that are held rigidly.
+
+    Parameters
+    ----------
+    kind
+        "spherical" or "bonded".
+    joint
+        Form of the spherical joint.
+    rigid
+        Components 0-5.
+    """
+    stiffness = ["rigid" if c in rigid else 1e8 for c in range(6)]
+    changes: dict[str, object] = {**CHANGES, "gearbox.stiffness": stiffness}
+    if joint is not None:
+        changes["bearing_units.0.interface"] = joint
+    return change_scene(library_scene(f"main_bearing_{kind}"), changes)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Motions under unit loads, one a column.
+
+    Attributes
+    ----------
+    hub, gearbox
+        (6, n_loads).
+    energy_error, residual
+        Of the solver.
+    method
+        That solved in the end.
+    """
+
+    hub: Floats
+    gearbox: Floats
+    energy_error: float
+    residual: float
+    method: str
+
+
+@dataclass(frozen=True)
+class Sprung:
+    """A model whose gearbox springs can be changed without assembling it anew."""
+
+    model: Model
+
+    @cached_property
+    def elimination(self) -> Elimination:
+        """Of all constraints; springs are none."""
+        return eliminate(self.model.constraints, self.model.n_freedoms)
+
+    @cached_property
+    def moduli(self) -> dict[str, float]:
+        """Young's modulus of each part [Pa]."""
+        scene = self.model.scene
+        return {part: scene.material_of(part).youngs_modulus for part in self.model.mesh.part_names}
+
+    def with_springs(self, stiffness: Sequence[float]) -> Model:
+        """The model with other springs at the gearbox [N/m, N m/rad]; zeros are none."""
+        k = np.diag(np.asarray(stiffness, dtype=float))
+        springs = ((self.model.points["gearbox"], k),) if k.any() else ()
+        return replace(self.model, springs=springs)
+
+    def said(self, stiffness: Sequence[float]) -> tuple[tuple[str, ...], str]:
+        """What the program says before it solves: warnings, and why it refuses, if it does."""
+        model = self.with_springs(stiffness)
+        parts = model.mesh, model.constraints, model.springs
+        try:
+            refuse_mechanisms(*parts)
+            return warn_of_weak_restraints(*parts, self.moduli), ""
+        except InputError as error:
+            return (), str(error)
+
+    def weakest(self, stiffness: Sequence[float]) -> list[WeakMotion]:
+        """All motions without strain that springs restrain, the weakest first."""
+        model = self.with_springs(stiffness)
+        return weak_restraints(
+            model.mesh, model.constraints, model.springs, self.moduli, float("inf")
+        )
+
+    def solve(
+        self, stiffness: Sequence[float], loads: Sequence[str], method: str = "auto"
+    ) -> Motion | None:
+        """Motions under some of the unit loads; None where the solver refuses.
+
+        Parameters
+        ----------
+        stiffness
+            Of the gearbox springs [N/m, N m/rad].
+        loads
+            Names of `model.LOADS`.
+        method
+            Solver.
+        """
+        model = self.with_springs(stiffness)
+        F = model.unit_loads()[:, [LOADS.index(load) for load in loads]]
+        system = reduce(model.mesh.points, model.mesh.cells, model.stiffness, self.elimination)
+        try:
+            found = solve(system, self.elimination.T.T @ F, method)
+        except InputError:
+            return None
+        U = self.elimination.T @ found.x
+        hub, gearbox = (model.points[name].motion @ U for name in ("hub", "gearbox"))
+        return Motion(hub, gearbox, found.energy_error, found.residual, found.method)
+
+
+def sprung(scene: Scene, mesh: Mesh) -> Sprung:
+    """Assemble a scene."""
+    return Sprung(build_model(scene, mesh))

@@ -1,0 +1,113 @@
+"""Load histories of any length, made chunk by chunk, and the memory that comparing them takes.
+
+Run as a program, ``python -m ... SAMPLES streamed|whole``, it compares one history in a process of
+its own and prints what that took as JSON.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.compare import Array, Comparison, compare
+from fe_drivetrain.streaming import compare_streamed
+
+CHUNK = 1 << 18
+MEAN, FACTOR, NOISE = 5.0, 1.02, 0.1
+
+STATISTICS = (
+    "reference_rms",
+    "rmse",
+    "bias",
+    "relative_scatter",
+    "relative_error",
+    "mean_percentage_error",
+    "excluded_share",
+    "correlation",
+    "slope",
+    "cov",
+)
+
+
+def chunks(samples: int) -> Iterator[tuple[Array, Array]]:
+    """Reference and model (n, 1): r = 5 + u, m = 1.02 r + 0.1 v, u and v even between 0 and 1."""
+    for number, start in enumerate(range(0, samples, CHUNK)):
+        n = min(CHUNK, samples - start)
+        # each chunk has its own numbers, the same whenever it is asked for
+        rng = np.random.Generator(np.random.SFC64(number))
+        r = MEAN + rng.random((n, 1))
+        yield r, FACTOR * r + NOISE * rng.random((n, 1))
+
+
+def expected() -> dict[str, float]:
+    """The statistics of such a history without end."""
+    r1, r2 = MEAN + 1 / 2, (MEAN + 1 / 2) ** 2 + 1 / 12
+    # the difference is a r + b v, with mean square
+    a, b = FACTOR - 1, NOISE
+    d1 = a * r1 + b / 2
+    d2 = a * a * r2 + a * b * r1 + b * b / 3
+    inverse = float(np.log((MEAN + 1) / MEAN))
+    model = FACTOR**2 / 12 + b * b / 12
+    rm, m2 = FACTOR * r2 + b * r1 / 2, FACTOR**2 * r2 + FACTOR * b * r1 + b * b / 3
+    slope = rm / m2
+    return {
+        "reference_rms": r2**0.5,
+        "rmse": d2**0.5,
+        "bias": d1,
+        "relative_scatter": (d2 - d1**2) ** 0.5 / r2**0.5,
+        "relative_error": d1 / r1,
+        "mean_percentage_error": 100 * (a + b / 2 * inverse),
+        "excluded_share": 0.0,
+        "correlation": FACTOR / 12 / (model / 12) ** 0.5,
+        "slope": slope,
+        "cov": ((r2 - slope * rm) / (slope**2 * m2)) ** 0.5,
+    }
+
+
+def streamed(samples: int) -> Comparison:
+    """Compared chunk by chunk."""
+    return compare_streamed(lambda: chunks(samples), ["Fz"], ["N"])
+
+
+def whole(samples: int) -> Comparison:
+    """Compared in memory."""
+    r, m = np.empty((2, 1, samples, 1))
+    for k, (one, other) in enumerate(chunks(samples)):
+        here = slice(k * CHUNK, k * CHUNK + len(one))
+        r[0, here], m[0, here] = one, other
+    return compare(r, m, ["Fz"], ["N"])
+
+
+def statistics(found: Comparison) -> dict[str, float]:
+    """By name."""
+    every = asdict(found)
+    return {name: float(every[name][0, 0]) for name in STATISTICS}
+
+
+def peak_memory() -> int | None:
+    """Most memory of this process so far [bytes]; None where the system does not tell."""
+    status = Path("/proc/self/status")
+    # not getrusage: its figure outlives exec, and would be that of the process that started us
+    lines = status.read_text(encoding="ascii").splitlines() if status.exists() else []
+    found = [line.split() for line in lines if line.startswith("VmHWM:")]
+    return 1024 * int(found[0][1]) if found else None
+
+
+def main() -> None:
+    """Compare, and print what that took."""
+    samples, way = int(sys.argv[1]), sys.argv[2]
+    before = peak_memory()
+    start = time.perf_counter()
+    found = {"streamed": streamed, "whole": whole}[way](samples)
+    took = {"seconds": time.perf_counter() - start, "before": before, "peak": peak_memory()}
+    json.dump(took | {"statistics": statistics(found)}, sys.stdout)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,39 @@
+"""Volume and centre of the solids of a bearing unit, exact, without a mesh."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import gmsh
+
+from .bearing import Bearing
+from .housing import Housing
+from .session import gmsh_session
+
+
+class Solid(NamedTuple):
+    """Volume [m^3] and centre of gravity [m] of a solid of one density."""
+
+    volume: float
+    centre: tuple[float, float, float]
+
+
+def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tuple[Solid, Solid]:
+    """The bearing, and its housing.
+
+    Parameters
+    ----------
+    bearing, housing
+        The unit.
+    bore_diameter
+        Of the bearing [m].
+    """
+    occ = gmsh.model.occ
+    with gmsh_session():
+        tags = bearing.build(bore_diameter), housing.build(bearing).volume
+        occ.synchronize()
+        first, second = (
+            Solid(occ.getMass(3, tag), (x, y, z))
+            for tag, (x, y, z) in ((tag, occ.getCenterOfMass(3, tag)) for tag in tags)
+        )
+    return first, second
