@@ -1,0 +1,253 @@
+"""Al-Hamadani 2018: tables of four drivetrains as printed, and what their rounding leaves open.
+
+The inputs stand in YAML files beside this module, digit for digit as in Tables 4.2, 4.3 and 4.7;
+the frequencies of Tables 6.1, 6.2 and 6.4 stand here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from fe_drivetrain.charts import chart, trace
+from fe_drivetrain.drivetrain import (
+    Drivetrain,
+    GeneratorState,
+    ParallelStage,
+    PlanetaryStage,
+    parse_drivetrain,
+)
+from fe_drivetrain.results import Chart, Verdict, judge
+from fe_drivetrain.torsion import Floats, Modes, Torsional, natural_modes
+
+Ints = NDArray[np.intp]
+
+TABLE_6_1 = "Al-Hamadani 2018, Table 6.1"
+TABLE_6_2 = "Al-Hamadani 2018, Table 6.2"
+TABLE_6_4 = "Al-Hamadani 2018, Table 6.4"
+
+#: Table 6.1 [Hz], as printed: generator's speed constant (its spring on), then variable (off).
+TWO = {"fixed": ("0.864", "5.888"), "free": ("0", "2.524")}
+FIVE = {
+    "fixed": ("0.864", "5.889", "312", "402", "1974"),
+    "free": ("0", "2.524", "312", "402", "1974"),
+}
+ELEVEN = {
+    "fixed": ("0.841", "5.859", "154", "307", "353", "748", "1020", "1530", "4398"),
+    "free": ("0", "2.44", "154", "307", "353", "748", "1020", "1530", "4397"),
+}
+STATES: tuple[GeneratorState, GeneratorState] = ("fixed", "free")
+
+#: Measured, in Table 6.1 after Mandic et al. 2012 (constant) and Girsang et al. 2014 (variable).
+MEASURED = {"fixed": 0.806, "free": 2.32}
+
+#: Table 6.2: the two masses [rad/s], the five [Hz], and what section 6.1.2 says of the first
+#: frequency of five masses with variable speed [Hz].
+OTHER_TWO = ("5.1951", "38.2748")
+OTHER_FIVE = ("0.826", "6.092", "291.987", "371.528", "1974.245")
+OTHER_FREE = "2.957"
+#: Table 6.2's other column, Mandic et al. 2012, in the same units.
+MANDIC_TWO = ("5.1972", "38.2818")
+MANDIC_FIVE = ("0.83", "6.09", "291.8", "371.3", "1974")
+
+#: Table 6.4 [Hz].
+OTHERS = {
+    "A": ("0", "9.049", "111.9", "352.8", "766.2", "1086", "2246", "3902"),
+    "B": (
+        "0",
+        "4.54",
+        "58.21",
+        "190.74",
+        "308.70",
+        "538.61",
+        "666.46",
+        "1597.35",
+        "2552.25",
+        "2733.50",
+    ),
+    "C": ("0", "2.37", "213", "257", "431", "834", "1720", "2110", "3750"),
+}
+#: Section 6.2.3: peaks of the torque's spectrum in a simulated shutdown [Hz].
+SHUTDOWN = {"A": 9.1, "B": 4.664, "C": 2.503}
+
+ROUNDING = (
+    "every input at its worst within half of its last printed digit, summed, and one unit of the "
+    "reference's last digit, which the thesis cuts off in places (5.1951 rad/s stands as 0.826 Hz)"
+)
+
+#: What is counted is exact.
+_EXACT = {"teeth", "planets"}
+
+
+def text_of(name: str) -> str:
+    """The YAML text of "nrel_750kw", "drivetrain_a", "..._b" or "..._c"."""
+    return (files("fe_drivetrain.cases.drivetrain") / f"{name}.yaml").read_text("utf-8")
+
+
+def table(name: str) -> Drivetrain:
+    """One of the tables, by the name of its file."""
+    return parse_drivetrain(text_of(name), source=name)
+
+
+def nrel_stages(table: Drivetrain) -> tuple[PlanetaryStage, ParallelStage, ParallelStage]:
+    """The three stages of drivetrain D."""
+    one, two, three = table.stages
+    if not (
+        isinstance(one, PlanetaryStage)
+        and isinstance(two, ParallelStage)
+        and isinstance(three, ParallelStage)
+    ):
+        raise TypeError("drivetrain D has a planetary stage and two parallel ones")
+    return one, two, three
+
+
+def digit(printed: str) -> float:
+    """One unit of the last digit of a number as printed."""
+    mantissa, _, power = printed.lower().partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    return float(10.0 ** (int(power or 0) - decimals))
+
+
+def changed(table: Drivetrain, changes: Mapping[str, float]) -> Drivetrain:
+    """The table with other values, by dotted key such as "stages.0.carrier"."""
+    data = table.model_dump(exclude_none=True)
+    for key, value in changes.items():
+        *path, last = key.split(".")
+        target: Any = data
+        for part in path:
+            target = target[int(part)] if part.isdecimal() else target[part]
+        target[last] = value
+    return Drivetrain.model_validate(data)
+
+
+def printed_inputs(name: str) -> Iterator[tuple[str, str]]:
+    """Dotted key and digits as printed of every input of a table that is measured or computed."""
+    # the base loader leaves numbers the words that they are in the file
+    yield from _numbers(yaml.load(text_of(name), Loader=yaml.BaseLoader), "")
+
+
+def _numbers(data: Any, key: str) -> Iterator[tuple[str, str]]:
+    if isinstance(data, dict | list):
+        for name, value in data.items() if isinstance(data, dict) else enumerate(data):
+            if name not in _EXACT:
+                yield from _numbers(value, f"{key}.{name}".removeprefix("."))
+    elif data[:1].isdecimal():
+        yield key, data
+
+
+def rounding_band(
+    name: str,
+    model: Callable[[Drivetrain], Torsional],
+    base: Drivetrain | None = None,
+    without: frozenset[str] = frozenset(),
+) -> Floats:
+    """Half width [Hz] of each frequency's band that the rounding of the printed inputs leaves.
+
+    Parameters
+    ----------
+    name
+        Of the table whose digits count.
+    model
+        From a table to its masses.
+    base
+        The table itself, where some of its values have been changed.
+    without
+        Keys of inputs that were, and have no printed digits any more.
+    """
+    middle = base or table(name)
+    band = np.zeros(len(model(middle).inertias))
+    for key, printed in printed_inputs(name):
+        if key in without or "damping" in key:
+            continue
+        half = digit(printed) / 2
+        pair = [
+            natural_modes(model(changed(middle, {key: float(printed) + step}))).frequencies
+            for step in (half, -half)
+        ]
+        band += np.abs(pair[0] - pair[1]) / 2
+    return band
+
+
+def observable(modes: Modes, least: float = 1e-9) -> Ints:
+    """Numbers of the modes that are in Tables 6.1 and 6.4.
+
+    Planets that move against each other, their sum at rest, turn nothing else: the thesis finds
+    frequencies from the response of the generator's speed to the rotor's torque, in which these
+    modes have no part.
+    """
+    planets = [i for i, name in enumerate(modes.names) if "planet" in name]
+    others = np.delete(modes.inertia_shares, planets, axis=0).sum(axis=0)
+    return np.flatnonzero(others > least)
+
+
+def judge_printed(
+    label: str,
+    found: Floats,
+    printed: Sequence[str],
+    bands: Floats,
+    source: str,
+    leave_out: frozenset[int] = frozenset(),
+    unit: str = "Hz",
+) -> list[Verdict]:
+    """Frequencies against a table's, but for free turning and what is left out (counted from 1).
+
+    Parameters
+    ----------
+    found, bands
+        With the half width that rounding of the inputs leaves.
+    """
+    return [
+        judge(
+            f"{label}: frequency {mode}",
+            float(f),
+            float(value),
+            tolerance=float(band) + digit(value),
+            relative=False,
+            unit=unit,
+            source=source,
+            reason=ROUNDING,
+            measure="frequency",
+        )
+        for mode, (f, value, band) in enumerate(zip(found, printed, bands, strict=True), start=1)
+        if float(value) != 0.0 and mode not in leave_out
+    ]
+
+
+def judge_count(label: str, wrong: int) -> Verdict:
+    """Whether `independent.certified` found every frequency in its place."""
+    return judge(
+        f"{label}: frequencies that are not where exact counting puts them, of 1e-9",
+        float(wrong),
+        0.0,
+        tolerance=0.5,
+        relative=False,
+        source="Sylvester's law of inertia, in rational arithmetic",
+        reason="a count; 1e-9 is far above what rounding leaves of singular values",
+        measure="identity",
+    )
+
+
+def shapes_chart(caption: str, modes: Modes, speeds: Mapping[str, float], chosen: Ints) -> Chart:
+    """Mode shapes seen from the rotor's shaft (angles over the speed ratio), largest 1."""
+    seen = modes.shapes / np.array([[speeds[name]] for name in modes.names])
+    seen = seen / np.abs(seen).max(axis=0)
+    return chart(
+        caption,
+        [
+            trace(
+                f"{modes.frequencies[m]:.4g} Hz",
+                np.arange(len(modes.names)),
+                seen[:, m],
+                mode="lines+markers",
+                text=list(modes.names),
+            )
+            for m in chosen
+        ],
+        "inertia, from the rotor (0) to the generator",
+        "angle over speed ratio, largest 1",
+    )
