@@ -10,7 +10,7 @@ from fe_drivetrain.geometry import Bearing, Flange, Housing, MeshSizes, Section,
 
 from fe_drivetrain.materials import Material
 from fe_drivetrain.model import mesh_scene
-from fe_drivetrain.scene import BearingUnit, Gearbox, Hub, Scene, parse_scene
+from fe_drivetrain.scene import BearingUnit, Gearbox, Hub, Scene, Spread, parse_scene
 
 ROOT = Path(__file__).parents[1]
 SCENE_DOC = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
@@ -26,6 +26,7 @@ MODELS = (
     Gearbox,
     MeshSizes,
     Material,
+    Spread,
 )
 
 

@@ -8,11 +8,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from fe_drivetrain.elasticity import Floats
-
-FRAME = (
-    "x downwind along the shaft, z up, y = z cross x; origin at the main bearing's centre where "
-    "the scene puts its shaft so"
-)
+from fe_drivetrain.superelement import FRAME
 
 
 class StiffnessMatrix(BaseModel):

@@ -1,0 +1,259 @@
+"""WISDEM's drivetrain with spring and damper of a finite-element shaft, from its turbine file."""
+
+from typing import Any
+
+from fe_drivetrain.case import Case, Run
+
+RATIO = 0.05
+#: Main shaft: outer and inner diameter [m].
+OUTER, INNER = 3.0, 2.4
+DENSITY = 7850.0
+
+TURBINE = """\
+components:
+    drivetrain:
+        outer_shape:
+            gear_ratio: 1.0 # direct drive
+        elastic_properties:
+            mass: 6.4e+5
+            inertia: [9.5e+6, 1.06e+7, 1.05e+7, 0.0, 0.0, 0.0]
+            location: [-5.1, 0.0, 4.3]
+"""
+
+
+def run(run: Run) -> Any:
+    """Run WISDEM's drivetrain with its own torsion, then with ours from a turbine file."""
+    import tempfile
+    from importlib import import_module
+    from pathlib import Path
+
+    from fe_drivetrain.errors import MissingToolError
+    from fe_drivetrain.export import windio
+    from fe_drivetrain.export.elastodyn import Torsion
+    from fe_drivetrain.export.torsion import torsional_damping, torsional_stiffness
+    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.scene import change_scene, library_scene
+    from fe_drivetrain.scene_superelements import shaft_superelement
+
+    scene = library_scene("main_bearing_bonded")
+    material = scene.material_of("shaft")
+    with run.step("WISDEM with its own torsion"):
+        try:
+            problem = drivetrain(material.youngs_modulus, material.shear_modulus)
+            load_yaml = import_module("windIO").load_yaml
+        except ImportError as error:
+            raise MissingToolError(
+                f"WISDEM cannot be loaded ({error}): install it with pip install "
+                '"fe-drivetrain[wisdem]"'
+            ) from error
+        problem.run_model()
+    own, length = _torsion(problem), float(problem.get_val("L_lss", units="m")[0])
+    rotor = float(problem["blades_I"][0] + problem["hub_system_I"][0])
+    generator = float(problem["generator_I"][0])
+
+    with run.step("finite-element shaft"):
+        scene = change_scene(
+            scene,
+            {
+                "shaft.front": -0.5 * length,
+                "shaft.sections.0.length": length,
+                "shaft.sections.0.outer_diameter": OUTER,
+                "shaft.sections.0.inner_diameter": INNER,
+            },
+        )
+        shaft = shaft_superelement(scene, 2, ["hub", "gearbox"])
+    spring = torsional_stiffness(shaft, "hub", "gearbox")
+    # beside the main shaft, a hub as stiff as five of them and a generator rotor as three
+    softer = 1.0 / (1.0 / spring + 1.0 / (5 * spring) + 1.0 / (3 * spring))
+    ours = Torsion(softer, torsional_damping(RATIO, softer, rotor, generator))
+
+    with run.step("WISDEM with ours"), tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "turbine.yaml"
+        path.write_text(TURBINE)
+        windio.write_torsion(path, path, ours, "wisdem", overwrite=True)
+        given = load_yaml(path)["components"]["drivetrain"]
+        for key in ("spring_constant_user", "damping_coefficient_user"):
+            problem[f"drivetrain_{key}"] = given[key]
+        problem.run_model()
+        used = _torsion(problem)
+        windio.write_torsion(path, path, ours, "windio", overwrite=True)
+        stated = load_yaml(path)["components"]["drivetrain"]["elastic_properties"]
+    digits = "the file keeps every digit"
+    verdicts = [
+        judge(
+            "main shaft: stiffness of the finite-element model",
+            spring,
+            own.spring,
+            unit="N m/rad",
+            tolerance=1e-9,
+            source="WISDEM's drivetrain, G J / L of its uniform shaft",
+            reason="the elements contain the exact solution: round-off of the condensation",
+            measure="stiffness",
+        ),
+    ]
+    for quantity, found, expected, unit in (
+        ("spring that WISDEM goes on with", used.spring, ours.spring, "N m/rad"),
+        ("damper that WISDEM goes on with", used.damper, ours.damper, "N m s/rad"),
+        ("spring_constant in windIO", stated["spring_constant"], ours.spring, "N m/rad"),
+        ("damping_coefficient in windIO", stated["damping_coefficient"], ours.damper, "N m s/rad"),
+    ):
+        verdicts.append(
+            judge(
+                quantity,
+                found,
+                expected,
+                unit=unit,
+                tolerance=0.0,
+                source="what was written",
+                reason=digits,
+                measure="identity",
+            )
+        )
+    return CASE.results(
+        run,
+        summary=[
+            f"WISDEM's drivetrain takes {used.spring:.4g} N m/rad from the turbine file in place "
+            f"of its own {own.spring:.4g} N m/rad, and the damper with it.",
+            "For a uniform shaft its own stiffness is that of the finite-element shaft.",
+        ],
+        verdicts=verdicts,
+        sections=[
+            Section(
+                title="Torsion of the drivetrain",
+                items=[
+                    Text(
+                        text="WISDEM's damper is its damping ratio times that of critical with the "
+                        "generator held; ours is of the mode in which rotor and generator turn "
+                        "against each other, which has less inertia. WISDEM 4.2 looks for its "
+                        "overrides beside the drivetrain's other values, not in its elastic "
+                        "properties, where its schema lists them. The turbine is made up."
+                    ),
+                    Table(
+                        caption="Direct drive, low-speed side",
+                        columns=["", "spring [N m/rad]", "damper [N m s/rad]"],
+                        rows=[["WISDEM's own", *own], ["with ours", *used]],
+                    ),
+                ],
+            ),
+        ],
+        figures={"own": list(own), "used": list(used)},
+    )
+
+
+def drivetrain(young: float, shear: float) -> Any:
+    """WISDEM's direct drivetrain of a made-up turbine; moduli of its steel [Pa]."""
+    import warnings
+    from importlib import import_module
+
+    import numpy as np
+
+    with warnings.catch_warnings():
+        # openmdao's and WISDEM's own
+        warnings.simplefilter("ignore")
+        om = import_module("openmdao.api")
+        model = import_module("wisdem.drivetrainse.drivetrain").DrivetrainSE
+
+    options = {
+        "WISDEM": {
+            "n_dlc": 1,
+            "DriveSE": {
+                "direct": True,
+                "gearbox_torque_density": 0.0,
+                "hub": {"hub_gamma": 2.0, "spinner_gamma": 1.5},
+                "gamma_f": 1.35,
+                "gamma_m": 1.3,
+                "gamma_n": 1.0,
+            },
+            "RotorSE": {"n_pc": 20},
+        },
+        "materials": {"n_mat": 1},
+        "flags": {"generator": False},
+    }
+    problem = om.Problem(reports=False)
+    problem.model = model(modeling_options=options)
+    problem.setup()
+    one, pair = np.ones(1), np.ones(2)
+    values = {
+        "n_blades": 3,
+        "rotor_diameter": 120.0,
+        "machine_rating": 5e3,
+        "D_top": 6.5,
+        "rated_torque": 4e6,
+        "damping_ratio": RATIO,
+        "F_aero_hub": np.array([[1e6], [0.0], [0.0]]),
+        "M_aero_hub": np.array([[0.0], [2e6], [2e6]]),
+        "E_mat": young * np.ones((1, 3)),
+        "G_mat": shear * np.ones((1, 3)),
+        "Xt_mat": 4.5e8 * np.ones((1, 3)),
+        "wohler_exp_mat": 10.0 * one,
+        "wohler_A_mat": 10.0 * one,
+        "rho_mat": DENSITY * one,
+        "Xy_mat": 3.5e8 * one,
+        "unit_cost_mat": 3.0 * one,
+        "material_names": ["steel"],
+        **{f"{part}_material": "steel" for part in ("lss", "hss", "hub", "spinner", "bedplate")},
+        "blade_mass": 1.7e4,
+        "blades_mass": 5.1e4,
+        "blades_cm": 2.0,
+        "pitch_system.BRFM": 1e6,
+        "pitch_system_scaling_factor": 0.54,
+        "blade_root_diameter": 3.0,
+        "flange_t2shell_t": 4.0,
+        "flange_OD2hub_D": 0.5,
+        "flange_ID2flange_OD": 0.8,
+        "hub_rho": 7200.0,
+        "hub_Xy": 2e8,
+        "hub_stress_concentration": 2.5,
+        "n_front_brackets": 3,
+        "n_rear_brackets": 3,
+        "clearance_hub_spinner": 0.5,
+        "spin_hole_incr": 1.2,
+        "spinner_gust_ws": 70.0,
+        "hub_diameter": 5.0,
+        "minimum_rpm": 4.0,
+        "rated_rpm": 12.0,
+        "blades_I": np.array([3.5e7, 1.8e7, 1.8e7, 0.0, 0.0, 0.0]),
+        "bear1.bearing_type": "CARB",
+        "bear2.bearing_type": "SRB",
+        "bear1.D_shaft": 2.2,
+        "bear2.D_shaft": 2.2,
+        "upwind": True,
+        "L_12": 2.0,
+        "L_h1": 1.0,
+        "L_generator": 3.25,
+        "overhang": 6.25,
+        "drive_height": 4.875,
+        "tilt": 4.0,
+        "access_diameter": 0.9,
+        "lss_diameter": OUTER * pair,
+        "lss_wall_thickness": 0.5 * (OUTER - INNER) * pair,
+        "nose_diameter": 2.2 * pair,
+        "nose_wall_thickness": 0.1 * pair,
+        "bedplate_wall_thickness": 0.06 * np.ones(4),
+        "generator_efficiency_user": np.zeros((20, 2)),
+    }
+    for name, value in values.items():
+        problem[name] = value
+    return problem
+
+
+def _torsion(problem: Any) -> Any:
+    from fe_drivetrain.export.elastodyn import Torsion
+
+    return Torsion(
+        float(problem.get_val("drivetrain_spring_constant", units="N*m/rad")[0]),
+        float(problem.get_val("drivetrain_damping_coefficient", units="N*m*s/rad")[0]),
+    )
+
+
+CASE = Case(
+    name="export/wisdem",
+    title="WISDEM's drivetrain with the torsion of a finite-element shaft",
+    source="WISDEM and windIO, run here",
+    run=run,
+)
+
+if __name__ == "__main__":
+    from fe_drivetrain.cli import main_of_case
+
+    main_of_case(CASE)

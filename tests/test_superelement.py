@@ -1,0 +1,151 @@
+"""Superelements: what they check, and every format's round trip."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import coarse_scene
+
+from fe_drivetrain import export
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.levels import shaft_level
+from fe_drivetrain.scene_superelements import (
+    shaft_superelement,
+    supported_superelement,
+    unit_superelement,
+)
+from fe_drivetrain.superelement import Origin, Superelement
+
+READABLE = [name for name in export.FORMATS if hasattr(export._module(name), "read")]
+
+#: What the extra of a format installs.
+IMPORTS = {"hdf5": "h5py", "nastran": "pyNastran"}
+
+
+def needs(format: str) -> None:
+    """Skip where the extra of a format is not installed."""
+    extra = export.FORMATS[format].extra
+    if extra:
+        pytest.importorskip(IMPORTS.get(extra, extra), reason=f"needs the extra {extra!r}")
+
+
+def random_element(seed: int, mass: bool = True, free: bool = False) -> Superelement:
+    """Symmetric matrices of no structure, entries over many orders of magnitude."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 4))
+    size = 10.0 ** rng.uniform(-2, 5, 6 * n)
+    root, inertia = rng.standard_normal((2, 6 * n, 6 * n))
+    K = size[:, None] * (root @ root.T) * size
+    K = 0.5 * (K + K.T)
+    M = inertia @ inertia.T
+    return Superelement(
+        f"random_{seed}",
+        tuple(f"point_{k}" for k in range(n)),
+        rng.uniform(-3, 3, (n, 3)),
+        K,
+        0.5 * (M + M.T) if mass else None,
+        supported=True,
+        band=0.03,
+        origin=Origin("a scene", "00ff", "2 meridian", "0.1 m", "fe-drivetrain"),
+    )
+
+
+@pytest.mark.parametrize("format", READABLE)
+@pytest.mark.parametrize(("seed", "mass"), [(0, True), (1, True), (2, False), (3, True)])
+def test_round_trip(tmp_path: Path, format: str, seed: int, mass: bool) -> None:
+    needs(format)
+    element = random_element(seed, mass)
+    path = tmp_path / f"element{export.FORMATS[format].suffix}"
+    export.write(path, element, format)
+    back = export.read(path, format)
+    digits = export.FORMATS[format].digits
+    size = np.sqrt(np.outer(element.stiffness.diagonal(), element.stiffness.diagonal()))
+    assert np.abs((back.stiffness - element.stiffness) / size).max() <= 10.0**-digits
+    if mass and back.mass is not None:
+        np.testing.assert_allclose(back.mass, element.mass, rtol=0, atol=30 * 10.0**-digits)
+    assert len(back.points) == len(element.points)
+
+
+@pytest.mark.parametrize("format", READABLE)
+@pytest.mark.parametrize("content", [b"", b"not of any format\n", bytes(range(256)), b"{}"])
+def test_a_malformed_file_gets_one_sentence(tmp_path: Path, format: str, content: bytes) -> None:
+    needs(format)
+    path = tmp_path / f"element{export.FORMATS[format].suffix}"
+    path.write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        export.read(path, format)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("format", READABLE)
+def test_a_truncated_file_is_refused(tmp_path: Path, format: str) -> None:
+    needs(format)
+    path = tmp_path / f"element{export.FORMATS[format].suffix}"
+    export.write(path, random_element(5), format)
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2])
+    with pytest.raises(InputError):
+        export.read(path, format)
+
+
+@pytest.mark.parametrize("format", export.FORMATS)
+def test_nothing_is_overwritten_unless_told(tmp_path: Path, format: str) -> None:
+    path = tmp_path / "there"
+    path.write_text("mine")
+    with pytest.raises(InputError, match="exists"):
+        export.write(path, random_element(0), format)
+    assert path.read_text() == "mine"
+    assert [p.name for p in tmp_path.iterdir()] == ["there"]
+
+
+def test_an_unknown_format_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="format 'xyz' is unknown: use one of json"):
+        export.write(tmp_path / "a", random_element(0), "xyz")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda K: K + np.triu(np.ones_like(K), 1) * K.max(), "not symmetric"),
+        (lambda K: -K, "negative eigenvalue"),
+        (lambda K: K[:5, :5], "must be"),
+        (lambda K: K * np.nan, "finite"),
+    ],
+)
+def test_what_is_no_stiffness_is_refused(change, message: str) -> None:  # type: ignore[no-untyped-def]
+    element = random_element(7)
+    with pytest.raises(InputError, match=message):
+        Superelement("bad", element.points, element.positions, change(element.stiffness))
+
+
+def test_shaft_of_a_scene_is_free_and_has_its_mass() -> None:
+    scene = coarse_scene("bonded")
+    element = shaft_superelement(scene, 2, ["hub", "gearbox"])
+    assert element.points == ("hub", "gearbox")
+    assert element.rigid_error() < 1e-12
+    inertia = element.inertia()
+    assert inertia is not None
+    shaft = scene.shaft
+    volume = np.pi / 4 * shaft.sections[0].outer_diameter ** 2 * shaft.length
+    assert inertia[0, 0] == pytest.approx(scene.material_of("shaft").density * volume, rel=1e-9)
+    assert len(element.origin.scene_hash) == 64
+
+
+def test_torsion_of_the_free_shaft_is_g_j_over_l() -> None:
+    scene = coarse_scene("bonded")
+    element = shaft_superelement(scene, 2, ["hub", "gearbox"])
+    section, material = scene.shaft.sections[0], scene.material_of("shaft")
+    expected = material.shear_modulus * np.pi / 32 * section.outer_diameter**4 / section.length
+    assert element.stiffness[3, 3] == pytest.approx(expected, rel=1e-9)
+    assert element.stiffness[3, 9] == pytest.approx(-expected, rel=1e-9)
+
+
+def test_supported_drivetrain_and_bearing_unit() -> None:
+    scene = coarse_scene("bonded")
+    model = shaft_level(scene, 1)
+    element = supported_superelement(scene, model, ["hub"], band=0.01)
+    np.testing.assert_allclose(element.stiffness, model.stiffness(["hub"]))
+    assert element.supported
+    unit = unit_superelement(scene, "main_bearing")
+    assert np.linalg.eigvalsh(unit.stiffness)[0] > 0
