@@ -103,6 +103,30 @@ def beam_shaft(scene: Scene, shear: bool = True, rings: bool = True) -> Condense
     return Condensed(names, positions, K, gravity)
 
 
+def shaft_meridian(
+    scene: Scene, size: float | None = None, order: int | None = None, rings: bool = True
+) -> tuple[Meridian, list[Ints]]:
+    """The meridian of a scene's shaft, and its sides that each reference point moves with.
+
+    For the arguments see `meridian_shaft`.
+    """
+    shaft = ringed_shaft(scene)[0] if rings else scene.shaft
+    spans = [unit.bearing.span for unit in scene.bearing_units]
+    ends = [end for span in spans for end in span]
+    corners = [(x, shaft.outer_radius(sum(span) / 2)) for span in spans for x in span]
+    widest = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
+    # fillets take triangles, of which gmsh makes many where corners are sharp: 2 layers are 4e-4
+    layers = 2 if any(p.fillet > 0 for p in shaft.pieces) else 4
+    mesh = meridian(
+        shaft.cut(ends),
+        widest if size is None else size,
+        order=order,
+        layers=layers,
+        corners=corners,
+    )
+    return mesh, _coupled_sides(mesh, shaft, spans)
+
+
 def meridian_shaft(
     scene: Scene, size: float | None = None, order: int | None = None, rings: bool = True
 ) -> Condensed:
@@ -126,21 +150,7 @@ def meridian_shaft(
     """
     names, positions = reference_points(scene)
     material = scene.material_of("shaft")
-    shaft = ringed_shaft(scene)[0] if rings else scene.shaft
-    spans = [unit.bearing.span for unit in scene.bearing_units]
-    ends = [end for span in spans for end in span]
-    corners = [(x, shaft.outer_radius(sum(span) / 2)) for span in spans for x in span]
-    widest = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
-    # fillets take triangles, of which gmsh makes many where corners are sharp: 2 layers are 4e-4
-    layers = 2 if any(p.fillet > 0 for p in shaft.pieces) else 4
-    mesh = meridian(
-        shaft.cut(ends),
-        widest if size is None else size,
-        order=order,
-        layers=layers,
-        corners=corners,
-    )
-    sides = _coupled_sides(mesh, shaft, spans)
+    mesh, sides = shaft_meridian(scene, size, order, rings)
     axial = _harmonic(mesh, material, 0, (0, 3), names, positions, sides)
     sideways = _harmonic(mesh, material, 1, (1, 5), names, positions, sides)
     n = len(names)
@@ -233,7 +243,7 @@ def _coupled_sides(
     return [end(shaft.front), *(seat(*span) for span in spans), end(shaft.rear)]
 
 
-def _motions(n: int, x: Floats, r: Floats) -> Floats:
+def harmonic_motions(n: int, x: Floats, r: Floats) -> Floats:
     """(2, ..., 3) amplitudes of a rigid motion in harmonic n: along x and about it; along y and
     about the line along z through x = 0."""
     one, zero = np.ones_like(x), np.zeros_like(x)
@@ -244,10 +254,10 @@ def _motions(n: int, x: Floats, r: Floats) -> Floats:
     return np.stack([np.stack(first, axis=-1), np.stack(second, axis=-1)])
 
 
-def _traction(mesh: Meridian, n: int, sides: Ints, place: float, k: int) -> Floats:
+def motion_traction(mesh: Meridian, n: int, sides: Ints, place: float, k: int) -> Floats:
     """Nodal forces of a traction as large as the k-th rigid motion about x = place."""
     return axisymmetric.surface_loads(
-        mesh, n, sides, lambda at, _: _motions(n, at[:, 0] - place, at[:, 1])[k]
+        mesh, n, sides, lambda at, _: harmonic_motions(n, at[:, 0] - place, at[:, 1])[k]
     )
 
 
@@ -264,8 +274,8 @@ def _harmonic(
     x, r = mesh.nodes.T
     columns = []
     for place, where in zip(positions[:, 0], sides, strict=True):
-        tractions = np.column_stack([_traction(mesh, n, where, place, k) for k in (0, 1)])
-        here = _motions(n, x - place, r).reshape(2, -1)
+        tractions = np.column_stack([motion_traction(mesh, n, where, place, k) for k in (0, 1)])
+        here = harmonic_motions(n, x - place, r).reshape(2, -1)
         # scaled to do unit work on these motions, tractions take the face's mean one, as RBE3 does
         columns.append(tractions @ np.linalg.inv(here @ tractions))
     # loads are in balance: what is held only takes the rigid motions out
@@ -279,12 +289,12 @@ def _harmonic(
         found = axisymmetric.harmonic_response(mesh, material, n, F, (held, np.zeros(len(held))))
         return np.asarray(found.u.reshape(F.shape))
 
-    rigid = _motions(n, x - positions[0, 0], r).reshape(2, -1).T
-    mass = _mass(mesh, material.density, n)
+    rigid = harmonic_motions(n, x - positions[0, 0], r).reshape(2, -1).T
+    mass = harmonic_mass(mesh, material.density, n)
     return condense(names, positions, np.hstack(columns), mass, rigid, solved, kept)
 
 
-def _mass(mesh: Meridian, density: float, n: int) -> sparse.csr_array:
+def harmonic_mass(mesh: Meridian, density: float, n: int) -> sparse.csr_array:
     """(3 n_nodes, 3 n_nodes) mass matrix in harmonic n [kg]."""
     element = mesh.element
     nodes = mesh.nodes[mesh.cells]

@@ -1,0 +1,25 @@
+"""Scenes of the rotor and multibody cases, with their bearing units on coarse meshes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+#: Library scenes: full, and quick.
+SCENES, QUICK_SCENES = ("main_bearing_bonded", "two_bearings"), ("two_bearings",)
+
+#: Coarsening of the bearing units' meshes: both programs get the same matrices, whatever they are.
+FACTOR = 4.0
+
+#: Polynomial order of the meridian.
+ORDER = 4
+
+
+def scene_and_units(name: str) -> tuple[Any, dict[str, Any]]:
+    """A library scene on a coarse mesh, and the (6, 6) stiffness of each of its bearing units."""
+    from fe_drivetrain.levels import housing_springs
+    from fe_drivetrain.scene import library_scene
+
+    scene = library_scene(name)
+    sizes = scene.mesh.scaled(FACTOR).model_copy(update={"elements_per_turn": 8})
+    scene = scene.model_copy(update={"mesh": sizes})
+    return scene, housing_springs(scene)[0]
