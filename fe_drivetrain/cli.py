@@ -222,7 +222,9 @@ def _export(
             "--what",
             metavar="NAME",
             help="Which part is condensed: shaft, the free shaft, where left out; drivetrain, the "
-            "shaft on its supports; or a bearing by its name, with its housing on the ground.",
+            "shaft on its supports; a bearing by its name, with its housing on the ground; seats, "
+            "all of these; or summary, in json: stiffness of the shaft, K_R, reaction matrices, "
+            "masses.",
         ),
     ] = None,
     at: Annotated[
@@ -335,6 +337,8 @@ def _export_condensed(
     from fe_drivetrain import export
     from fe_drivetrain.scene_export import AUTO, SHAFT, superelement_of
 
+    if what == "summary":
+        return _export_summary(scene, out, format, level)
     points = None if at is None else [name.strip() for name in at.split(",") if name.strip()]
     wanted = AUTO if level is None else level
     with _progress() as report:
@@ -350,6 +354,24 @@ def _export_condensed(
         f"{element.name} at {', '.join(element.points)}, {supports}, level {element.origin.level}, "
         f"{'with' if element.mass is not None else 'without'} mass"
     )
+
+
+def _export_summary(scene: Scene, out: Path, format: str, level: str | None) -> str:
+    """Write the numbers of a drivetrain model; what they are."""
+    if format != "json":
+        raise InputError(f"--what summary is json, not {format}: give --format json")
+    from fe_drivetrain.export.summary import summary, write_summary
+
+    chosen = "2" if level in (None, "auto") else str(level)
+    if not re.fullmatch("[1-4]", chosen):
+        raise InputError(f"--level {chosen!r} of a summary is unknown: use auto, 1, 2, 3 or 4")
+    with _progress() as report:
+        report("condense")
+        content = summary(scene, int(chosen))
+        report("write")
+        write_summary(out, content)
+        report("")
+    return f"summary of {', '.join(content.parts)}, reactions of level {content.reactions.level}"
 
 
 def _formats_table() -> str:

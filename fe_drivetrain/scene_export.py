@@ -14,9 +14,10 @@ from fe_drivetrain.scene_superelements import (
     supported_superelement,
     unit_superelement,
 )
+from fe_drivetrain.seat_superelements import seats_superelement
 from fe_drivetrain.superelement import Superelement
 
-SHAFT, DRIVETRAIN = "shaft", "drivetrain"
+SHAFT, DRIVETRAIN, SEATS = "shaft", "drivetrain", "seats"
 AUTO = "auto"
 
 #: Level taken for "auto", and those there are.
@@ -39,8 +40,8 @@ def superelement_of(
     what
         "shaft": the free shaft. "drivetrain": the shaft on its supports; up to level 3 its
         housings are springs, solved apart, and what their two ways to hold the shaft differ by is
-        the band (errors of the meshes are not in it). Or the name of a bearing: it and its
-        housing, on the ground.
+        the band (errors of the meshes are not in it). "seats": all bearings with their housings,
+        one node a seat. Or the name of a bearing: it and its housing, on the ground.
     at
         Names of points: "hub", "gearbox", those of bearings. Where not given, all points of the
         shaft, and the hub of the drivetrain.
@@ -53,8 +54,8 @@ def superelement_of(
         There is no such part, point or level, or a point is given twice.
     """
     units = [unit.bearing.name for unit in scene.bearing_units]
-    if what not in (SHAFT, DRIVETRAIN, *units):
-        known = ", ".join((SHAFT, DRIVETRAIN, *units))
+    if what not in (SHAFT, DRIVETRAIN, SEATS, *units):
+        known = ", ".join((SHAFT, DRIVETRAIN, SEATS, *units))
         raise InputError(f"{what!r} cannot be exported: use one of {known}")
     if at is not None and (not at or len(set(at)) < len(at)):
         raise InputError(f"the points {', '.join(at) or 'none'} must be one or more, each once")
@@ -68,6 +69,10 @@ def superelement_of(
         return shaft_superelement(scene, chosen, at)
     if what == DRIVETRAIN:
         return _drivetrain(scene, at or ("hub",), chosen)
+    if what == SEATS:
+        if at is not None and list(at) != units:
+            raise InputError(f"seats are all of {', '.join(units)}: leave the points out")
+        return seats_superelement(scene)
     if at is not None and list(at) != [what]:
         raise InputError(
             f"bearing {what!r} has no point {', '.join(at)}: its only point is {what!r}"

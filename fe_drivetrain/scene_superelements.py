@@ -50,7 +50,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
         body.positions,
         body.stiffness,
         body.mass,
-        origin=_origin(scene, f"{level} {titles[level]}", mesh),
+        origin=scene_origin(scene, f"{level} {titles[level]}", mesh),
     )
 
 
@@ -68,7 +68,9 @@ def supported_superelement(
     places = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
     places |= {"hub": scene.shaft.front, "gearbox": scene.shaft.rear}
     positions = np.array([[places[name], 0.0, 0.0] for name in at])
-    origin = _origin(scene, f"{model.level} {model.title}", f"{model.cost.unknowns:,} unknowns")
+    origin = scene_origin(
+        scene, f"{model.level} {model.title}", f"{model.cost.unknowns:,} unknowns"
+    )
     return Superelement("drivetrain", tuple(at), positions, stiffness, None, True, band, origin)
 
 
@@ -81,7 +83,7 @@ def unit_superelement(scene: Scene, name: str) -> Superelement:
         np.array([[x, 0.0, 0.0]]),
         unit_stiffness(scene, name, coupling="rigid"),
         supported=True,
-        origin=_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),
+        origin=scene_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),
     )
 
 
@@ -90,6 +92,7 @@ def scene_hash(scene: Scene) -> str:
     return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
 
 
-def _origin(scene: Scene, level: str, mesh: str) -> Origin:
+def scene_origin(scene: Scene, level: str, mesh: str) -> Origin:
+    """Where a superelement of a scene comes from: its level and mesh in words."""
     program = f"fe-drivetrain {version('fe-drivetrain')}"
     return Origin(scene.title, scene_hash(scene), level, mesh, program)

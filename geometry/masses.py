@@ -1,4 +1,4 @@
-"""Volume and centre of the solids of a bearing unit, exact, without a mesh."""
+"""Volume, centre and inertia of the solids of a bearing unit, exact, without a mesh."""
 
 from __future__ import annotations
 
@@ -12,10 +12,12 @@ from .session import gmsh_session
 
 
 class Solid(NamedTuple):
-    """Volume [m^3] and centre of gravity [m] of a solid of one density."""
+    """Volume [m^3], centre of gravity [m], and inertia about it over the density [m^5], row by row,
+    of a solid of one density."""
 
     volume: float
     centre: tuple[float, float, float]
+    inertia: tuple[float, ...]
 
 
 def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tuple[Solid, Solid]:
@@ -33,7 +35,7 @@ def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tup
         tags = bearing.build(bore_diameter), housing.build(bearing).volume
         occ.synchronize()
         first, second = (
-            Solid(occ.getMass(3, tag), (x, y, z))
+            Solid(occ.getMass(3, tag), (x, y, z), tuple(occ.getMatrixOfInertia(3, tag)))
             for tag, (x, y, z) in ((tag, occ.getCenterOfMass(3, tag)) for tag in tags)
         )
     return first, second

@@ -31,7 +31,7 @@ class Format(NamedTuple):
 FORMATS: dict[str, Format] = {
     f.name: f
     for f in (
-        Format("json", ".json", "anything; schema in the file's $schema", "superelement_json"),
+        Format("json", ".json", "anything: docs/superelement.schema.json", "superelement_json"),
         Format("csv", ".csv", "spreadsheets, pandas", "superelement_csv"),
         Format("mtx", ".mtx", "Matrix Market readers: the stiffness", "matrix_market"),
         Format("mtx-mass", ".mtx", "Matrix Market readers: the mass", "matrix_market_mass"),

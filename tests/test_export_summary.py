@@ -1,0 +1,112 @@
+"""The summary of a scene, and the published schemas."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+from conftest import coarse_scene
+from typer.testing import CliRunner
+
+from fe_drivetrain import cli, export
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.export.summary import SummaryFile, read_summary, summary, write_summary
+from fe_drivetrain.export.superelement_json import SuperelementFile
+from fe_drivetrain.levels import assembly_level
+from fe_drivetrain.model import Model
+from fe_drivetrain.scene_superelements import shaft_superelement
+
+DOCS = Path(__file__).parents[1] / "docs"
+SCHEMAS = {"superelement": SuperelementFile, "summary": SummaryFile}
+
+
+@pytest.fixture(scope="module")
+def content() -> SummaryFile:
+    return summary(coarse_scene("bonded"))
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_published_schema_is_that_of_the_program(name: str) -> None:
+    published = json.loads((DOCS / f"{name}.schema.json").read_text())
+    assert published == SCHEMAS[name].model_json_schema(mode="serialization")
+
+
+def test_files_fulfil_the_published_schemas(tmp_path: Path, content: SummaryFile) -> None:
+    write_summary(tmp_path / "summary.json", content)
+    export.write(
+        tmp_path / "superelement.json", shaft_superelement(coarse_scene("bonded"), 2), "json"
+    )
+    for name in SCHEMAS:
+        schema = json.loads((DOCS / f"{name}.schema.json").read_text())
+        jsonschema.validate(json.loads((tmp_path / f"{name}.json").read_text()), schema)
+
+
+def test_shaft_by_closed_forms(content: SummaryFile) -> None:
+    """Slender enough for Timoshenko's beam: 5 diameters, loads spread over the end face."""
+    scene = coarse_scene("bonded")
+    section, material = scene.shaft.sections[0], scene.material_of("shaft")
+    L, d = section.length, section.outer_diameter
+    E, G, second = material.youngs_modulus, material.shear_modulus, np.pi / 64 * d**4
+    assert content.shaft.axial == pytest.approx(E * np.pi / 4 * d**2 / L, rel=1e-9)
+    assert content.shaft.torsional == pytest.approx(2 * G * second / L, rel=1e-9)
+    assert content.shaft.bending == pytest.approx(E * second / L, rel=1e-9)
+    assert content.shaft.lateral < 3 * E * second / L**3  # shear makes it softer
+    assert content.shaft.lateral == pytest.approx(3 * E * second / L**3, rel=0.1)
+
+
+def test_parts_have_the_mass_of_the_mesh(content: SummaryFile, bonded_model: Model) -> None:
+    mesh = bonded_model.mesh
+    for part, mass in bonded_model.part_mass.items():
+        found = content.parts[part]
+        # parabolas round circles: 12 elements a turn
+        assert found.mass == pytest.approx(mass.sum(), rel=2e-3)
+        centre = mass @ mesh.points / mass.sum()
+        np.testing.assert_allclose(found.centre, centre, atol=3e-3)
+        arm = mesh.points - centre
+        about = np.einsum("n,nij->ij", mass, np.einsum("nk,nk,ij->nij", arm, arm, np.eye(3)))
+        about -= np.einsum("n,ni,nj->ij", mass, arm, arm)
+        # nodal masses of quadratic elements integrate squares of positions to about a percent
+        np.testing.assert_allclose(np.diag(found.inertia), np.diag(about), rtol=0.03)
+
+
+def test_bounds_of_k_r_and_reactions_are_in_order(content: SummaryFile) -> None:
+    unit = content.bearing_units["main_bearing"]
+    for pair in (unit.tilt, unit.yaw, unit.radial_y, unit.radial_z, unit.axial):
+        assert pair is not None
+        assert 0 < pair[0] < pair[1]
+    top = assembly_level(coarse_scene("bonded")).reaction_matrices["main_bearing"]
+    found = np.array(content.reactions.matrices["main_bearing"])
+    assert found.shape == (6, 10)
+    assert found[4, 4] == pytest.approx(top[4, 4], rel=0.15)
+
+
+def test_a_joint_has_no_k_r() -> None:
+    unit = summary(coarse_scene("spherical"), 1).bearing_units["main_bearing"]
+    assert unit.tilt is None
+    assert unit.yaw is None
+
+
+def test_round_trip_and_malformed_files(tmp_path: Path, content: SummaryFile) -> None:
+    path = tmp_path / "summary.json"
+    write_summary(path, content)
+    assert read_summary(path) == content
+    path.write_text(path.read_text()[:500])
+    with pytest.raises(InputError, match="is no drivetrain summary"):
+        read_summary(path)
+
+
+def test_the_command_writes_summary_and_seats(tmp_path: Path) -> None:
+    sizes = ["mesh.shaft=0.3", "mesh.bearing=0.1", "mesh.housing=0.1", "mesh.bearing_edge=0.1"]
+    coarse = [word for size in sizes for word in ("--set", size)]
+    command = ["export", "main_bearing_bonded", *coarse, "--format", "json"]
+    path = tmp_path / "summary.json"
+    done = CliRunner().invoke(cli._app, [*command, "--what", "summary", "--out", str(path)])
+    assert done.exit_code == 0, done.output
+    assert set(read_summary(path).parts) == {"shaft", "main_bearing", "main_bearing.housing"}
+    seats = tmp_path / "seats.json"
+    done = CliRunner().invoke(cli._app, [*command, "--what", "seats", "--out", str(seats)])
+    assert done.exit_code == 0, done.output
+    assert export.read(seats, "json").points == ("main_bearing",)
+    wrong = [*command[:-1], "csv", "--what", "summary", "--out", str(tmp_path / "a.csv")]
+    assert CliRunner().invoke(cli._app, wrong).exit_code == cli.MISTAKE
