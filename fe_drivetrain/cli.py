@@ -245,6 +245,15 @@ def _export(
             "and bearings); auto, where left out, is 2, and 4 of a bearing.",
         ),
     ] = None,
+    modes: Annotated[
+        int | None,
+        typer.Option(
+            "--modes",
+            metavar="COUNT",
+            min=0,
+            help="Add so many fixed-interface modes to the free shaft (Craig-Bampton), in json.",
+        ),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace a file that is there.")
     ] = False,
@@ -270,7 +279,7 @@ def _export(
         if scene is None or out is None:
             missing = "SCENE" if scene is None else "--out FILE"
             raise InputError(f"Missing {missing}: name it, or give --list for the formats")
-        condensing = {"--what": what, "--at": at, "--level": level}
+        condensing = {"--what": what, "--at": at, "--level": level, "--modes": modes}
         if format_ is None:
             given = [option for option, value in condensing.items() if value is not None]
             if given:
@@ -293,7 +302,12 @@ def _export(
         if format_ is None:
             said = _export_model(found, out)
         else:
-            said = _export_condensed(found, out, format_, what, at, level, overwrite)
+            if modes is not None:
+                if format_ != "json" or what not in (None, "shaft") or level not in (None, "auto"):
+                    raise InputError("--modes are of the shaft at level 2, in json: leave out more")
+                said = _export_modes(found, out, at, modes)
+            else:
+                said = _export_condensed(found, out, format_, what, at, level, overwrite)
         _write(sys.stdout, f"{out}: {said}\n")
         return PASSED
 
@@ -339,7 +353,7 @@ def _export_condensed(
 
     if what == "summary":
         return _export_summary(scene, out, format, level)
-    points = None if at is None else [name.strip() for name in at.split(",") if name.strip()]
+    points = _points(at)
     wanted = AUTO if level is None else level
     with _progress() as report:
         report("condense")
@@ -354,6 +368,24 @@ def _export_condensed(
         f"{element.name} at {', '.join(element.points)}, {supports}, level {element.origin.level}, "
         f"{'with' if element.mass is not None else 'without'} mass"
     )
+
+
+def _points(at: str | None) -> list[str] | None:
+    return None if at is None else [name.strip() for name in at.split(",") if name.strip()]
+
+
+def _export_modes(scene: Scene, out: Path, at: str | None, modes: int) -> str:
+    """Write the shaft with its modes; what that is."""
+    from fe_drivetrain.craig_bampton import craig_bampton_shaft
+    from fe_drivetrain.export.craig_bampton_json import write_craig_bampton
+
+    with _progress() as report:
+        report("condense")
+        body = craig_bampton_shaft(scene, modes, _points(at))
+        report("write")
+        write_craig_bampton(out, body)
+        report("")
+    return f"shaft at {', '.join(body.points)}, free, with {len(body.omega)} modes"
 
 
 def _export_summary(scene: Scene, out: Path, format: str, level: str | None) -> str:

@@ -10,15 +10,25 @@ from conftest import coarse_scene
 from typer.testing import CliRunner
 
 from fe_drivetrain import cli, export
+from fe_drivetrain.craig_bampton import craig_bampton_shaft
 from fe_drivetrain.errors import InputError
+from fe_drivetrain.export.craig_bampton_json import (
+    CraigBamptonFile,
+    read_craig_bampton,
+    write_craig_bampton,
+)
 from fe_drivetrain.export.summary import SummaryFile, read_summary, summary, write_summary
 from fe_drivetrain.export.superelement_json import SuperelementFile
 from fe_drivetrain.levels import assembly_level
 from fe_drivetrain.model import Model
-from fe_drivetrain.scene_superelements import shaft_superelement
+from fe_drivetrain.scene_superelements import shaft_superelement, unit_superelement
 
 DOCS = Path(__file__).parents[1] / "docs"
-SCHEMAS = {"superelement": SuperelementFile, "summary": SummaryFile}
+SCHEMAS = {
+    "superelement": SuperelementFile,
+    "summary": SummaryFile,
+    "craig_bampton": CraigBamptonFile,
+}
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +46,9 @@ def test_files_fulfil_the_published_schemas(tmp_path: Path, content: SummaryFile
     write_summary(tmp_path / "summary.json", content)
     export.write(
         tmp_path / "superelement.json", shaft_superelement(coarse_scene("bonded"), 2), "json"
+    )
+    write_craig_bampton(
+        tmp_path / "craig_bampton.json", craig_bampton_shaft(coarse_scene("bonded"), 3, order=3)
     )
     for name in SCHEMAS:
         schema = json.loads((DOCS / f"{name}.schema.json").read_text())
@@ -110,3 +123,33 @@ def test_the_command_writes_summary_and_seats(tmp_path: Path) -> None:
     assert export.read(seats, "json").points == ("main_bearing",)
     wrong = [*command[:-1], "csv", "--what", "summary", "--out", str(tmp_path / "a.csv")]
     assert CliRunner().invoke(cli._app, wrong).exit_code == cli.MISTAKE
+
+
+def test_compliance_is_written_where_there_is_one(tmp_path: Path) -> None:
+    scene = coarse_scene("bonded")
+    for name, has in (("unit", True), ("shaft", False)):
+        made = unit_superelement(scene, "main_bearing") if has else shaft_superelement(scene, 1)
+        export.write(tmp_path / name, made, "json")
+        compliance = json.loads((tmp_path / name).read_text())["compliance"]
+        assert (compliance is not None) == has
+        if has:
+            np.testing.assert_allclose(made.stiffness @ compliance, np.eye(6), atol=1e-9)
+
+
+def test_modes_by_the_command_come_back(tmp_path: Path) -> None:
+    path = tmp_path / "modes.json"
+    command = ["export", "main_bearing_bonded", "--format", "json", "--out", str(path)]
+    done = CliRunner().invoke(cli._app, [*command, "--at", "hub,gearbox", "--modes", "4"])
+    assert done.exit_code == 0, done.output
+    body = read_craig_bampton(path)
+    assert body.points == ("hub", "gearbox")
+    assert len(body.omega) >= 4
+    assert body.mass.shape == (12 + len(body.omega),) * 2
+    assert np.linalg.eigvalsh(body.mass)[0] > 0
+    content = json.loads(path.read_text())
+    content["omega"].append(1.0)
+    path.write_text(json.dumps(content))
+    with pytest.raises(InputError, match="a column for each of"):
+        read_craig_bampton(path)
+    other = [*command[:-1], str(tmp_path / "a"), "--what", "drivetrain", "--modes", "4"]
+    assert CliRunner().invoke(cli._app, other).exit_code == cli.MISTAKE

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from fe_drivetrain.bearing_units import unit_stiffness
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.export.superelement_json import OriginFile
+from fe_drivetrain.export.superelement_json import OriginFile, read_content
 from fe_drivetrain.files import atomic_path
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.levels import LevelModel, assembly_level, shaft_level
@@ -130,11 +130,7 @@ def read_summary(path: str | Path) -> SummaryFile:
     InputError
         The file is not of this schema.
     """
-    try:
-        return SummaryFile.model_validate_json(Path(path).read_text(encoding="utf-8"))
-    except (ValidationError, UnicodeDecodeError) as error:
-        first = error.errors()[0]["msg"] if isinstance(error, ValidationError) else "it is no text"
-        raise InputError(f"{path} is no drivetrain summary: {first}") from error
+    return read_content(Path(path), SummaryFile, "drivetrain summary")
 
 
 def _shaft(scene: Scene) -> ShaftFile:
