@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.levels import assembly_level, housing_springs, shaft_level
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.scene_superelements import (
+    difference,
     shaft_superelement,
     supported_superelement,
     unit_superelement,
@@ -87,7 +86,5 @@ def _drivetrain(scene: Scene, at: Sequence[str], level: int) -> Superelement:
         shaft_level(scene, level, housing_springs(scene, coupling=coupling)[0])
         for coupling in ("rigid", "averaged")
     )
-    upper, lower = stiff.stiffness(at), soft.stiffness(at)
-    size = np.sqrt(np.outer(upper.diagonal(), upper.diagonal()))
-    band = float(np.abs((upper - lower) / size).max())
+    band = difference(soft.stiffness(at), stiff.stiffness(at))
     return supported_superelement(scene, stiff, at, band)

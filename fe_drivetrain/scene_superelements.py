@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import version
 
 import numpy as np
 
 from fe_drivetrain.bearing_units import unit_stiffness
-from fe_drivetrain.condensation import Condensed, keep_points
+from fe_drivetrain.condensation import keep_points
 from fe_drivetrain.condensed_shafts import beam_shaft, meridian_shaft, solid_shaft
+from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.levels import LevelModel
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.superelement import Origin, Superelement
 
+#: Coarsening, and order of convergence that is relied upon, for the band of a solid shaft.
+COARSER, ORDER = 1.35, 1.0
+
 
 def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None) -> Superelement:
     """The free shaft of a scene, condensed.
+
+    Its band is, of a beam, the difference to the meridian; of the meridian, that to elements of one
+    order less; of a solid, what a coarser mesh says is missing to element size zero.
 
     Parameters
     ----------
@@ -28,30 +35,47 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
         1 beam (without mass), 2 meridian, 3 solid with the rings of its bearings.
     at
         Points that are kept; all where not given.
+
+    Raises
+    ------
+    InputError
+        There is no such level or point.
     """
-    condensers: dict[int, Callable[[Scene], Condensed]] = {
-        1: beam_shaft,
-        2: meridian_shaft,
-        3: solid_shaft,
-    }
-    titles = {1: "Timoshenko beam", 2: "meridian in harmonics", 3: "solid shaft with rings"}
-    if level not in condensers:
+    factor = 1.0
+    if level == 1:
+        body, other = beam_shaft(scene), meridian_shaft(scene)
+        said = "1 Timoshenko beam", "none"
+    elif level == 2:
+        filleted = any(piece.fillet > 0 for piece in scene.shaft.pieces)
+        order = 4 if filleted else 6
+        body, other = meridian_shaft(scene, order=order), meridian_shaft(scene, order=order - 1)
+        said = "2 meridian in harmonics", f"elements of order {order} in the meridian"
+    elif level == 3:
+        coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)})
+        body, other = solid_shaft(scene), solid_shaft(coarse)
+        factor = 1.0 / (COARSER**ORDER - 1.0)
+        size = f"{scene.mesh.shaft:g} m"
+        said = "3 solid shaft with rings", f"curved tetrahedra of second order, {size}"
+    else:
         raise InputError(f"level {level} has no free shaft: use one of 1, 2, 3")
-    body = condensers[level](scene)
-    body = body if at is None else keep_points(body, at)
-    mesh = {
-        1: "none",
-        2: "quadrilaterals or triangles of high order in the meridian",
-        3: f"curved tetrahedra of second order, {scene.mesh.shaft:g} m",
-    }[level]
+    if at is not None:
+        body, other = keep_points(body, at), keep_points(other, at)
     return Superelement(
         "shaft",
         body.names,
         body.positions,
         body.stiffness,
         body.mass,
-        origin=scene_origin(scene, f"{level} {titles[level]}", mesh),
+        band=factor * difference(other.stiffness, body.stiffness),
+        origin=scene_origin(scene, *said),
     )
+
+
+def difference(matrix: Floats, reference: Floats) -> float:
+    """Largest difference of two matrices, the reference scaled to a unit diagonal."""
+    size = np.sqrt(np.abs(reference.diagonal()))
+    size[size == 0.0] = 1.0
+    return float(np.abs((matrix - reference) / np.outer(size, size)).max())
 
 
 def supported_superelement(
@@ -75,14 +99,19 @@ def supported_superelement(
 
 
 def unit_superelement(scene: Scene, name: str) -> Superelement:
-    """A bearing and its housing on the ground, at the bearing's centre: K_R of both planes, too."""
+    """A bearing and its housing on the ground, at the bearing's centre: K_R of both planes, too.
+
+    The shaft is taken to keep its face in shape; the band reaches to a face that moves on average.
+    """
     x = scene.bearing_unit(name).bearing.x
+    stiff, soft = (unit_stiffness(scene, name, coupling=c) for c in ("rigid", "averaged"))
     return Superelement(
         name.replace("-", "_"),
         (name,),
         np.array([[x, 0.0, 0.0]]),
-        unit_stiffness(scene, name, coupling="rigid"),
+        stiff,
         supported=True,
+        band=difference(soft, stiff),
         origin=scene_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),
     )
 

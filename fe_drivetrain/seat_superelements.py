@@ -32,4 +32,5 @@ def seats_superelement(scene: Scene) -> Superelement:
         points=tuple(unit.points[0] for unit in units),
         positions=np.vstack([unit.positions for unit in units]),
         stiffness=block_diag(*(unit.stiffness for unit in units)),
+        band=max(unit.band or 0.0 for unit in units),
     )

@@ -65,7 +65,8 @@ class Superelement:
     supported
         Whether the scene's supports are in it; else it is free, and has six rigid motions.
     band
-        Half width of the uncertainty of the stiffness, relative; None where it is not known.
+        Half width of the uncertainty of the stiffness, of any entry relative to the diagonal
+        entries of its row and column; None where it is not known.
     origin
         Where it comes from.
     """

@@ -7,9 +7,13 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain import export
+from fe_drivetrain.condensation import keep_points
+from fe_drivetrain.condensed_shafts import meridian_shaft
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.levels import shaft_level
+from fe_drivetrain.scene import library_scene
 from fe_drivetrain.scene_superelements import (
+    difference,
     shaft_superelement,
     supported_superelement,
     unit_superelement,
@@ -130,6 +134,20 @@ def test_shaft_of_a_scene_is_free_and_has_its_mass() -> None:
     volume = np.pi / 4 * shaft.sections[0].outer_diameter ** 2 * shaft.length
     assert inertia[0, 0] == pytest.approx(scene.material_of("shaft").density * volume, rel=1e-9)
     assert len(element.origin.scene_hash) == 64
+
+
+def test_bands_hold_what_the_next_level_says() -> None:
+    """The meridian's band is small; a beam's is what separates it from the meridian."""
+    scene = library_scene("stepped_shaft")
+    beam, meridian = (shaft_superelement(scene, level, ["hub", "gearbox"]) for level in (1, 2))
+    assert beam.band is not None
+    assert meridian.band is not None
+    assert 0 < meridian.band < 2e-3 < 0.05 < beam.band
+    finer = keep_points(meridian_shaft(scene, 0.25, 5), ["hub", "gearbox"])
+    assert difference(finer.stiffness, meridian.stiffness) < 3 * meridian.band
+    unit = unit_superelement(coarse_scene("bonded"), "main_bearing")
+    assert unit.band is not None
+    assert 0 < unit.band < 1
 
 
 def test_torsion_of_the_free_shaft_is_g_j_over_l() -> None:
