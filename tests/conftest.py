@@ -1,6 +1,7 @@
 """Scenes that several test modules solve: coarse, and built once a session."""
 
 import os
+import signal
 from collections.abc import Iterator
 
 import hypothesis
@@ -44,6 +45,13 @@ def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[No
         patch.setenv(cache.VARIABLE, str(tmp_path_factory.mktemp("cache")))
         patch.setenv(parallel.VARIABLE, "1")
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def interruptible() -> None:
+    """A shell that runs this in the background ignores Ctrl-C, and so would all its children."""
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

@@ -633,7 +633,7 @@ def test_export_overwrites_only_when_told(
         (("main_bearing_bonded", "--out", "no/a", "--format", "csv"), "folder that exists"),
         (
             (*CONDENSED, "--what", "tower"),
-            "use one of shaft, drivetrain, main_bearing",
+            "use one of shaft, drivetrain, seats, main_bearing",
         ),
         (
             (*CONDENSED, "--level", "9"),
