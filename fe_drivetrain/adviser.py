@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fe_drivetrain.condensed_shafts import condensed_shaft
 from fe_drivetrain.convergence import grid_convergence
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
@@ -238,14 +239,18 @@ def _climb_springs(
     previous = None
     for level in (1, 2):
         report(f"level {level}: {'beam' if level == 1 else 'meridian'}, housings as springs")
-        model, bound = shaft_level(scene, level, stiff), shaft_level(scene, level, soft)
+        start = time.perf_counter()
+        body = condensed_shaft(scene, level)
+        condensing = time.perf_counter() - start
+        model, bound = (shaft_level(scene, level, springs, body) for springs in (stiff, soft))
         values = quantity.of(model, length)
         estimate = _difference(quantity.of(bound, length), values) / 2
         if previous is not None:
             estimate += _difference(previous, values)
         # only the second of two shafts tells how far the first may be off
         estimate = float("nan") if previous is None else estimate
-        if climb(model, seconds + model.cost.seconds + bound.cost.seconds, estimate):
+        taken = condensing + model.cost.seconds + bound.cost.seconds
+        if climb(model, seconds + taken, estimate):
             return stiff, True
         previous = values
     return stiff, False

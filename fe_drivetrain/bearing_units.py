@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from fe_drivetrain import interfaces
@@ -84,3 +86,20 @@ def unit_stiffness(
     stiffness = np.zeros((6, 6))
     stiffness[:carried, :carried] = 0.5 * (inverse + inverse.T)
     return stiffness
+
+
+def scene_supports(scene: Scene, housings: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Stiffness to ground (6, 6) of the points of a scene: its bearing units and its gearbox.
+
+    Parameters
+    ----------
+    scene
+        The scene; what its gearbox holds rigidly has inf on the diagonal.
+    housings
+        (6, 6) of each bearing unit by name, see `unit_stiffness`.
+    """
+    supports = {unit.bearing.name: housings[unit.bearing.name] for unit in scene.bearing_units}
+    gearbox = np.array([np.inf if k == "rigid" else float(k) for k in scene.gearbox.stiffness])
+    if gearbox.any():
+        supports["gearbox"] = np.diag(gearbox)
+    return supports

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.elasticity import Floats, Ints
 from fe_drivetrain.errors import InputError
 
 
@@ -53,7 +53,7 @@ class Condensed:
     @property
     def rigid_motions(self) -> Floats:
         """(6 n, 6) the motions that no force resists, about the first point."""
-        return np.vstack([wrench_transport(p - self.positions[0]).T for p in self.positions])
+        return point_motions(self.positions)
 
 
 def wrench_transport(arm: Floats) -> Floats:
@@ -65,6 +65,11 @@ def wrench_transport(arm: Floats) -> Floats:
     T = np.eye(6)
     T[3:, :3] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
     return T
+
+
+def point_motions(positions: Floats) -> Floats:
+    """(6 n, 6) motions of n points (n, 3) that move as one rigid body, about the first."""
+    return np.vstack([wrench_transport(p - positions[0]).T for p in positions])
 
 
 def condense(
@@ -182,6 +187,43 @@ def keep_points(body: Condensed, at: Sequence[str]) -> Condensed:
     )
 
 
+def on_supports(
+    points: Sequence[str], stiffness: Floats, supports: Mapping[str, Floats]
+) -> tuple[Floats, Ints]:
+    """Stiffness with that of the supports added, and which freedoms they leave.
+
+    Parameters
+    ----------
+    points
+        Names of n points.
+    stiffness
+        (6 n + m, 6 n + m): six freedoms of each point first, then m of anything.
+    supports
+        (6, 6) by point; inf on the diagonal holds that motion, and nothing else is in its row.
+
+    Returns
+    -------
+    (k, k) stiffness of the freedoms that are left, and their (k,) numbers.
+
+    Raises
+    ------
+    InputError
+        A support is at no point.
+    """
+    K = np.array(stiffness)
+    held = np.zeros(len(K), dtype=bool)
+    for name, k in supports.items():
+        if name not in points:
+            raise InputError(
+                f"support {name!r} is at none of the points {', '.join(points)}: keep its point"
+            )
+        rows = slice(6 * points.index(name), 6 * points.index(name) + 6)
+        held[rows] = np.isinf(np.diag(k))
+        K[rows, rows] += np.where(np.isinf(k), 0.0, k)
+    left = np.flatnonzero(~held)
+    return K[np.ix_(left, left)], left
+
+
 @dataclass(frozen=True)
 class Supported:
     """A condensed body on supports.
@@ -216,15 +258,8 @@ def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
         The supports leave a motion free.
     """
     n = len(body.names)
-    springs = np.zeros((6 * n, 6 * n))
-    rigid = np.zeros(6 * n, dtype=bool)
-    for name, k in supports.items():
-        rows = body.rows(name)
-        rigid[rows] = np.isinf(k.diagonal())
-        springs[rows, rows] = np.where(np.isinf(k), 0.0, k)
-    free = ~rigid
     F = np.hstack([np.eye(6 * n), body.gravity])
-    K = (body.stiffness + springs)[np.ix_(free, free)]
+    K, free = on_supports(body.names, body.stiffness, supports)
     # translations and rotations have other units: judged with a unit diagonal
     size = np.sqrt(K.diagonal())
     if not (size > 0).all() or np.linalg.eigvalsh(K / np.outer(size, size))[0] < _FREE:

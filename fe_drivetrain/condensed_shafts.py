@@ -6,7 +6,7 @@ Three levels of the same thing, so that all else of a model can stay as it is.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -206,6 +206,16 @@ def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
     loads = np.hstack([point.motion.T.toarray() for point in points])
     rigid = rigid_motions(mesh.points, positions[0])
     return condense(names, positions, loads, mass, rigid, solved)
+
+
+def condensed_shaft(scene: Scene, level: int) -> Condensed:
+    """The shaft at a level of the ladder: 1 beam, 2 meridian, 3 solid."""
+    condensers: dict[int, Callable[[Scene], Condensed]] = {
+        1: beam_shaft,
+        2: meridian_shaft,
+        3: solid_shaft,
+    }
+    return condensers[level](scene)
 
 
 def _pins(points: Floats) -> interfaces.Constraint:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.adviser import Quantity
-from fe_drivetrain.condensed_shafts import beam_shaft, meridian_shaft, ringed_shaft
+from fe_drivetrain.condensed_shafts import beam_shaft, condensed_shaft, meridian_shaft, ringed_shaft
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.levels import LevelModel, shaft_level
+from fe_drivetrain.levels import shaft_level
 from fe_drivetrain.scene import Scene
 
 
@@ -52,7 +52,9 @@ def effects(
         Stiffness of each bearing unit.
     """
     length = scene.shaft.length
-    reference = quantity.of(shaft_level(scene, level, housings), length)
+    whole = condensed_shaft(scene, level)
+    base = shaft_level(scene, level, housings, whole)
+    reference = quantity.of(base, length)
     found = []
 
     def add(detail: str, values: Floats) -> None:
@@ -67,12 +69,12 @@ def effects(
         report(f"without {detail}")
         add(detail, quantity.of(shaft_level(simpler, level, housings), length))
     report("without the housings' flexibility")
-    add("flexibility of housings", quantity.of(shaft_level(scene, level), length))
+    add("flexibility of housings", quantity.of(shaft_level(scene, level, body=whole), length))
     for detail, stiffness in _gearboxes(scene).items():
         other = scene.gearbox.model_copy(update={"stiffness": stiffness})
         changed = scene.model_copy(update={"gearbox": other})
         try:
-            add(detail, quantity.of(shaft_level(changed, level, housings), length))
+            add(detail, quantity.of(shaft_level(changed, level, housings, whole), length))
         except InputError:  # nothing else holds the shaft
             continue
     condense = beam_shaft if level == 1 else meridian_shaft
@@ -84,7 +86,6 @@ def effects(
     for detail, body in bodies.items():
         add(detail, quantity.of(shaft_level(scene, level, housings, body), length))
     if quantity.load is not None:
-        base: LevelModel = shaft_level(scene, level, housings)
         for detail, columns in (("self-weight", slice(6, 9)), ("gearbox weight", slice(9, 10))):
             if np.any(quantity.load[columns]):
                 load = quantity.load.copy()

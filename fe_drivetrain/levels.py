@@ -8,19 +8,18 @@ were solved apart. What a level leaves out, it says.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from fe_drivetrain.bearing_units import unit_stiffness
+from fe_drivetrain.bearing_units import scene_supports, unit_stiffness
 from fe_drivetrain.condensation import Condensed, supported, wrench_transport
 from fe_drivetrain.condensed_shafts import (
     beam_shaft,
-    meridian_shaft,
+    condensed_shaft,
     reference_points,
     ringed_shaft,
-    solid_shaft,
 )
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
@@ -174,12 +173,7 @@ def shaft_level(
         The condensed shaft, where there is one already.
     """
     start = time.perf_counter()
-    condensers: dict[int, Callable[[Scene], Condensed]] = {
-        1: beam_shaft,
-        2: meridian_shaft,
-        3: solid_shaft,
-    }
-    body = condensers[level](scene) if body is None else body
+    body = condensed_shaft(scene, level) if body is None else body
     neglects = []
     everywhere = {unit.bearing.name for unit in scene.bearing_units}
     on_shaft = frozenset(everywhere) if level == 3 else ringed_shaft(scene)[1]
@@ -189,16 +183,12 @@ def shaft_level(
         neglects += ["fillets", "sections that do not stay plane near steps and seats"]
     if housings is None:
         neglects.append("housings and bearings that give: they are rigid")
-        supports = {unit.bearing.name: _rigid(unit.interface) for unit in scene.bearing_units}
+        housings = {unit.bearing.name: _rigid(unit.interface) for unit in scene.bearing_units}
         title = f"{TITLES[level]}, rigid housings"
     else:
         neglects.append("what shaft and housing do to the shape of the face between them")
-        supports = dict(housings)
         title = f"{TITLES[level]}, housings as springs"
-    gearbox = np.array([np.inf if k == "rigid" else k for k in scene.gearbox.stiffness])
-    if gearbox.any():
-        supports["gearbox"] = np.diag(gearbox)
-    found = supported(body, supports)
+    found = supported(body, scene_supports(scene, housings))
     n = len(body.names)
     columns = _unit_loads(body)
     reactions = {name: R @ columns for name, R in found.reactions.items()}

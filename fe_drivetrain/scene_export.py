@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from fe_drivetrain.condensed_shafts import condensed_shaft
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.levels import assembly_level, housing_springs, shaft_level
 from fe_drivetrain.scene import Scene
@@ -82,8 +83,9 @@ def superelement_of(
 def _drivetrain(scene: Scene, at: Sequence[str], level: int) -> Superelement:
     if level == 4:
         return supported_superelement(scene, assembly_level(scene), at)
+    body = condensed_shaft(scene, level)
     stiff, soft = (
-        shaft_level(scene, level, housing_springs(scene, coupling=coupling)[0])
+        shaft_level(scene, level, housing_springs(scene, coupling=coupling)[0], body)
         for coupling in ("rigid", "averaged")
     )
     band = difference(soft.stiffness(at), stiff.stiffness(at))

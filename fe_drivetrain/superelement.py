@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fe_drivetrain.condensation import point_motions
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 
@@ -122,10 +123,7 @@ class Superelement:
     @property
     def rigid_motions(self) -> Floats:
         """(6 n, 6) unit motions of the whole about the first point."""
-        motions = np.tile(np.eye(6), (len(self.points), 1))
-        for k, arm in enumerate(self.positions - self.positions[0]):
-            motions[6 * k : 6 * k + 3, 3:] = np.cross(np.eye(3), arm).T
-        return motions
+        return point_motions(self.positions)
 
     def rigid_error(self) -> float:
         """Largest force against a rigid motion, of those that its terms would have one by one."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import gmsh
@@ -20,6 +21,7 @@ class Solid(NamedTuple):
     inertia: tuple[float, ...]
 
 
+@lru_cache(maxsize=64)
 def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tuple[Solid, Solid]:
     """The bearing, and its housing.
 

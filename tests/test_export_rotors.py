@@ -10,7 +10,8 @@ from conftest import coarse_scene
 from scipy import linalg
 from scipy.optimize import brentq
 
-from fe_drivetrain.condensation import Condensed, supported
+from fe_drivetrain.bearing_units import scene_supports
+from fe_drivetrain.condensation import Condensed, on_supports, supported
 from fe_drivetrain.condensed_shafts import meridian_shaft, reference_points, shaft_meridian
 from fe_drivetrain.craig_bampton import (
     _Harmonic,
@@ -26,7 +27,7 @@ from fe_drivetrain.lumped_shaft import lumped_superelement, rigid_mass
 from fe_drivetrain.scene import Scene, library_scene
 from fe_drivetrain.scene_superelements import shaft_superelement
 from fe_drivetrain.sections import BeamSection, cowper_shear_coefficient
-from fe_drivetrain.supported_modes import natural_frequencies, on_supports, scene_supports
+from fe_drivetrain.supported_modes import natural_frequencies
 
 #: Polynomial order of the meridians here: identities hold at any.
 ORDER = 3

@@ -22,12 +22,13 @@ def run(run: Run) -> Any:
     import numpy as np
     from fe_drivetrain.cases.export import rotor_scenes
 
+    from fe_drivetrain.bearing_units import scene_supports
     from fe_drivetrain.craig_bampton import craig_bampton_shaft, free_frequencies
     from fe_drivetrain.export import exudyn_system
     from fe_drivetrain.levels import shaft_level
     from fe_drivetrain.lumped_shaft import lumped_superelement
     from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.supported_modes import natural_frequencies, scene_supports
+    from fe_drivetrain.supported_modes import natural_frequencies
 
     version = exudyn_system.exudyn_version()
     verdicts: list[Any] = []

@@ -22,13 +22,14 @@ def run(run: Run) -> Any:
     import numpy as np
     from fe_drivetrain.cases.export import rotor_scenes
 
+    from fe_drivetrain.bearing_units import scene_supports
     from fe_drivetrain.craig_bampton import craig_bampton_shaft, free_frequencies
     from fe_drivetrain.export import ross_rotor
     from fe_drivetrain.frame import Support, shaft_stiffness, unit_load_response
     from fe_drivetrain.results import Section, Table, Text, judge
     from fe_drivetrain.scene import library_scene
     from fe_drivetrain.scene_beam import beam_of_scene
-    from fe_drivetrain.supported_modes import natural_frequencies, scene_supports
+    from fe_drivetrain.supported_modes import natural_frequencies
 
     with run.step("ROSS starts"):
         version = ross_rotor.ross_version()

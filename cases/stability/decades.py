@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.charts import trace
 from fe_drivetrain.elasticity import Floats
 
 #: Relative error of a stiffness that counts as safe: four digits.
@@ -69,3 +71,10 @@ def slope(x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.i
 def shown(value: float | None) -> str:
     """A bound in words."""
     return "no bound" if value is None else f"{value:.2g}"
+
+
+def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
+    """Trace of points without an answer, at 1 where there is not even a wrong one."""
+    at = np.asarray(x, dtype=float)
+    shown_at = np.ones(len(at)) if y is None else np.nan_to_num(np.asarray(y, dtype=float), nan=1.0)
+    return trace(name, at, shown_at, True, marker={"symbol": "x"})

@@ -14,7 +14,14 @@ def run(run: Run) -> Any:
     """Soften the springs that hold a shaft on a spherical bearing against turning."""
     import numpy as np
     from fe_drivetrain.cases.stability import soft_springs
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, decades, safe_range, shown, slope
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+        crosses,
+        decades,
+        safe_range,
+        shown,
+        slope,
+    )
 
     from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.mechanisms import WEAK
@@ -223,13 +230,7 @@ def run(run: Run) -> Any:
                                 np.maximum(remedy, 1e-16),
                                 line={"dash": "dot"},
                             ),
-                            trace(
-                                "refused",
-                                targets[~answered],
-                                np.ones((~answered).sum()),
-                                True,
-                                marker={"symbol": "x"},
-                            ),
+                            crosses("refused", targets[~answered]),
                         ],
                         "work of the springs over E times length of what moves",
                         "relative error",

@@ -19,7 +19,14 @@ def run(run: Run) -> Any:
     """Sweep the penalty of three couplings, with direct and iterative solvers."""
     import numpy as np
     from fe_drivetrain.cases.stability import couplings
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, decades, safe_range, shown, slope
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+        crosses,
+        decades,
+        safe_range,
+        shown,
+        slope,
+    )
 
     from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.errors import InputError
@@ -160,12 +167,10 @@ def run(run: Run) -> Any:
                                 iterated_error[arrived],
                                 True,
                             ),
-                            trace(
+                            crosses(
                                 "penalty, multigrid, not converged",
                                 iterated_penalties[~arrived],
-                                np.nan_to_num(iterated_error[~arrived], nan=1.0),
-                                True,
-                                marker={"symbol": "x"},
+                                iterated_error[~arrived],
                             ),
                             trace(
                                 "elimination, direct: its round-off",

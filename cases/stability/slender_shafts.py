@@ -20,7 +20,7 @@ def run(run: Run) -> Any:
     import numpy as np
     from fe_drivetrain.cases.stability import thin_and_slender as shared
 
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.results import Limit, Section, Text, judge
 
     points = []
     for slenderness in QUICK if run.quick else SLENDERNESS:
@@ -176,11 +176,7 @@ def run(run: Run) -> Any:
                     "elements, and exact to about 1e-6: errors below are its own. That of torsion "
                     "is exact."
                 ),
-                Table(
-                    caption="All points",
-                    columns=["L/D", *shared.COLUMNS],
-                    rows=shared.rows_of(points),
-                ),
+                shared.table_of(points, "L/D"),
             ],
         ),
         Section(

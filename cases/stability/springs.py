@@ -14,7 +14,14 @@ def run(run: Run) -> Any:
 
     import numpy as np
     from fe_drivetrain.cases.stability import soft_springs
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, decades, safe_range, shown, slope
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+        crosses,
+        decades,
+        safe_range,
+        shown,
+        slope,
+    )
 
     from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.errors import InputError
@@ -293,13 +300,7 @@ def run(run: Run) -> Any:
                                 np.maximum(reaction_error[answered], 1e-16),
                                 line={"dash": "dot"},
                             ),
-                            trace(
-                                "refused",
-                                stiffness[~answered],
-                                np.ones((~answered).sum()),
-                                True,
-                                marker={"symbol": "x"},
-                            ),
+                            crosses("refused", stiffness[~answered]),
                             trace(
                                 "beam by the force method",
                                 stiffness[np.isfinite(beam_error)],
@@ -357,13 +358,7 @@ def run(run: Run) -> Any:
                                 bonded_k[bonded_answered],
                                 np.maximum(bonded_reaction_error[bonded_answered], 1e-16),
                             ),
-                            trace(
-                                "refused",
-                                bonded_k[~bonded_answered],
-                                np.ones((~bonded_answered).sum()),
-                                True,
-                                marker={"symbol": "x"},
-                            ),
+                            crosses("refused", bonded_k[~bonded_answered]),
                         ],
                         "radial gearbox stiffness [N/m]",
                         "relative",

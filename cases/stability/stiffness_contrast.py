@@ -14,7 +14,14 @@ def run(run: Run) -> Any:
     """Sweep the stiffness of some bodies over what others have."""
     import numpy as np
     from fe_drivetrain.cases.stability import layers
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, decades, safe_range, shown, slope
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+        crosses,
+        decades,
+        safe_range,
+        shown,
+        slope,
+    )
 
     from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.materials import Material
@@ -261,12 +268,8 @@ def run(run: Run) -> Any:
                             trace(
                                 "multigrid, converged", some[arrived], iterated_error[arrived], True
                             ),
-                            trace(
-                                "multigrid, not converged",
-                                some[~arrived],
-                                np.nan_to_num(iterated_error[~arrived], nan=1.0),
-                                True,
-                                marker={"symbol": "x"},
+                            crosses(
+                                "multigrid, not converged", some[~arrived], iterated_error[~arrived]
                             ),
                             trace(
                                 "direct, shaft rigid",
@@ -301,12 +304,10 @@ def run(run: Run) -> Any:
                                 np.maximum(chain_iterated_error[chain_arrived], 1e-16),
                                 True,
                             ),
-                            trace(
+                            crosses(
                                 "multigrid, not converged",
                                 some_stiffer[~chain_arrived],
-                                np.nan_to_num(chain_iterated_error[~chain_arrived], nan=1.0),
-                                True,
-                                marker={"symbol": "x"},
+                                chain_iterated_error[~chain_arrived],
                             ),
                             trace(
                                 "direct, stiff bodies rigid",

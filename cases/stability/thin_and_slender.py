@@ -21,7 +21,7 @@ from fe_drivetrain.hexahedra import Hexahedra, shaft_hexahedra
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
 from fe_drivetrain.materials import MATERIALS
 from fe_drivetrain.reduction import System, reduce
-from fe_drivetrain.results import Chart
+from fe_drivetrain.results import Chart, Table
 
 STEEL = MATERIALS["steel"]
 
@@ -473,6 +473,11 @@ def rows_of(points: list[Point]) -> list[list[Any]]:
         ]
         for p in points
     ]
+
+
+def table_of(points: list[Point], parameter: str) -> Table:
+    """All points of a sweep."""
+    return Table(caption="All points", columns=[parameter, *COLUMNS], rows=rows_of(points))
 
 
 COLUMNS = [

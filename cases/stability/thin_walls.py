@@ -197,11 +197,7 @@ def run(run: Run) -> Any:
                     text="The reference of the oval is the mean of all direct solvers, refined; at "
                     f"the thinnest wall they differ by {points_spread:.1e}."
                 ),
-                Table(
-                    caption="All points",
-                    columns=["radius over wall", *shared.COLUMNS],
-                    rows=shared.rows_of(points),
-                ),
+                shared.table_of(points, "radius over wall"),
             ],
         ),
         Section(

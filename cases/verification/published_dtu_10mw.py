@@ -60,16 +60,7 @@ def run(run: Run) -> Any:
             reason=digits,
             measure="frequency",
         ),
-        judge(
-            "free-free frequency by eigenvalues against the closed form",
-            by_eigenvalues / free - 1,
-            0.0,
-            tolerance=1e-9,
-            relative=False,
-            source="sqrt(k (1 / J_rotor + 1 / n^2 J_generator)) / 2 pi",
-            reason="round-off",
-            measure="identity",
-        ),
+        published_shafts.judge_free_free(by_eigenvalues, free),
         judge(
             "free-fixed frequency by eigenvalues against the closed form",
             held / fixed - 1,

@@ -19,7 +19,7 @@ def run(run: Run) -> Any:
 
     from fe_drivetrain.axisymmetric import end_stiffness
     from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
+    from fe_drivetrain.results import Section, Table, Text, judge
 
     length = sum(LENGTHS)
     inner = OUTER - 2 * WALL
@@ -139,15 +139,7 @@ def run(run: Run) -> Any:
                 ],
             )
         ],
-        assumptions=[
-            AssumptionRow(
-                name="generator and hub",
-                value="rigid",
-                unit="",
-                source="the turbine has no gearbox: the field would hold the generator's structure "
-                "too, which is not published",
-            )
-        ],
+        assumptions=[published_shafts.RIGID_ENDS],
         figures={"stiffness": found.series.finest, "band": found.series.uncertainty},
     )
 

@@ -11,7 +11,7 @@ from fe_drivetrain.cases.verification.shaft_theory import parabola_shortfall
 from fe_drivetrain.case import Run
 from fe_drivetrain.convergence import GridConvergence, grid_convergence
 from fe_drivetrain.materials import Material
-from fe_drivetrain.results import Verdict, judge
+from fe_drivetrain.results import AssumptionRow, Verdict, judge
 
 #: Elements round the axis of the coarsest mesh; of a quick run.
 BASE_TURN, QUICK_TURN = 12, 8
@@ -38,6 +38,30 @@ class Torsion(NamedTuple):
     def tolerance(self) -> float:
         """Twice what J lacks since parabolas stand for the circle."""
         return 2 * 4 * parabola_shortfall(self.per_turn)
+
+
+#: Of turbines without a gearbox.
+RIGID_ENDS = AssumptionRow(
+    name="generator and hub",
+    value="rigid",
+    unit="",
+    source="the turbine has no gearbox: the field would hold the generator's structure too, which "
+    "is not published",
+)
+
+
+def judge_free_free(by_eigenvalues: float, closed: float) -> Verdict:
+    """The free-free frequency of rotor and generator, by eigenvalues and in closed form."""
+    return judge(
+        "free-free frequency by eigenvalues against the closed form",
+        by_eigenvalues / closed - 1,
+        0.0,
+        tolerance=1e-9,
+        relative=False,
+        source="sqrt(k (1 / J_rotor + 1 / n^2 J_generator)) / 2 pi",
+        reason="round-off",
+        measure="identity",
+    )
 
 
 def material_of(shear_modulus: float, density: float = 7800.0) -> Material:

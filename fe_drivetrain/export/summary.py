@@ -13,6 +13,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from fe_drivetrain.bearing_units import unit_stiffness
+from fe_drivetrain.condensation import Condensed, keep_points
+from fe_drivetrain.condensed_shafts import meridian_shaft
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.export.superelement_json import OriginFile, read_content
@@ -21,7 +23,7 @@ from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.levels import LevelModel, assembly_level, shaft_level
 from fe_drivetrain.model import COMPONENTS, LOADS
 from fe_drivetrain.scene import Coupling, Scene
-from fe_drivetrain.scene_superelements import scene_origin, shaft_superelement
+from fe_drivetrain.scene_superelements import scene_origin
 from fe_drivetrain.superelement import FRAME, UNITS
 
 
@@ -106,9 +108,13 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
     springs = {
         c: {name: unit_stiffness(scene, name, coupling=c) for name in names} for c in couplings
     }
-    model = assembly_level(scene) if level == 4 else shaft_level(scene, level, springs["rigid"])
+    meridian = meridian_shaft(scene)
+    if level == 4:
+        model = assembly_level(scene)
+    else:
+        model = shaft_level(scene, level, springs["rigid"], meridian if level == 2 else None)
     return SummaryFile(
-        shaft=_shaft(scene),
+        shaft=_shaft(meridian),
         bearing_units={name: _unit([springs[c][name] for c in couplings]) for name in names},
         reactions=_reactions(model),
         parts=_parts(scene),
@@ -133,9 +139,9 @@ def read_summary(path: str | Path) -> SummaryFile:
     return read_content(Path(path), SummaryFile, "drivetrain summary")
 
 
-def _shaft(scene: Scene) -> ShaftFile:
+def _shaft(body: Condensed) -> ShaftFile:
     # the gearbox end held: what is left of the free shaft's stiffness is the hub's
-    compliance = np.linalg.inv(shaft_superelement(scene, 2, ["hub", "gearbox"]).stiffness[:6, :6])
+    compliance = np.linalg.inv(keep_points(body, ["hub", "gearbox"]).stiffness[:6, :6])
     axial, _, lateral, torsional, bending, _ = (1.0 / compliance.diagonal()).tolist()
     return ShaftFile(axial=axial, torsional=torsional, lateral=lateral, bending=bending)
 
@@ -183,8 +189,6 @@ def _parts(scene: Scene) -> dict[str, PartFile]:
 
 
 def _bare_inertia(scene: Scene) -> Floats:
-    from fe_drivetrain.condensed_shafts import meridian_shaft
-
     body = meridian_shaft(scene, rings=False)
     motions = body.rigid_motions
     return np.asarray(motions.T @ np.asarray(body.mass) @ motions)
