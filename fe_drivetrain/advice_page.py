@@ -27,6 +27,7 @@ def ladder(advice: Advice) -> Section:
                 f"{model.level} {model.title}",
                 _value(rung),
                 _percent(rung.error),
+                _percent(advice.step(number)),
                 _percent(rung.estimate),
                 rung.seconds,
                 advice.top.seconds / rung.seconds,
@@ -42,6 +43,7 @@ def ladder(advice: Advice) -> Section:
             "level",
             value,
             "error against the last [%]",
+            "against the next [%]",
             "own estimate ± [%]",
             "time [s]",
             "times faster than the last",
@@ -94,7 +96,8 @@ _NOTE = (
     "between a housing's face that is held in shape and one that moves on average, and the change "
     "from beam to meridian; of the assembly the band of its mesh, from two coarser ones. A level "
     "is good enough where its error and the last one's own estimate together are within the "
-    "tolerance. Times include meshes; a mesh that was made before comes from the cache."
+    "tolerance. Times are those of a level's value, meshes included; a mesh that was made before "
+    "comes from the cache, and what an estimate takes comes on top."
 )
 _ROW = (
     "No load was given: what is compared is the quantity's answer to each of the six hub loads, a "

@@ -17,6 +17,7 @@ from fe_drivetrain.convergence import grid_convergence
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.levels import (
+    TITLES,
     LevelModel,
     assembly_level,
     housing_springs,
@@ -100,7 +101,7 @@ class Rung:
     values
         Of the quantity.
     seconds
-        Wall time of all that it needs.
+        Wall time of all that its value needs; what its estimate takes comes on top.
     estimate
         Error expected before any dearer model is known, relative: 0 where statics decides; half
         the range of its two bounds and the change from beam to meridian where housings are springs;
@@ -143,6 +144,12 @@ class Advice:
         """The dearest model that was run."""
         return self.rungs[-1]
 
+    def step(self, number: int) -> float:
+        """Difference of a rung to the next one, relative to that; NaN of the last."""
+        if number == len(self.rungs) - 1:
+            return float("nan")
+        return _difference(self.rungs[number].values, self.rungs[number + 1].values)
+
     def sentence(self) -> str:
         """The answer."""
         share = f"{100 * self.tolerance:g} %"
@@ -158,11 +165,12 @@ class Advice:
                 f"{self.quantity.name} within {share} needs level {rung.model.level}, "
                 f"{rung.model.title}: {_expected(rung)}, {rung.seconds:.2g} s"
             )
-        faster = self.top.seconds / rung.seconds
+        ratio = self.top.seconds / rung.seconds
+        faster = f"{ratio:.3g} times faster" if ratio > 1 else f"{1 / ratio:.3g} times slower"
         return (
             f"{self.quantity.name} within {share}: level {rung.model.level}, {rung.model.title}, "
             f"is enough: {100 * rung.error:.2g} % from level {self.top.model.level}, "
-            f"{self.top.model.title} ({_expected(self.top)}), and {faster:.3g} times faster"
+            f"{self.top.model.title} ({_expected(self.top)}), and {faster}"
         )
 
 
@@ -216,7 +224,7 @@ def advise(
         done = climb(model, model.cost.seconds, float("nan"))
     springs: Mapping[str, Floats] = {}
     if not done:
-        springs, done = _climb_springs(scene, quantity, climb, report)
+        springs, done = _climb_springs(scene, quantity, to_the_top, climb, report)
     if not done:
         model, seconds, band = _assembly(scene, quantity, report)
         climb(model, seconds, band)
@@ -226,31 +234,41 @@ def advise(
 def _climb_springs(
     scene: Scene,
     quantity: Quantity,
+    to_the_top: bool,
     climb: Callable[[LevelModel, float, float], bool],
     report: Callable[[str], object],
 ) -> tuple[Mapping[str, Floats], bool]:
-    """Beam and meridian on housings that were solved apart, between two bounds of these."""
+    """Shafts on housings that were solved apart, between two bounds of these.
+
+    A solid shaft knows no more of its seats than its meridian does, and takes longer: it is only
+    there where the whole ladder is asked for.
+    """
     length = scene.shaft.length
     report("housings, faces in shape")
     stiff, seconds = housing_springs(scene, coupling="rigid")
     report("housings, faces on average")
-    soft, more = housing_springs(scene, coupling="averaged")
-    seconds += more
+    soft = housing_springs(scene, coupling="averaged")[0]
     previous = None
-    for level in (1, 2):
-        report(f"level {level}: {'beam' if level == 1 else 'meridian'}, housings as springs")
+    for level in (1, 2, 3) if to_the_top else (1, 2):
+        report(f"level {level}: {TITLES[level]}, housings as springs")
         start = time.perf_counter()
         body = condensed_shaft(scene, level)
         condensing = time.perf_counter() - start
-        model, bound = (shaft_level(scene, level, springs, body) for springs in (stiff, soft))
+        bounds = stiff, soft
+        if level == 3 and any(unit.ring_on_housing for unit in scene.bearing_units):
+            report("housings under rings that belong to the solid shaft")
+            (hard, seconds), (yielding, _) = (
+                housing_springs(scene, c, level) for c in ("rigid", "averaged")
+            )
+            bounds = hard, yielding
+        model, bound = (shaft_level(scene, level, springs, body) for springs in bounds)
         values = quantity.of(model, length)
         estimate = _difference(quantity.of(bound, length), values) / 2
         if previous is not None:
             estimate += _difference(previous, values)
-        # only the second of two shafts tells how far the first may be off
+        # only the next of two shafts tells how far the first may be off
         estimate = float("nan") if previous is None else estimate
-        taken = condensing + model.cost.seconds + bound.cost.seconds
-        if climb(model, seconds + taken, estimate):
+        if climb(model, seconds + condensing + model.cost.seconds, estimate):
             return stiff, True
         previous = values
     return stiff, False

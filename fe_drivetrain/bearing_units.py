@@ -1,32 +1,51 @@
-"""A bearing unit by itself, condensed to a spring between the shaft and the ground."""
+"""A bearing unit by itself, condensed to a spring between the shaft and the ground.
+
+Joint, housing and bedplate are springs in series.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
+from scipy import sparse
 
 from fe_drivetrain import interfaces
+from fe_drivetrain.condensation import wrench_transport
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.facets import MEANS, face_weights
 from fe_drivetrain.incompressible import assemble_unlocked
+from fe_drivetrain.joints import in_series, joint_stiffness, roller_joint
 from fe_drivetrain.mesh_cache import cached_mesh
 from fe_drivetrain.reduction import reduce
 from fe_drivetrain.scene import Coupling, Scene
 from fe_drivetrain.solvers import solve
 
+_FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
+
+#: How the joint itself moves the faces.
+_PRESCRIBED: dict[str, Coupling] = {
+    "spring": "averaged",
+    "averaged": "averaged",
+    "rigid": "rigid",
+}
+
 
 def unit_stiffness(
     scene: Scene,
     name: str,
-    ring: bool = True,
     coupling: Coupling = "averaged",
     method: str = "auto",
+    ring: bool = True,
 ) -> Floats:
     """Stiffness of a bearing and its housing, solved without the shaft.
 
-    The shaft keeps the face that it stands on in shape, but not wholly: a face that moves on
-    average (RBE3) is softer than that, and one that moves as a rigid body (RBE2) is stiffer.
+    A bonded bearing, and one on rollers, is solved with its ring and held at its bore; else the
+    ring is part of the shaft, and the face is the housing's bore. The shaft keeps that face in
+    shape, but not wholly: a face that moves on average (RBE3) is softer than that, and one that
+    moves as a rigid body (RBE2) is stiffer. Where the joint itself says how its faces move, that
+    holds.
 
     Parameters
     ----------
@@ -34,17 +53,17 @@ def unit_stiffness(
         The scene.
     name
         Of the bearing.
-    ring
-        Whether the ring belongs to the unit, its bore the face; else the ring is part of the shaft,
-        and the face is the housing's bore. A spherical joint is always at the housing's bore.
     coupling
         Of the face to its reference point.
     method
         Solver, see `fe_drivetrain.solvers.solve`.
+    ring
+        Whether such a ring gives; else it is rigid, or part of a solid shaft, and the face is that
+        of the housing, or of the rollers.
 
     Returns
     -------
-    (6, 6) at the bearing's centre [N/m, N, N m/rad]; of a spherical joint without rotations.
+    (6, 6) at the bearing's centre, of joint, housing and bedplate in series [N/m, N, N m/rad].
     """
     unit = scene.bearing_unit(name)
     bonded = unit.interface == "bonded"
@@ -52,8 +71,15 @@ def unit_stiffness(
     bearing = unit.bearing.model_copy(update={"bore_diameter": seat})
     joined = frozenset({name} if bonded else ())
     mesh = cached_mesh(None, [bearing], {name: unit.housing}, scene.mesh, joined)
-    parts = [name, f"{name}.housing"] if bonded and ring else [f"{name}.housing"]
-    face = f"{name}.bore" if bonded and ring else f"{name}.housing.bore"
+    with_ring = unit.ring_on_housing and ring
+    parts = [name, f"{name}.housing"] if with_ring else [f"{name}.housing"]
+    coupling = _PRESCRIBED.get(unit.interface, coupling)
+    if with_ring:
+        face = f"{name}.bore"
+    elif unit.rollers is not None:
+        face, coupling = f"{name}.outer", "rigid"
+    else:
+        face = f"{name}.housing.bore"
 
     n = len(mesh.points)
     n_freedoms = 3 * n + (6 if coupling == "rigid" else 0)
@@ -67,25 +93,45 @@ def unit_stiffness(
     nodes = mesh.face_nodes(face)
     centre = np.array([unit.bearing.x, 0.0, 0.0])
     base = f"{name}.housing.base"
-    held = [
-        interfaces.fixed(base, mesh.face_nodes(base), n_freedoms),
-        interfaces.fixed("parts left out", np.setdiff1d(np.arange(n), cells), n_freedoms),
-    ]
+    held = [interfaces.fixed(base, mesh.face_nodes(base), n_freedoms)]
+    left_out = np.setdiff1d(np.arange(n), np.concatenate([cells.ravel(), nodes]))
+    held.append(interfaces.fixed("parts left out", left_out, n_freedoms))
     if coupling == "rigid":
         point = interfaces.rigid_point(name, centre, 3 * n, n_freedoms)
         held.append(interfaces.rigid_face(name, nodes, mesh.points, point))
     else:
         weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
         point = interfaces.averaged_point(name, nodes, weights, mesh.points, centre, n_freedoms)
+    ground = np.zeros((6, 6))
+    if unit.rollers is not None:
+        free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
+        ground = free.T @ free
+        for at, k in (*roller_joint(unit, mesh, n_freedoms).springs, (point, ground)):
+            K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
     elimination = interfaces.eliminate(held, n_freedoms)
     system = reduce(mesh.points, cells, K, elimination)
     F = point.motion.T.toarray()
     compliance = F.T @ (elimination.T @ solve(system, elimination.T.T @ F, method).x)
-    carried = 6 if bonded else 3
-    inverse = np.linalg.inv(compliance[:carried, :carried])
-    stiffness = np.zeros((6, 6))
-    stiffness[:carried, :carried] = 0.5 * (inverse + inverse.T)
-    return stiffness
+    stiffness = np.linalg.inv(compliance)
+    if unit.rollers is not None:
+        carried = np.eye(6) - np.linalg.pinv(free) @ free
+        stiffness = carried.T @ (stiffness - ground) @ carried
+    if unit.bedplate is not None:
+        # the base moves as a rigid body, so this is exact
+        lever = wrench_transport(np.array([0.0, 0.0, unit.housing.centre_height])).T
+        give = [0.0 if k == "rigid" else 1.0 / float(k) for k in unit.bedplate]
+        softness = lever @ np.diag(give) @ lever.T
+        stiffness = np.linalg.solve(np.eye(6) + stiffness @ softness, stiffness)
+    stiffness = 0.5 * (stiffness + stiffness.T)
+    return stiffness if unit.rollers is not None else in_series(stiffness, joint_stiffness(unit))
+
+
+def _free_motions(stiffness: Floats, length: float) -> Floats:
+    """(m, 6) rows that feel the motions alone that a stiffness leaves free, as stiff as it is."""
+    size = np.repeat([1.0, length], 3)
+    values, vectors = np.linalg.eigh(stiffness / np.outer(size, size))
+    free = vectors[:, values < _FREE * values[-1]]
+    return np.asarray(math.sqrt(values[-1]) * free.T * size)
 
 
 def scene_supports(scene: Scene, housings: Mapping[str, Floats]) -> dict[str, Floats]:

@@ -9,6 +9,7 @@ point, of the second its rotations. Constraints are written as they are eliminat
 gives one freedom by freedoms that are in no other equation's first place, so nothing is chained.
 """
 
+import math
 import os
 import re
 import shutil
@@ -23,11 +24,12 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain import kernels
+from fe_drivetrain.condensation import wrench_transport
 from fe_drivetrain.elasticity import Floats, Ints, element_kind, sparsity
 from fe_drivetrain.errors import InputError, MissingToolError
 from fe_drivetrain.files import atomic_path
 from fe_drivetrain.incompressible import warn_of_averaging
-from fe_drivetrain.interfaces import Constraint, ReferencePoint, eliminate
+from fe_drivetrain.interfaces import Constraint, eliminate
 from fe_drivetrain.model import LOADS, Model
 from fe_drivetrain.response import resultant
 from fe_drivetrain.superelement import FRAME
@@ -321,18 +323,31 @@ def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) 
     reactions, base_forces = {}, {}
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
-        base = model.mesh.face_nodes(f"{name}.housing.base")
-        base_forces[name] = forces[base]
         centre = model.points[f"{name}.seat"].position
-        reactions[name] = -resultant(model.mesh.points, base, flat, centre)
-    total = np.zeros((6, n_loads))
-    for point, k in model.springs:
-        total += k @ motions[point.name]
-    first = np.concatenate([3 * node + np.arange(3) for node in plan.references["gearbox"]])
-    rigid = model.scene.gearbox.held
-    total[rigid] -= flat[first[rigid]]
-    reactions["gearbox"] = total
+        if unit.bedplate is None:
+            base = model.mesh.face_nodes(f"{name}.housing.base")
+            base_forces[name] = forces[base]
+            reactions[name] = -resultant(model.mesh.points, base, flat, centre)
+        else:
+            arm = model.points[f"{name}.base"].position - centre
+            carried = _carried_at(model, plan, f"{name}.base", motions, flat)
+            reactions[name] = wrench_transport(arm) @ carried
+    reactions["gearbox"] = _carried_at(model, plan, "gearbox", motions, flat)
     return DeckResponse(U[: len(model.mesh.points)], motions, reactions, base_forces, energy)
+
+
+def _carried_at(
+    model: Model, plan: _Plan, name: str, motions: Mapping[str, Floats], flat: Floats
+) -> Floats:
+    """(6, m) what springs to ground and rigid holds carry at a reference point."""
+    total = np.zeros_like(motions[name])
+    for point, k in model.springs:
+        if point.name == name:
+            total += k @ motions[name]
+    first = np.concatenate([3 * node + np.arange(3) for node in plan.references[name]])
+    rigid = list(model.held.get(name, ()))
+    total[rigid] -= flat[first[rigid]]
+    return total
 
 
 def four_point_model(model: Model) -> Model:
@@ -380,26 +395,40 @@ def _plan(model: Model, loads: Sequence[str]) -> _Plan:
     n_mesh = len(model.mesh.points)
     rigid = {c.name for c in model.constraints if c.name in model.points}
     averaged = [point for name, point in model.points.items() if name not in rigid]
-    n_freedoms = model.n_freedoms + 6 * len(averaged)
+    coupled = [
+        (point, value, vector)
+        for point, k in model.springs
+        if np.abs(k - np.diag(k.diagonal())).max() > 0.0
+        for value, vector in zip(*_stretched(k), strict=True)
+    ]
+    along = model.n_freedoms + 6 * len(averaged)  # first of the coupled springs' own freedoms
+    n_freedoms = along + 3 * math.ceil(len(coupled) / 3)
     first = {p.name: model.n_freedoms + 6 * k for k, p in enumerate(averaged)}
     first |= {name: int(model.points[name].motion.indices.min()) for name in rigid}
-    gearbox_held = model.scene.gearbox.held
+    reactions = {f"{name} reaction": name for name in model.held}
 
-    bases = {f"{unit.bearing.name}.housing.base" for unit in model.scene.bearing_units}
     constraints = []
     for constraint in model.constraints:
-        if constraint.name == "gearbox reaction":
+        if constraint.name in reactions:
             # The reference point's own freedom is held, and a freedom of the face follows it.
-            if "gearbox" not in rigid:
-                own = first["gearbox"] + np.array(gearbox_held)
+            name = reactions[constraint.name]
+            if name not in rigid:
+                own = first[name] + np.array(model.held[name])
                 constraints.append(_tied(constraint, own, n_freedoms))
-        elif constraint.name not in bases:
+        elif constraint.name not in _fixed_bases(model):
             constraints.append(replace(constraint, rows=_widened(constraint.rows, n_freedoms)))
     for point in averaged:
-        free = [c for c in range(6) if point.name != "gearbox" or c not in gearbox_held]
+        free = [c for c in range(6) if c not in model.held.get(point.name, ())]
         own = first[point.name] + np.array(free)
         rows = Constraint(f"{point.name}: mean motion of its face", point.motion[free], own)
         constraints.append(_tied(rows, own, n_freedoms))
+    springs = [s for point, k in model.springs for s in _axial(k, first[point.name])]
+    for number, (point, value, vector) in enumerate(coupled):
+        stretched = sparse.csr_array(vector[None]) @ point.motion
+        own = np.array([along + number])
+        rows = Constraint(f"{point.name}: what its spring is stretched by", stretched, own)
+        constraints.append(_tied(rows, own, n_freedoms))
+        springs.append((along + number, value))
 
     references = {name: (first[name] // 3, first[name] // 3 + 1) for name in model.points}
     names, positions = _extra_nodes(model, references, n_freedoms // 3)
@@ -413,8 +442,10 @@ def _plan(model: Model, loads: Sequence[str]) -> _Plan:
         references=references,
         groups=[(c.name, np.asarray(c.pivots)) for c in constraints],
         T=eliminate(constraints, n_freedoms).T,
-        held=first["gearbox"] + np.array(gearbox_held, dtype=np.int64),
-        springs=[s for point, k in model.springs for s in _axial(point, k, first[point.name])],
+        held=np.array(
+            [first[name] + c for name, some in model.held.items() for c in some], dtype=np.int64
+        ),
+        springs=springs,
         loads=F[:, [LOADS.index(load) for load in loads]],
     )
 
@@ -431,16 +462,28 @@ def _tied(constraint: Constraint, own: Ints, n_freedoms: int) -> Constraint:
     return replace(constraint, rows=rows.tocsr())
 
 
-def _axial(point: ReferencePoint, k: Floats, first: int) -> Iterator[tuple[int, float]]:
-    """A spring for each axis of a reference point."""
-    if np.abs(k - np.diag(k.diagonal())).max() > 0.0:
-        raise InputError(
-            f"the springs at {point.name!r} couple its freedoms: a deck has springs along and "
-            "about the axes only; give a diagonal stiffness"
-        )
-    for component, stiffness in enumerate(k.diagonal().tolist()):
-        if stiffness:
-            yield first + component, stiffness
+def _axial(k: Floats, first: int) -> Iterator[tuple[int, float]]:
+    """A spring for each axis of a reference point, where none is coupled with another."""
+    if np.abs(k - np.diag(k.diagonal())).max() == 0.0:
+        for component, stiffness in enumerate(k.diagonal().tolist()):
+            if stiffness:
+                yield first + component, stiffness
+
+
+def _stretched(k: Floats) -> tuple[list[float], list[Floats]]:
+    """Springs that make up a coupled (6, 6) stiffness: their size, and what stretches them."""
+    values, vectors = np.linalg.eigh(k)
+    kept = np.flatnonzero(values > _LEAST * values[-1])
+    return values[kept].tolist(), list(vectors.T[kept])
+
+
+def _fixed_bases(model: Model) -> list[str]:
+    """The housing bases that stand on the ground."""
+    return [
+        f"{unit.bearing.name}.housing.base"
+        for unit in model.scene.bearing_units
+        if unit.bedplate is None
+    ]
 
 
 def _extra_nodes(
@@ -463,7 +506,7 @@ def _extra_nodes(
                     if re.match(rf"{re.escape(unit.bearing.name)}[ .]", constraint.name)
                 ]
                 positions[node - n_mesh] = model.points[f"{owners[0]}.seat"].position
-    return names, positions
+    return [name or "auxiliary, of springs" for name in names], positions
 
 
 def _label(name: str) -> str:
@@ -498,7 +541,7 @@ def _model_lines(model: Model, plan: _Plan) -> Iterator[str]:
     mesh = model.mesh
     n_mesh = len(mesh.points)
     rotation = {name: f"{name}.rotation" for name in plan.references}
-    own = ["nall", "nreference", "supports", *(f"spring{k + 1}" for k in range(6))]
+    own = ["nall", "nreference", "supports", *(f"spring{k + 1}" for k in range(len(plan.springs)))]
     _labels([*own, *mesh.part_names, *mesh.faces, *rotation, *rotation.values()])
     yield from _header(model, plan)
     yield "*NODE, NSET=NALL"
@@ -524,7 +567,7 @@ def _model_lines(model: Model, plan: _Plan) -> Iterator[str]:
     for name, (move, turn) in plan.references.items():
         yield from _set_lines(name, [move])
         yield from _set_lines(rotation[name], [turn])
-    bases = [mesh.face_nodes(face) for face in mesh.faces if face.endswith(".housing.base")]
+    bases = [mesh.face_nodes(face) for face in _fixed_bases(model)]
     following = plan.T.tocsc()[:, plan.held].indices // 3
     yield from _set_lines("supports", np.unique(np.concatenate([*bases, following])))
     for part in mesh.part_names:
@@ -542,9 +585,8 @@ def _model_lines(model: Model, plan: _Plan) -> Iterator[str]:
         for pivot in pivots.tolist():
             yield from _equation(plan.T, pivot)
     yield "*BOUNDARY"
-    for face in mesh.faces:
-        if face.endswith(".housing.base"):
-            yield f"{_label(face)},1,3"
+    for face in _fixed_bases(model):
+        yield f"{_label(face)},1,3"
     for freedom in plan.held.tolist():
         yield f"{freedom // 3 + 1},{freedom % 3 + 1}"
 

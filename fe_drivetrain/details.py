@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.adviser import Quantity
+from fe_drivetrain.bearing_units import unit_stiffness
 from fe_drivetrain.condensed_shafts import beam_shaft, condensed_shaft, meridian_shaft, ringed_shaft
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.levels import shaft_level
+from fe_drivetrain.levels import housing_springs, shaft_level
 from fe_drivetrain.scene import Scene
 
 
@@ -49,7 +50,7 @@ def effects(
     level
         1 or 2, see `levels.shaft_level`.
     housings
-        Stiffness of each bearing unit.
+        Stiffness of each bearing unit, faces held in shape (`bearing_units.unit_stiffness`).
     """
     length = scene.shaft.length
     whole = condensed_shaft(scene, level)
@@ -69,7 +70,25 @@ def effects(
         report(f"without {detail}")
         add(detail, quantity.of(shaft_level(simpler, level, housings), length))
     report("without the housings' flexibility")
-    add("flexibility of housings", quantity.of(shaft_level(scene, level, body=whole), length))
+    on_bedplates = any(unit.bedplate is not None for unit in scene.bearing_units)
+    under = " and bedplates" if on_bedplates else ""
+    rigid = shaft_level(scene, level, body=whole)
+    add(f"flexibility of housings{under}", quantity.of(rigid, length))
+    if on_bedplates:
+        report("without the bedplates' flexibility")
+        springs = housing_springs(_on_the_ground(scene), coupling="rigid")[0]
+        add(
+            "flexibility of bedplates",
+            quantity.of(shaft_level(scene, level, springs, whole), length),
+        )
+    if any(unit.ring_on_housing for unit in scene.bearing_units):
+        report("with rigid bearing rings")
+        springs = {
+            unit.bearing.name: unit_stiffness(scene, unit.bearing.name, "rigid", ring=False)
+            for unit in scene.bearing_units
+        }
+        rigid = shaft_level(scene, level, springs, whole)
+        add("flexibility of bearing rings", quantity.of(rigid, length))
     for detail, stiffness in _gearboxes(scene).items():
         other = scene.gearbox.model_copy(update={"stiffness": stiffness})
         changed = scene.model_copy(update={"gearbox": other})
@@ -114,6 +133,12 @@ def simplified(scene: Scene) -> dict[str, Scene]:
         detail: scene.model_copy(update={"shaft": shaft.model_copy(update=change)})
         for detail, change in found.items()
     }
+
+
+def _on_the_ground(scene: Scene) -> Scene:
+    """The scene with no bedplate under its housings."""
+    units = [unit.model_copy(update={"bedplate": None}) for unit in scene.bearing_units]
+    return scene.model_copy(update={"bearing_units": tuple(units)})
 
 
 def _gearboxes(scene: Scene) -> dict[str, Sequence[float | str]]:

@@ -194,6 +194,42 @@ def centred_weights(weights: Floats, points: Floats, centre: Floats) -> Floats:
     return np.asarray(weights * (1.0 + r @ tilt))
 
 
+def shared_motion(
+    name: str, position: Floats, motion: sparse.csr_array, groups: Sequence[Ints], first: int
+) -> tuple[Constraint, ReferencePoint]:
+    """A motion of many nodes as the sum of its groups' shares, which are freedoms of their own.
+
+    A spring on the motion itself would couple each node with each; on the shares it does not.
+
+    Parameters
+    ----------
+    name, position
+        Of the point that moves so.
+    motion
+        (6, n_freedoms) the motion from the nodes' displacements.
+    groups
+        Nodes of each group; together all that the motion has, none of them twice.
+    first
+        First of the 6 len(groups) freedoms.
+    """
+    n_freedoms = motion.shape[1]
+    columns = motion.tocsc()
+    rows, pivots = [], []
+    for number, nodes in enumerate(groups):
+        chosen = freedoms(nodes).ravel()
+        share = columns[:, chosen].toarray()
+        order = linalg.qr(share, mode="r", pivoting=True)[1]
+        pivots.append(chosen[order[:6]])
+        own = first + 6 * number + np.arange(6)[:, None]
+        wide = np.broadcast_to(chosen, (6, chosen.size))
+        rows.append(_rows(np.hstack([share, -np.ones((6, 1))]), np.hstack([wide, own]), n_freedoms))
+    shares = first + np.arange(6)[:, None] + 6 * np.arange(len(groups))
+    total = _rows(np.ones(shares.shape), shares, n_freedoms)
+    stacked = sparse.vstack(rows, format="csr")
+    constraint = Constraint(f"{name} shares", stacked, np.concatenate(pivots))
+    return constraint, ReferencePoint(name, position, total)
+
+
 def rigid_face(name: str, nodes: Ints, points: Floats, point: ReferencePoint) -> Constraint:
     """The nodes move with the reference point as one rigid body (RBE2)."""
     n_freedoms = point.motion.shape[1]

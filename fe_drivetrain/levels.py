@@ -24,6 +24,7 @@ from fe_drivetrain.condensed_shafts import (
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.geometry import unit_solids
+from fe_drivetrain.joints import joint_stiffness
 from fe_drivetrain.model import COMPONENTS, LOADS, build_model, mesh_scene
 from fe_drivetrain.response import unit_load_response
 from fe_drivetrain.scene import Coupling, Scene
@@ -55,7 +56,7 @@ class Cost:
 
 @dataclass(frozen=True)
 class LevelModel:
-    """A scene at one level, solved for the unit loads of `model.LOADS`.
+    """A scene at one level, solved for the unit loads of `model.LOADS`, or a component for its own.
 
     Attributes
     ----------
@@ -126,8 +127,8 @@ def statics_level(scene: Scene) -> LevelModel:
     first = positions[0]
     carried: list[tuple[str, int]] = []
     for unit in scene.bearing_units:
-        n = 6 if unit.interface == "bonded" else 3
-        carried += [(unit.bearing.name, c) for c in range(n)]
+        stiffness = joint_stiffness(unit)
+        carried += [(unit.bearing.name, c) for c in range(6) if stiffness[c].any()]
     carried += [("gearbox", c) for c, k in enumerate(scene.gearbox.stiffness) if k != 0]
     at = dict(zip(names, positions, strict=True))
     A = np.column_stack([wrench_transport(at[name] - first)[:, c] for name, c in carried])
@@ -167,8 +168,7 @@ def shaft_level(
     level
         1 beam, 2 meridian, 3 solid.
     housings
-        (6, 6) stiffness of each bearing unit by name, see `bearing_units.unit_stiffness`; rigid
-        where not given.
+        (6, 6) stiffness of each bearing unit by name, see `housing_springs`; rigid where not given.
     body
         The condensed shaft, where there is one already.
     """
@@ -178,15 +178,19 @@ def shaft_level(
     everywhere = {unit.bearing.name for unit in scene.bearing_units}
     on_shaft = frozenset(everywhere) if level == 3 else ringed_shaft(scene)[1]
     if on_shaft != everywhere:
-        neglects.append("what the rings of bonded bearings do to the shaft")
+        neglects.append("what the rings of bearings do to the shaft")
     if level == 1:
-        neglects += ["fillets", "sections that do not stay plane near steps and seats"]
+        if any(piece.fillet > 0 for piece in scene.shaft.pieces):
+            neglects.append("fillets")
+        neglects.append("sections that do not stay plane near steps and seats")
     if housings is None:
-        neglects.append("housings and bearings that give: they are rigid")
-        housings = {unit.bearing.name: _rigid(unit.interface) for unit in scene.bearing_units}
+        neglects.append("housings and bedplates that give: they are rigid")
+        housings = {unit.bearing.name: joint_stiffness(unit) for unit in scene.bearing_units}
         title = f"{TITLES[level]}, rigid housings"
     else:
         neglects.append("what shaft and housing do to the shape of the face between them")
+        if any(unit.bedplate is not None for unit in scene.bearing_units):
+            neglects.append("what a bedplate gives under the weight of its housing")
         title = f"{TITLES[level]}, housings as springs"
     found = supported(body, scene_supports(scene, housings))
     n = len(body.names)
@@ -210,12 +214,20 @@ def assembly_level(scene: Scene) -> LevelModel:
 
 
 def housing_springs(
-    scene: Scene, ring: bool = True, coupling: Coupling = "averaged"
+    scene: Scene, coupling: Coupling = "averaged", level: int = 2
 ) -> tuple[dict[str, Floats], float]:
-    """Stiffness of every bearing unit, solved apart, and the wall time that took [s]."""
+    """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
+
+    Parameters
+    ----------
+    scene, coupling
+        See `bearing_units.unit_stiffness`.
+    level
+        Of the shaft that they are for: a solid one (3) has all rings itself.
+    """
     start = time.perf_counter()
     found = {
-        unit.bearing.name: unit_stiffness(scene, unit.bearing.name, ring, coupling)
+        unit.bearing.name: unit_stiffness(scene, unit.bearing.name, coupling, ring=level < 3)
         for unit in scene.bearing_units
     }
     return found, time.perf_counter() - start
@@ -237,10 +249,6 @@ def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozen
             arm = np.array(solid.centre) - [bearing.x, 0.0, 0.0]
             mass = scene.material_of(part).density * solid.volume
             reactions[bearing.name][:, 6:9] += mass * wrench_transport(arm)[:, :3]
-
-
-def _rigid(interface: str) -> Floats:
-    return np.diag(np.full(6, np.inf) if interface == "bonded" else np.r_[[np.inf] * 3, [0.0] * 3])
 
 
 def _unit_loads(body: Condensed) -> Floats:

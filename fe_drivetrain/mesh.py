@@ -461,8 +461,9 @@ def scaled_jacobians(points: Floats, cells: Ints) -> Floats:
     corners = points[cells[:, :4]]
     straight = np.linalg.det(corners[:, 1:] - corners[:, :1])
     least = jacobians(points, cells).min(axis=1)
-    result: Floats = np.where(straight > 0, least / np.abs(straight), -np.abs(least / straight))
-    return result
+    flat = np.full_like(least, -np.inf)
+    ratio = np.divide(least, np.abs(straight), out=flat, where=straight != 0)
+    return np.asarray(np.where(straight > 0, ratio, -np.abs(ratio)))
 
 
 def quality(mesh: Mesh) -> MeshQuality:

@@ -1,6 +1,6 @@
 """The finite-element model of a scene: operators of its parts, constraints, springs, unit loads."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +13,12 @@ from fe_drivetrain.errors import InputError
 from fe_drivetrain.facets import MEANS, face_weights
 from fe_drivetrain.incompressible import assemble_unlocked, warn_of_averaging
 from fe_drivetrain.interfaces import Constraint, ReferencePoint
+from fe_drivetrain.joints import SECTORS, roller_joint, spring_joint
 from fe_drivetrain.mechanisms import refuse_mechanisms, warn_of_weak_restraints
 from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.mesh_cache import cached_mesh
 from fe_drivetrain.mesh_checks import refuse_unsound
-from fe_drivetrain.scene import BearingUnit, Scene
+from fe_drivetrain.scene import BearingUnit, Scene, Springs
 
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
@@ -47,11 +48,16 @@ class Model:
     part_mass
         (n_nodes,) integrals of density times shape function of each part [kg].
     points
-        Reference points by name: "hub", "gearbox", and "NAME.seat" for each bearing.
+        Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing; where there are
+        such, "NAME.base" (on a bedplate that gives), and "NAME.joint" or "NAME.roller K", whose
+        motion is that of the bearing against its housing.
     constraints
         All interfaces, couplings and supports.
     springs
-        Reference points with their (6, 6) stiffness to ground.
+        Reference points with their (6, 6) stiffness.
+    held
+        Motions (0-2 displacements, 3-5 rotations) of reference points that are rigidly held; their
+        constraint is "NAME reaction".
     n_freedoms
         Three a node, and six for each rigid reference point.
     warnings
@@ -66,6 +72,7 @@ class Model:
     points: Mapping[str, ReferencePoint]
     constraints: tuple[Constraint, ...]
     springs: tuple[tuple[ReferencePoint, Floats], ...]
+    held: Mapping[str, Sequence[int]]
     n_freedoms: int
     warnings: tuple[str, ...] = ()
 
@@ -139,12 +146,18 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             extra |= {f"{name}.outer": 6, f"{name}.housing.bore": 6}
         elif unit.interface == "averaged":
             extra[f"{name} joint"] = 3 * _N_GROUPS
+        elif unit.interface == "spring":
+            extra[f"{name}.joint"] = 6 * SECTORS
+        if unit.bedplate is not None:
+            extra[f"{name}.base"] = 6
     ends = 3 * n + np.cumsum([0, *extra.values()])
     first_freedom = dict(zip(extra, ends[:-1].tolist(), strict=True))
     n_freedoms = int(ends[-1])
 
     constraints: list[Constraint] = []
     points: dict[str, ReferencePoint] = {}
+    springs: list[tuple[ReferencePoint, Floats]] = []
+    held: dict[str, Sequence[int]] = {}
 
     def couple(name: str, face: str, position: Floats) -> ReferencePoint:
         nodes = mesh.face_nodes(face)
@@ -166,17 +179,27 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
                 couple(face, face, centre) for face in (f"{name}.outer", f"{name}.housing.bore")
             )
             constraints.append(interfaces.equal_translations(f"{name} joint", inner, outer))
+        elif unit.interface in ("spring", "rollers"):
+            joint = (
+                roller_joint(unit, mesh, n_freedoms)
+                if unit.interface == "rollers"
+                else spring_joint(unit, mesh, first_freedom[f"{name}.joint"], n_freedoms)
+            )
+            constraints += joint.constraints
+            springs += joint.springs
+            points |= {point.name: point for point, _ in joint.springs}
         elif unit.interface != "bonded":
             first = first_freedom.get(f"{name} joint", 0)
             constraints.append(_spherical_joint(unit, mesh, first, n_freedoms))
         base = f"{name}.housing.base"
-        constraints.append(interfaces.fixed(base, mesh.face_nodes(base), n_freedoms))
+        if unit.bedplate is None:
+            constraints.append(interfaces.fixed(base, mesh.face_nodes(base), n_freedoms))
+        else:
+            under = centre - [0.0, 0.0, unit.housing.centre_height]
+            points[f"{name}.base"] = couple(f"{name}.base", base, under)
+            _stand(points[f"{name}.base"], unit.bedplate, constraints, springs, held)
+    _stand(points["gearbox"], scene.gearbox.stiffness, constraints, springs, held)
 
-    rigid = scene.gearbox.held
-    if rigid:
-        constraints.append(interfaces.held("gearbox reaction", points["gearbox"], rigid))
-    k = np.diag([0.0 if k == "rigid" else float(k) for k in scene.gearbox.stiffness])
-    springs = ((points["gearbox"], k),) if k.any() else ()
     refuse_mechanisms(mesh, constraints, springs)
     moduli = {part: scene.material_of(part).youngs_modulus for part in mesh.part_names}
     warnings = warn_of_weak_restraints(mesh, constraints, springs, moduli)
@@ -195,10 +218,28 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         part_mass,
         points,
         tuple(constraints),
-        springs,
+        tuple(springs),
+        held,
         n_freedoms,
         warnings,
     )
+
+
+def _stand(
+    point: ReferencePoint,
+    stiffness: Springs,
+    constraints: list[Constraint],
+    springs: list[tuple[ReferencePoint, Floats]],
+    held: dict[str, Sequence[int]],
+) -> None:
+    """Put a reference point on the ground."""
+    rigid = [c for c, k in enumerate(stiffness) if k == "rigid"]
+    if rigid:
+        constraints.append(interfaces.held(f"{point.name} reaction", point, rigid))
+        held[point.name] = rigid
+    k = np.diag([0.0 if k == "rigid" else float(k) for k in stiffness])
+    if k.any():
+        springs.append((point, k))
 
 
 def needed_faces(scene: Scene) -> list[str]:

@@ -61,6 +61,8 @@ _Points = Sequence[_Point] | Floats
 _AXES = ("x", "y", "z")
 _INTERFACES = {
     "bonded": "bonded",
+    "spring": "6x6 spring",
+    "rollers": "ring of rollers as springs",
     "sliding": "spherical joint (sliding)",
     "averaged": "spherical joint (averaged)",
     "rigid": "spherical joint (rigid faces)",
@@ -754,9 +756,11 @@ def _label_parts(canvas: _Canvas, model: Model) -> None:
         corner = base[np.argmin(base @ [1.0, 1.0, 0.0])]
         if unit.housing.base == "bolted":
             top = corner + unit.housing.foot_thickness * np.eye(3)[2]
-            canvas.note(top, "fixed at the bolts", (-150, 80), _GROUND)
+            bolts = "fixed at the bolts" if unit.bedplate is None else "bolted to a bedplate"
+            canvas.note(top, bolts, (-150, 80), _GROUND)
         else:
-            canvas.note(corner, "fixed base", (-140, 14), _GROUND)
+            stands = "fixed base" if unit.bedplate is None else "on a bedplate"
+            canvas.note(corner, stands, (-140, 14), _GROUND)
 
 
 def _model_legend(model: Model) -> list[list[tuple[str, str | None]]]:

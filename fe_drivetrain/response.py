@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_drivetrain.condensation import wrench_transport
 from fe_drivetrain.elasticity import Floats, Ints
 from fe_drivetrain.errors import SINGULAR, InputError
 from fe_drivetrain.interfaces import eliminate, freedoms
@@ -215,10 +216,15 @@ def _reactions(
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         centre = model.points[f"{name}.seat"].position
-        base = mesh.face_nodes(f"{name}.housing.base")
-        forces = np.zeros_like(U)
-        forces[freedoms(base).ravel()] = multipliers[f"{name}.housing.base"]
-        reactions[name] = -resultant(mesh.points, base, forces, centre)
+        if unit.bedplate is None:
+            base = mesh.face_nodes(f"{name}.housing.base")
+            forces = np.zeros_like(U)
+            forces[freedoms(base).ravel()] = multipliers[f"{name}.housing.base"]
+            reactions[name] = -resultant(mesh.points, base, forces, centre)
+        else:
+            point = model.points[f"{name}.base"]
+            carried = _carried_at(model, f"{name}.base", multipliers, U)
+            reactions[name] = wrench_transport(point.position - centre) @ carried
         for key, part, face in (
             (f"{name}.seat", name, f"shaft.seat.{name}"),
             (f"{name}.outer", f"{name}.housing", f"{name}.housing.bore"),
@@ -226,13 +232,19 @@ def _reactions(
             # What a part's neighbour puts on it: its internal forces less the loads inside it.
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             reactions[key] = resultant(mesh.points, mesh.face_nodes(face), forces, centre)
-    total = np.zeros((6, U.shape[1]))
-    for point, k in model.springs:
-        total += k @ (point.motion @ U)
-    if "gearbox reaction" in multipliers:
-        total[model.scene.gearbox.held] -= multipliers["gearbox reaction"]
-    reactions["gearbox"] = total
+    reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)
     return reactions
+
+
+def _carried_at(model: Model, point: str, multipliers: Mapping[str, Floats], U: Floats) -> Floats:
+    """(6, n_loads) what springs to ground and rigid holds carry at a reference point."""
+    total = np.zeros((6, U.shape[1]))
+    for at, k in model.springs:
+        if at.name == point:
+            total += k @ (at.motion @ U)
+    if point in model.held:
+        total[list(model.held[point])] -= multipliers[f"{point} reaction"]
+    return total
 
 
 def _equilibrium_error(

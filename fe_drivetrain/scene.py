@@ -3,10 +3,20 @@
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
+import numpy as np
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
@@ -14,9 +24,14 @@ from fe_drivetrain.materials import MATERIALS, Material
 from fe_drivetrain.plain_yaml import PlainLoader, no_truth_value, shown
 
 #: How the bearing's outer face meets the housing's bore.
-Interface = Literal["bonded", "sliding", "averaged", "rigid"]
+Interface = Literal["bonded", "spring", "rollers", "sliding", "averaged", "rigid"]
+#: The interfaces that carry no moment.
+SPHERICAL_JOINTS = ("sliding", "averaged", "rigid")
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
 Coupling = Literal["averaged", "rigid"]
+
+#: Keys that make a file one of a component, see `fe_drivetrain.component`.
+COMPONENTS = ("gearbox_housing", "planet_carrier")
 
 _MAX_BYTES = 1_000_000
 _STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
@@ -30,12 +45,140 @@ class _Part(BaseModel):
     _truth = field_validator("*", mode="before")(no_truth_value)
 
 
+def _no_booleans(value: Any) -> Any:
+    if isinstance(value, list | tuple) and any(isinstance(k, bool) for k in value):
+        raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
+    return value
+
+
+def _not_negative(value: tuple[float | Literal["rigid"], ...]) -> Any:
+    for k in value:
+        if k != "rigid" and not 0 <= k <= _STIFFEST:
+            raise ValueError(
+                f"{k:g} must be a number from 0 to {_STIFFEST:g} [N/m, N m/rad], or 'rigid'"
+            )
+    return value
+
+
+#: Along x, y, z [N/m] and about them [N m/rad]: each a number, or "rigid", or 0 for free.
+Springs = Annotated[
+    tuple[float | Literal["rigid"], ...],
+    Field(min_length=6, max_length=6),
+    BeforeValidator(_no_booleans),
+    AfterValidator(_not_negative),
+]
+#: The same, or six rows of a full matrix.
+_Spring = Annotated[
+    tuple[float | Literal["rigid"] | tuple[float, ...], ...],
+    Field(min_length=6, max_length=6),
+    BeforeValidator(_no_booleans),
+]
+
+
+class RollerRow(_Part):
+    """One row of rollers: x from the bearing's centre [m], and its contact angle [deg].
+
+    The angle leans the line of contact from the radius towards +x on its way out. That of a
+    spherical raceway is given by x: the line goes through the centre.
+    """
+
+    x: float = Field(default=0.0, allow_inf_nan=False)
+    contact_angle: float = Field(default=0.0, gt=-90, lt=90)
+
+
+class Rollers(_Part):
+    """Rollers as springs along their lines of contact, which push and pull."""
+
+    count: int = Field(ge=3, le=1000, description="rollers in a row")
+    stiffness: float = Field(gt=0, le=_STIFFEST, description="of one roller [N/m]")
+    rows: tuple[RollerRow, ...] = Field(default=(RollerRow(),), min_length=1)
+
+    @model_validator(mode="after")
+    def _apart(self) -> "Rollers":
+        places = [row.x for row in self.rows]
+        if len(set(places)) < len(places):
+            raise ValueError(f"rows at x = {places} must differ from each other")
+        return self
+
+
 class BearingUnit(_Part):
-    """A bearing, its housing, and the interface between the two."""
+    """A bearing, its housing, and the interface between the two.
+
+    What stands on the ground is the housing's base, or a bedplate that gives, as springs at the
+    centre of the base.
+    """
 
     bearing: Bearing
     housing: Housing
     interface: Interface
+    stiffness: _Spring | None = None
+    rollers: Rollers | None = None
+    bedplate: Springs | None = None
+
+    @property
+    def ring_on_housing(self) -> bool:
+        """Whether the bearing's ring counts to the housing, where the shaft is solved apart."""
+        return self.interface in ("bonded", "rollers")
+
+    @field_validator("bedplate")
+    @classmethod
+    def _stands(cls, value: Springs | None) -> Springs | None:
+        if value is not None and 0 in value:
+            raise ValueError("each stiffness must be greater than 0, or 'rigid'")
+        return value
+
+    @model_validator(mode="after")
+    def _has_what_its_interface_needs(self) -> "BearingUnit":
+        name = self.bearing.name
+        for interface, key in (("spring", "stiffness"), ("rollers", "rollers")):
+            given = getattr(self, key) is not None
+            if given != (self.interface == interface):
+                raise ValueError(
+                    f"bearing {name!r} has interface {self.interface!r} and "
+                    + (f"{key}: leave {key} out" if given else f"no {key}: add it")
+                    + f", or make the interface {'' if given else 'another than '}{interface!r}"
+                )
+        if self.stiffness is not None:
+            _check_spring(name, self.stiffness)
+        if self.rollers is not None:
+            _check_rows(self.bearing, self.rollers)
+        return self
+
+
+def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:
+    rows = [isinstance(k, tuple) and len(k) == 6 for k in stiffness]
+    if not any(isinstance(k, tuple) for k in stiffness):
+        _not_negative(stiffness)
+    elif not all(rows):
+        raise ValueError(
+            f"stiffness of bearing {name!r} must be six numbers (or 'rigid'), or six rows of six "
+            "numbers"
+        )
+    else:
+        K = np.array(stiffness)
+        size = np.sqrt(np.maximum(K.diagonal(), 1e-300))
+        scaled = K / np.outer(size, size)
+        if not np.isfinite(K).all() or np.abs(scaled - scaled.T).max() > 1e-6:
+            raise ValueError(f"stiffness of bearing {name!r} must be six symmetric rows of numbers")
+        if np.linalg.eigvalsh(scaled)[0] < -1e-9:
+            raise ValueError(
+                f"stiffness of bearing {name!r} must resist every motion or leave it free; it "
+                "drives one: check its signs"
+            )
+
+
+def _check_rows(bearing: Bearing, rollers: Rollers) -> None:
+    for row in rollers.rows:
+        if abs(row.x) >= bearing.width / 2:
+            raise ValueError(
+                f"bearing {bearing.name!r}: a row of rollers at x = {row.x:g} m must be within "
+                f"half the bearing's width, {bearing.width / 2:g} m"
+            )
+        if bearing.kind == "spherical" and row.contact_angle:
+            raise ValueError(
+                f"bearing {bearing.name!r}: contact_angle is {row.contact_angle:g} deg, but a "
+                "spherical raceway has that of its row's x: leave it out"
+            )
 
 
 class Hub(_Part):
@@ -45,33 +188,11 @@ class Hub(_Part):
 
 
 class Gearbox(_Part):
-    """Springs to ground and a weight, at the centre of the shaft's rear face.
+    """Springs to ground and a weight, at the centre of the shaft's rear face."""
 
-    Each stiffness is a number, or "rigid", or 0 for free: N/m along x, y, z, N m/rad about them.
-    """
-
-    stiffness: tuple[float | Literal["rigid"], ...] = Field(min_length=6, max_length=6)
+    stiffness: Springs
     weight: float = Field(default=0.0, ge=0, allow_inf_nan=False, description="[N], along -z")
     coupling: Coupling = "averaged"
-
-    @field_validator("stiffness", mode="before")
-    @classmethod
-    def _no_booleans(cls, value: Any) -> Any:
-        if isinstance(value, list | tuple) and any(isinstance(k, bool) for k in value):
-            raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
-        return value
-
-    @field_validator("stiffness")
-    @classmethod
-    def _not_negative(
-        cls, value: tuple[float | Literal["rigid"], ...]
-    ) -> tuple[float | Literal["rigid"], ...]:
-        for k in value:
-            if k != "rigid" and not 0 <= k <= _STIFFEST:
-                raise ValueError(
-                    f"{k:g} must be a number from 0 to {_STIFFEST:g} [N/m, N m/rad], or 'rigid'"
-                )
-        return value
 
     @property
     def held(self) -> list[int]:
@@ -119,11 +240,11 @@ class Scene(_Part):
         for unit in self.bearing_units:
             used.append((unit.bearing.name, unit.bearing.material))
             used.append((f"{unit.bearing.name}.housing", unit.housing.material))
-            if unit.interface != "bonded" and unit.bearing.kind != "spherical":
+            if unit.interface in SPHERICAL_JOINTS and unit.bearing.kind != "spherical":
                 raise ValueError(
                     f"bearing {unit.bearing.name!r} of kind {unit.bearing.kind!r} cannot have the "
                     f"spherical-joint interface {unit.interface!r}: make its kind 'spherical' or "
-                    "its interface 'bonded'"
+                    "its interface 'bonded', 'spring' or 'rollers'"
                 )
         known = {**MATERIALS, **self.materials}
         for part, material in used:
@@ -164,22 +285,40 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
     InputError
         The file cannot be read, is not such YAML, or does not describe a scene.
     """
+    return parse_scene(file_text(path), changes, source=str(path))
+
+
+def file_text(path: str | Path) -> str:
+    """The text of a scene file; see `read_scene`."""
     path = Path(path)
     try:
         with path.open("rb") as file:
             content = file.read(_MAX_BYTES + 1)
         if len(content) > _MAX_BYTES:
             raise InputError(f"{path} is larger than {_MAX_BYTES} bytes, the most of a scene file")
-        text = content.decode("utf-8")
+        return content.decode("utf-8")
     except (OSError, ValueError) as error:  # no file, no text, or no name of a file
         raise InputError(f"cannot read scene file {path}: {error}") from error
-    return parse_scene(text, changes, source=str(path))
 
 
 def parse_scene(
     text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
 ) -> Scene:
     """A scene from YAML text; see `read_scene`."""
+    data = parse_mapping(text, changes, source)
+    for kind in COMPONENTS:
+        if kind in data:
+            raise InputError(
+                f"{source} is a component, for it has {kind!r}, and no scene of a shaft: "
+                "components can be exported, and have cases of their own"
+            )
+    return validated(Scene, data, source)
+
+
+def parse_mapping(
+    text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
+) -> dict[str, Any]:
+    """Plain YAML text as keys and values, with changes by dotted key; see `read_scene`."""
     try:
         data = yaml.load(text, Loader=PlainLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
@@ -188,24 +327,29 @@ def parse_scene(
     if not isinstance(data, dict):
         raise InputError(f"{source} must be a mapping with keys such as 'shaft' and 'gearbox'")
     for key, value in (changes or {}).items():
-        _set(data, key, value)
-    return validated(Scene, data, source)
+        set_by_key(data, key, value)
+    return data
 
 
 def library_scene(name: str) -> Scene:
     """A scene that comes with the package, by name: "main_bearing_spherical", "..._bonded"."""
+    return parse_scene(library_text(name), source=name)
+
+
+def library_text(name: str) -> str:
+    """The text of a file of the library, by its name without ending."""
     folder = files("fe_drivetrain.geometry") / "library"
     names = sorted(f.name.removesuffix(".yaml") for f in folder.iterdir())
     if name not in names:
         raise InputError(f"no scene {name!r} in the library: use one of {', '.join(names)}")
-    return parse_scene((folder / f"{name}.yaml").read_text("utf-8"), source=name)
+    return (folder / f"{name}.yaml").read_text("utf-8")
 
 
 def change_scene(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """A copy of the scene with other values by dotted key; see `read_scene`."""
     data = scene.model_dump(mode="json")
     for key, value in changes.items():
-        _set(data, key, value)
+        set_by_key(data, key, value)
     return validated(Scene, data, "scene")
 
 
@@ -287,7 +431,7 @@ def _models_in(annotation: Any) -> list[type[BaseModel]]:
     return [m for inner in getattr(annotation, "__args__", ()) for m in _models_in(inner)]
 
 
-def _set(data: Any, key: str, value: Any) -> None:
+def set_by_key(data: Any, key: str, value: Any) -> None:
     """Replace one value by dotted key, in place."""
     target = data
     *path, last = key.split(".")

@@ -85,7 +85,7 @@ def _drivetrain(scene: Scene, at: Sequence[str], level: int) -> Superelement:
         return supported_superelement(scene, assembly_level(scene), at)
     body = condensed_shaft(scene, level)
     stiff, soft = (
-        shaft_level(scene, level, housing_springs(scene, coupling=coupling)[0], body)
+        shaft_level(scene, level, housing_springs(scene, coupling, level)[0], body)
         for coupling in ("rigid", "averaged")
     )
     band = difference(soft.stiffness(at), stiff.stiffness(at))

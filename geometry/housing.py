@@ -179,7 +179,9 @@ class Housing(Part):
             )
         outer, drop = self.outer_radius(bearing), self.centre_height - self.foot_thickness
         lean = self.pedestal_width / 2 - outer
-        if outer * drop / math.hypot(lean, drop) <= radius + LENGTH_TOLERANCE:
+        # where a flank, from (outer, 0) down to the foot, is nearest to the centre
+        along = min(max(-lean * outer / (lean**2 + drop**2), 0.0), 1.0)
+        if math.hypot(outer + along * lean, along * drop) <= radius + LENGTH_TOLERANCE:
             raise InputError(
                 f"{name}: pedestal_width is {self.pedestal_width:g} m but must be greater, or the "
                 f"bore of {raceway:g} m breaks through its flanks: {2 * outer:g} m gives upright "

@@ -497,6 +497,14 @@ def test_an_assembly_that_does_not_fit_is_refused_in_one_sentence(arguments, wor
     assert not gmsh.isInitialized()
 
 
+def test_a_pedestal_much_wider_than_its_shell_is_built():
+    """Its flanks lean away from the bore: the shell's own wall is what is left beside it."""
+    housing = Housing(wall=0.03, pedestal_width=1.2)
+    housing.check_fits(Bearing(), None)
+    with pytest.raises(InputError, match="flanks"):
+        Housing(wall=0.03, pedestal_width=0.3).check_fits(Bearing(), None)
+
+
 def test_a_housing_just_wide_enough_to_clear_the_shaft_is_built():
     # sqrt(0.3^2 - 0.22^2) = 0.20396 > 0.2
     assemble(plain_shaft(2.0), housings={"main_bearing": Housing(width=0.44, foot_width=0.44)})

@@ -1,0 +1,94 @@
+"""One drivetrain with its bearing's joint exchanged: solved as an assembly, and on springs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.bearing_units import unit_stiffness
+from fe_drivetrain.condensation import Condensed
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.joints import in_series, joint_stiffness
+from fe_drivetrain.levels import shaft_level
+from fe_drivetrain.model import Model, build_model, mesh_scene
+from fe_drivetrain.response import Response, unit_load_response
+from fe_drivetrain.scene import Scene, change_scene
+
+BEARING = "main_bearing"
+HELD: tuple[Any, ...] = ("rigid", "rigid", "rigid")
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A joint as an assembly of solids.
+
+    Attributes
+    ----------
+    model, response
+        Of the finite elements.
+    seconds
+        Wall time, mesh included.
+    """
+
+    model: Model
+    response: Response
+    seconds: float
+
+    @property
+    def tilt_moment(self) -> float:
+        """Moment about y that the bearing takes, for 1 N m at the hub."""
+        return float(self.response.reactions[BEARING][4, 4])
+
+    @property
+    def hub_motions(self) -> Floats:
+        """(6, 6) of the hub for unit hub loads."""
+        return self.response.motions["hub"][:, :6]
+
+
+def with_joint(scene: Scene, **unit: Any) -> Scene:
+    """The scene with other values of its bearing unit."""
+    keys = {f"bearing_units.{BEARING}.{key}": value for key, value in unit.items()}
+    return change_scene(scene, keys)
+
+
+def tilting(scene: Scene, stiffness: float | str) -> Scene:
+    """The scene with its bearing held in place, and on springs against tilt and yaw."""
+    spring = [*HELD, 0.0, stiffness, stiffness]
+    return with_joint(scene, interface="spring", stiffness=spring)
+
+
+def solved(scene: Scene) -> Solved:
+    """Solve the assembly."""
+    start = time.perf_counter()
+    model = build_model(scene, mesh_scene(scene))
+    response = unit_load_response(model)
+    return Solved(model, response, time.perf_counter() - start)
+
+
+def housing_alone(scene: Scene) -> Floats:
+    """(6, 6) stiffness of the housing, its bore moving on average."""
+    held = with_joint(scene, interface="spring", stiffness=["rigid"] * 6)
+    return unit_stiffness(held, BEARING)
+
+
+def on_springs(scene: Scene, housing: Floats, shaft: Condensed) -> Floats:
+    """(6, 10) reaction of the bearing of a condensed shaft, on joint and housing in series."""
+    spring = in_series(housing, joint_stiffness(scene.bearing_unit(BEARING)))
+    return shaft_level(scene, 2, {BEARING: spring}, shaft).reaction_matrices[BEARING]
+
+
+def difference(one: Floats, other: Floats) -> float:
+    """Of two compliances (6, 6), relative to the other's diagonal."""
+    size = np.sqrt(other.diagonal())
+    return float((np.abs(one - other) / np.outer(size, size)).max())
+
+
+def roller_totals(response: Response, lines: Floats, loads: Mapping[str, Floats] | Floats) -> float:
+    """How far the sum of roller loads (n, 10) along lines (n, 6) is from what the joint carries."""
+    total = lines.T @ np.asarray(loads)
+    carried = response.reactions[f"{BEARING}.outer"]
+    return float(np.abs(total - carried).max() / np.abs(carried).max())
