@@ -2,10 +2,13 @@
 
 from .assembly import WIDEST, MeshSizes, build, refuse_millimetres, size_name
 from .bearing import Bearing
+from .body import BodySizes
+from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
 from .masses import Solid, unit_solids
 from .part import Assumption, Part
+from .planet_carrier import PlanetCarrier
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
 
@@ -13,11 +16,14 @@ __all__ = [
     "WIDEST",
     "Assumption",
     "Bearing",
+    "BodySizes",
     "Flange",
+    "GearboxHousing",
     "Housing",
     "LocalSizes",
     "MeshSizes",
     "Part",
+    "PlanetCarrier",
     "Section",
     "Shaft",
     "Solid",
