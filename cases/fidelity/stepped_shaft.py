@@ -4,7 +4,8 @@ from typing import Any
 
 from fe_drivetrain.case import Case, Run
 
-SCENE, QUANTITY, TOLERANCE = "stepped_shaft", "hub.stiffness.uz", 0.05
+#: 10 % of a stiffness is 5 % of a frequency.
+SCENE, QUANTITY, TOLERANCE = "stepped_shaft", "hub.stiffness.uz", 0.1
 
 
 def run(run: Run) -> Any:

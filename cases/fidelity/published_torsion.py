@@ -1,0 +1,145 @@
+"""The torsional stiffness of a scene's shaft beside the one that its sources give."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fe_drivetrain.geometry import Shaft
+
+from fe_drivetrain.axisymmetric import end_stiffness
+from fe_drivetrain.frame import Beam, shaft_stiffness
+from fe_drivetrain.hexahedra import SAME_LENGTH
+from fe_drivetrain.materials import Material
+from fe_drivetrain.results import Section, Table, Verdict, judge
+from fe_drivetrain.scene import Scene
+from fe_drivetrain.sections import BeamSection
+
+
+@dataclass(frozen=True)
+class Published:
+    """A torsional stiffness that the sources give.
+
+    Attributes
+    ----------
+    name
+        What they call it.
+    to
+        x of the station to which it reaches from the front face [m]; there, the shaft is cut.
+    value, half_digit
+        The stiffness, and half of its last printed digit [N m/rad].
+    source
+        Of the value.
+    rounding
+        Half of the last digit of the scene's diameters and lengths [m].
+    """
+
+    name: str
+    to: float
+    value: float
+    half_digit: float
+    source: str
+    rounding: float = 0.0
+
+
+def beside_published(scene: Scene, published: Published) -> tuple[Section, str, list[Verdict]]:
+    """The shaft from its front face to a station, ends rigid, beside what the sources say."""
+    shaft = front_part(scene.shaft, published.to)
+    material = scene.material_of("shaft")
+    found, coarser = (
+        float(end_stiffness(shaft, material, order=order)[3, 3]) for order in (None, 3)
+    )
+    plain = float(end_stiffness(_without_fillets(shaft), material)[3, 3])
+    summed = _in_series(shaft, material)
+    thicker = _in_series(_enlarged(shaft, published.rounding), material)
+    tolerance = published.half_digit / published.value + thicker / summed - 1.0
+    band = abs(found - coarser)
+    where = f"front face to x = {published.to:g} m"
+    verdicts = [
+        judge(
+            f"G J / L of the sections in series, {where}",
+            summed,
+            published.value,
+            tolerance=tolerance,
+            unit="N m/rad",
+            source=published.source,
+            reason="half of its last printed digit"
+            + (", and of the scene's dimensions" if published.rounding else ""),
+            measure="stiffness",
+        ),
+        judge(
+            f"finite elements without fillets above the sections in series, {where}, relative",
+            max(plain / summed - 1.0, 0.0),
+            0.0,
+            tolerance=1e-8,
+            relative=False,
+            source="sections kept plane and round only make it stiffer (least potential energy)",
+            reason="round-off of a condensed stiffness",
+            measure="identity",
+        ),
+    ]
+    rows: list[list[str | float | None]] = [
+        [published.name, published.value, published.half_digit, 1.0],
+        ["G J / L of the sections in series", summed, None, summed / published.value],
+        ["finite elements, ends rigid", found, band, found / published.value],
+    ]
+    table = Table(
+        caption=f"Torsional stiffness from the {where}",
+        columns=["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
+        rows=rows,
+    )
+    less = 100 * (1 - found / published.value)
+    said = (
+        f"{published.name} is published as {published.value:.4g} N m/rad; the shaft of this scene "
+        f"has {found:.4g} ± {band:.1g} by finite elements"
+        + (f", {less:.2g} % less" if abs(less) > 0.01 else "")
+        + "."
+    )
+    return Section(title="Beside the published stiffness", items=[table]), said, verdicts
+
+
+def _in_series(shaft: Shaft, material: Material) -> float:
+    """Torsional stiffness of a shaft as a beam: G J / L of its sections, one after the other."""
+    sections = [
+        BeamSection(
+            piece.length,
+            piece.outer_diameter,
+            piece.inner_diameter,
+            outer_diameter_end=piece.end_diameter,
+        )
+        for piece in shaft.pieces
+    ]
+    beam = Beam(sections, [], shaft.front, material)
+    return float(shaft_stiffness(beam, shaft.front, shaft.rear)[3, 3])
+
+
+def _enlarged(shaft: Shaft, by: float) -> Shaft:
+    """Every section of a shaft without flange shorter and thicker by so much [m]."""
+    sections = tuple(
+        section.model_copy(
+            update={
+                "length": section.length - by,
+                "outer_diameter": section.outer_diameter + by,
+                "outer_diameter_end": section.end_diameter + by,
+            }
+        )
+        for section in shaft.sections
+    )
+    return shaft.model_copy(update={"sections": sections})
+
+
+def _without_fillets(shaft: Shaft) -> Shaft:
+    """A shaft without flange, its steps sharp."""
+    sections = tuple(section.model_copy(update={"fillet": 0.0}) for section in shaft.sections)
+    return shaft.model_copy(update={"sections": sections})
+
+
+def front_part(shaft: Shaft, to: float) -> Shaft:
+    """The shaft from its front face to x = to [m], its flange a section."""
+    cut = shaft.cut([to])
+    kept = [
+        section
+        for section, end in zip(cut.sections, cut.stations[1:], strict=True)
+        if end <= to + SAME_LENGTH
+    ]
+    last = kept[-1].model_copy(update={"fillet": 0.0})
+    return cut.model_copy(update={"sections": (*kept[:-1], last)})

@@ -1,0 +1,185 @@
+"""One scene at levels 1 and 2: what beam theory costs beside what its supports do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from fe_drivetrain.adviser import Quantity
+from fe_drivetrain.charts import rounded
+from fe_drivetrain.condensation import Condensed, keep_points
+from fe_drivetrain.condensed_shafts import beam_shaft, meridian_shaft
+from fe_drivetrain.details import simplified
+from fe_drivetrain.levels import housing_springs, shaft_level
+from fe_drivetrain.results import Chart, Table
+from fe_drivetrain.scene import Scene
+
+#: What is compared, in words; FORCE is that of the first bearing.
+FORCE = "Fz"
+QUANTITIES = {
+    "hub.stiffness.uz": "Bending: stiffness of the hub along z",
+    "hub.stiffness.rx": "Torsion: stiffness of the hub about x",
+    FORCE: "Force: of the first bearing along z, of all hub loads",
+}
+
+_LEAST = 1e-3  # percent: a place on a logarithmic axis
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What one quantity does when a part of its model is replaced, relative.
+
+    Attributes
+    ----------
+    beam
+        The meridian by a beam.
+    bare
+        The same, of a shaft without the rings of its bearings.
+    housings
+        Housings as springs by rigid ones.
+    faces
+        Housings whose faces keep in shape by such whose faces move on average.
+    """
+
+    beam: float
+    bare: float
+    housings: float
+    faces: float
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A scene side by side.
+
+    Attributes
+    ----------
+    scene
+        Name.
+    slenderness
+        Length of the shaft over its largest diameter, the flange aside.
+    changes
+        By key of `QUANTITIES`.
+    stiffer_on_softer
+        Largest share by which a motion of the hub is stiffer where its supports are softer; 0 by
+        Rayleigh.
+    stiffer_than_beam
+        Share by which the free shaft's meridian is stiffer in torsion than its beam, fillets left
+        out; 0, because a beam keeps its sections plane and round.
+    """
+
+    scene: str
+    slenderness: float
+    changes: dict[str, Changes]
+    stiffer_on_softer: float
+    stiffer_than_beam: float
+
+
+def compared(name: str, scene: Scene) -> Compared:
+    """Solve a scene with beam and meridian, on rigid housings and on two bounds of springs."""
+    beam, meridian = beam_shaft(scene), meridian_shaft(scene)
+    stiff, soft = (housing_springs(scene, coupling=c)[0] for c in ("rigid", "averaged"))
+    models = {
+        "beam": shaft_level(scene, 1, stiff, beam),
+        "rigid": shaft_level(scene, 2, None, meridian),
+        "stiff": shaft_level(scene, 2, stiff, meridian),
+        "soft": shaft_level(scene, 2, soft, meridian),
+        "bare beam": shaft_level(scene, 1, stiff, beam_shaft(scene, rings=False)),
+        "bare meridian": shaft_level(scene, 2, stiff, meridian_shaft(scene, rings=False)),
+    }
+    changes = {}
+    for key in QUANTITIES:
+        first = scene.bearing_units[0].bearing.name
+        quantity = Quantity(f"{first}.{key}" if key == FORCE else key)
+        values = {which: quantity.of(model, scene.shaft.length) for which, model in models.items()}
+        changes[key] = Changes(
+            *(
+                float(np.linalg.norm(values[new] - values[old]) / np.linalg.norm(values[old]))
+                for new, old in (
+                    ("beam", "stiff"),
+                    ("bare beam", "bare meridian"),
+                    ("rigid", "stiff"),
+                    ("soft", "stiff"),
+                )
+            )
+        )
+    hubs = [models[which].compliance[:6, :6].diagonal() for which in ("rigid", "stiff", "soft")]
+    softened = [float(np.max((harder - softer) / softer)) for harder, softer in pairwise(hubs)]
+    plain = simplified(scene).get("fillets")
+    sharp = meridian if plain is None else meridian_shaft(plain)
+    return Compared(
+        name,
+        scene.shaft.length / max(section.outer_diameter for section in scene.shaft.sections),
+        changes,
+        max(0.0, *softened),
+        max(0.0, _end_torsion(sharp) / _end_torsion(beam) - 1.0),
+    )
+
+
+def _end_torsion(body: Condensed) -> float:
+    return float(keep_points(body, ("hub", "gearbox")).stiffness[3, 3])
+
+
+def chart(key: str, found: Sequence[Compared]) -> Chart:
+    """Bars of each scene's changes, the slenderest scene at the bottom."""
+    ordered = sorted(found, key=lambda c: c.slenderness, reverse=True)
+    bars = [
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": title,
+            "y": [f"{c.scene} ({c.slenderness:.1f})" for c in ordered],
+            "x": rounded([max(100 * getattr(c.changes[key], part), _LEAST) for c in ordered]),
+        }
+        for title, part in (
+            ("beam instead of meridian", "beam"),
+            ("the same without rings", "bare"),
+            ("rigid housings", "housings"),
+            ("how the shaft holds their faces", "faces"),
+        )
+    ]
+    layout = {
+        "barmode": "group",
+        "height": 72 * len(ordered) + 120,
+        "xaxis": {
+            "type": "log",
+            "exponentformat": "power",
+            "title": {"text": f"change [%]; {_LEAST:g} stands for less"},
+        },
+        "yaxis": {"automargin": True, "title": {"text": ""}},
+    }
+    caption = f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
+    return Chart(caption=caption, figure={"data": bars, "layout": layout})
+
+
+def table(key: str, found: Sequence[Compared]) -> Table:
+    """The same in numbers."""
+    return Table(
+        caption=QUANTITIES[key],
+        columns=[
+            "scene",
+            "length over diameter",
+            "beam instead of meridian [%]",
+            "the same without rings [%]",
+            "rigid housings [%]",
+            "how the shaft holds their faces [%]",
+        ],
+        rows=[
+            [
+                c.scene,
+                c.slenderness,
+                *(
+                    round(100 * share, 6)
+                    for share in (
+                        c.changes[key].beam,
+                        c.changes[key].bare,
+                        c.changes[key].housings,
+                        c.changes[key].faces,
+                    )
+                ),
+            ]
+            for c in found
+        ],
+    )
