@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from rich.progress import TaskID
 
     from fe_drivetrain.case import Case
+    from fe_drivetrain.component import Component
     from fe_drivetrain.parallel import Report
     from fe_drivetrain.results import Results, Verdict
     from fe_drivetrain.scene import Scene
@@ -65,6 +66,15 @@ _SetOption = Annotated[
         metavar="KEY=VALUE",
         help="Change a setting of the case; the value is a YAML number, word or list, as in "
         "--set gearbox.weight=4e5. May be given several times.",
+    ),
+]
+_SceneSetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a value of the scene, as in --set shaft.sections.0.inner_diameter=0.2. "
+        "May be given several times.",
     ),
 ]
 _QuickOption = Annotated[
@@ -195,7 +205,7 @@ def _export(
         typer.Argument(
             metavar="SCENE",
             help="A scene file, or a scene of the library by its name: main_bearing_bonded, "
-            "main_bearing_spherical.",
+            "main_bearing_spherical; or a component: gearbox_housing, planet_carrier.",
         ),
     ] = None,
     out: Annotated[
@@ -224,7 +234,7 @@ def _export(
             help="Which part is condensed: shaft, the free shaft, where left out; drivetrain, the "
             "shaft on its supports; a bearing by its name, with its housing on the ground; seats, "
             "all of these; or summary, in json: stiffness of the shaft, K_R, reaction matrices, "
-            "masses.",
+            "masses. Of a component: body, where left out, or supported.",
         ),
     ] = None,
     at: Annotated[
@@ -258,15 +268,7 @@ def _export(
         bool, typer.Option("--overwrite", help="Replace a file that is there.")
     ] = False,
     formats: Annotated[bool, typer.Option("--list", help="List the formats, and exit.")] = False,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Change a value of the scene, as in --set shaft.sections.0.inner_diameter=0.2. "
-            "May be given several times.",
-        ),
-    ] = None,
+    set_: _SceneSetOption = None,
 ) -> None:
     """Write a scene for other programs: condensed matrices, a model for CalculiX, or its mesh."""
 
@@ -296,10 +298,16 @@ def _export(
                 raise InputError(f"--format {format_!r} is unknown: use {', '.join(FORMATS)}")
         if out.is_dir() or not out.resolve().parent.is_dir():
             raise InputError(f"--out {out} must be a file in a folder that exists: name one")
-        found = _scene_of(scene, changes)
+        from fe_drivetrain.scene import Scene
+
+        found = _component_of(scene, changes) or _scene_of(scene, changes)
         if out.exists() and not overwrite:
             raise InputError(f"--out {out} exists: name another file, or add --overwrite")
-        if format_ is None:
+        if not isinstance(found, Scene):
+            if modes is not None:
+                raise InputError("--modes are of the shaft of a scene: leave them out")
+            said = _export_component(found, out, format_, what, at, level, overwrite)
+        elif format_ is None:
             said = _export_model(found, out)
         else:
             if modes is not None:
@@ -370,6 +378,45 @@ def _export_condensed(
     )
 
 
+def _export_component(
+    component: Component,
+    out: Path,
+    format: str | None,
+    what: str | None,
+    at: str | None,
+    level: str | None,
+    overwrite: bool,
+) -> str:
+    """Write a component's mesh, or it condensed; what that is."""
+    from fe_drivetrain import export
+    from fe_drivetrain.component_solid import component_mesh
+    from fe_drivetrain.component_superelements import BODY, component_superelement
+    from fe_drivetrain.mesh import write
+
+    if format is None and out.suffix == ".inp":
+        raise InputError(f"--out {out}: a component is written as .vtu or .msh, or with --format")
+    if level not in (None, "auto", "1", "3"):
+        raise InputError(f"--level {level!r} of a component is unknown: use auto, 1 or 3")
+    with _progress() as report:
+        if format is None:
+            report("mesh")
+            mesh, _ = component_mesh(component)
+            write(mesh, out)
+            report("")
+            return f"{len(mesh.cells):,} elements, {len(mesh.points):,} nodes"
+        report("condense")
+        chosen = 3 if level in (None, "auto") else int(str(level))
+        element = component_superelement(component, what or BODY, _points(at), chosen)
+        report("write")
+        export.write(out, element, format, overwrite)
+        report("")
+    supports = "on its supports" if element.supported else "free"
+    return (
+        f"{element.name} at {', '.join(element.points)}, {supports}, level {element.origin.level}, "
+        f"{'with' if element.mass is not None else 'without'} mass"
+    )
+
+
 def _points(at: str | None) -> list[str] | None:
     return None if at is None else [name.strip() for name in at.split(",") if name.strip()]
 
@@ -430,6 +477,16 @@ _SceneArgument = Annotated[
         help="A scene file, or a scene of the library by its name, as in main_bearing_bonded.",
     ),
 ]
+_LoadOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--load",
+        metavar="NAME=VALUE",
+        help="The load of reactions: hub.Fx to hub.Mz in N and N m, gravity.x to gravity.z in "
+        "m/s^2, gearbox.weight in N; may be given several times. Left out, all six hub loads "
+        "count.",
+    ),
+]
 
 
 @_app.command("advise")
@@ -447,15 +504,7 @@ def _advise(
     tolerance: Annotated[
         str, typer.Option("--tolerance", metavar="SHARE", help="Allowed error, as in 1% or 0.01.")
     ] = "1%",
-    load: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--load",
-            metavar="NAME=VALUE",
-            help="The load: hub.Fx to hub.Mz [N, N m], gravity.x to gravity.z [m/s^2], "
-            "gearbox.weight [N]; may be given several times. Left out, all six hub loads count.",
-        ),
-    ] = None,
+    load: _LoadOption = None,
     to_the_top: Annotated[
         bool,
         typer.Option("--to-the-top", help="Run every level, whether or not a cheaper is enough."),
@@ -466,10 +515,7 @@ def _advise(
             "--out", metavar="DIR", help="Result folder; reports/advise/SCENE where left out."
         ),
     ] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scene."),
-    ] = None,
+    set_: _SceneSetOption = None,
 ) -> None:
     """Find the cheapest model of a scene that is good enough for a quantity.
 
@@ -504,6 +550,105 @@ def _advise(
 
     with _stopped_by_terminate():
         raise typer.Exit(_guarded(work))
+
+
+@_app.command("uncertainty")
+def _uncertainty(
+    scene: _SceneArgument,
+    quantity: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="What is asked for beside every stiffness, which is always reported: a reaction, "
+            "as main_bearing.My. The level must be good enough for it. May be given several times; "
+            "left out, hub.stiffness.uz.",
+        ),
+    ] = None,
+    load: _LoadOption = None,
+    tolerance: Annotated[
+        str,
+        typer.Option("--tolerance", metavar="SHARE", help="Allowed error of the level, as in 5%."),
+    ] = "5%",
+    level: Annotated[
+        int | None,
+        typer.Option(
+            "--level",
+            metavar="LEVEL",
+            help="1 beam or 2 meridian, without asking the adviser: the assembly of solids is not "
+            "solved then, and the model's error is known between bounds only.",
+        ),
+    ] = None,
+    samples: Annotated[
+        int,
+        typer.Option(
+            "--samples", metavar="COUNT", min=40, max=100_000, help="Of the Latin hypercube."
+        ),
+    ] = 128,
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="NUMBER", min=0, help="Of all samples.")
+    ] = 0,
+    sobol: Annotated[
+        bool,
+        typer.Option(
+            "--sobol",
+            help="Sobol's shares of the variance, too; the power of two at or below --samples, "
+            "times the number of uncertain values and two, evaluations.",
+        ),
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Result folder; reports/uncertainty/SCENE where left out."
+        ),
+    ] = None,
+    set_: _SceneSetOption = None,
+) -> None:
+    """Say how certain reactions and stiffnesses are, from how certain a scene's values are.
+
+    The scene says under 'uncertainty' which values are how certain. The adviser finds the cheapest
+    level that is good enough; sensitivities, and the band of each number from a Latin hypercube,
+    are of that level, and stand beside its own error.
+
+    The exit status is 0 where the level is known to be within the tolerance, 1 where it is not.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = _scene_of(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.case import Case, run_case
+        from fe_drivetrain.uncertainty_page import uncertain
+
+        name = Path(scene).stem
+        factors = _parse_load(load or ())
+        share = _parse_share(tolerance)
+        shares = 2 ** (samples.bit_length() - 1) if sobol else 0
+        case = Case(
+            name=f"uncertainty/{name}",
+            title=f"{found.title}: how certain the results are",
+            source=f"the scene {name}",
+            run=lambda run: uncertain(
+                case, run, found, quantity or (), factors, share, level, samples, seed, shares
+            ),
+        )
+        folder = Path("reports", "uncertainty", name) if out is None else out
+        with _progress() as report:
+            results = run_case(case, folder.resolve(), report=report)
+        _write(sys.stdout, _outcome(results, folder / "report.html"))
+        return PASSED if results.passed else FAILED
+
+    with _stopped_by_terminate():
+        raise typer.Exit(_guarded(work))
+
+
+def _component_of(scene: str, changes: Mapping[str, Any]) -> Component | None:
+    """The component in a file, or the library's of that name, with changes; None of a scene."""
+    from fe_drivetrain.component import is_component, parse_component
+    from fe_drivetrain.scene import file_text, library_text
+
+    is_file = Path(scene).suffix != "" or Path(scene).exists()
+    text = file_text(scene) if is_file else library_text(scene)
+    return parse_component(text, changes, scene) if is_component(text) else None
 
 
 def _scene_of(scene: str, changes: Mapping[str, Any]) -> Scene:

@@ -13,7 +13,6 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from fe_drivetrain.bearing_units import unit_stiffness
-from fe_drivetrain.condensation import Condensed, keep_points
 from fe_drivetrain.condensed_shafts import meridian_shaft
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
@@ -22,6 +21,7 @@ from fe_drivetrain.files import atomic_path
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.levels import LevelModel, assembly_level, shaft_level
 from fe_drivetrain.model import COMPONENTS, LOADS
+from fe_drivetrain.reported import shaft_numbers, unit_numbers
 from fe_drivetrain.scene import Coupling, Scene
 from fe_drivetrain.scene_superelements import scene_origin
 from fe_drivetrain.superelement import FRAME, UNITS
@@ -114,7 +114,7 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
     else:
         model = shaft_level(scene, level, springs["rigid"], meridian if level == 2 else None)
     return SummaryFile(
-        shaft=_shaft(meridian),
+        shaft=ShaftFile(**shaft_numbers(meridian)),
         bearing_units={name: _unit([springs[c][name] for c in couplings]) for name in names},
         reactions=_reactions(model),
         parts=_parts(scene),
@@ -139,27 +139,11 @@ def read_summary(path: str | Path) -> SummaryFile:
     return read_content(Path(path), SummaryFile, "drivetrain summary")
 
 
-def _shaft(body: Condensed) -> ShaftFile:
-    # the gearbox end held: what is left of the free shaft's stiffness is the hub's
-    compliance = np.linalg.inv(keep_points(body, ["hub", "gearbox"]).stiffness[:6, :6])
-    axial, _, lateral, torsional, bending, _ = (1.0 / compliance.diagonal()).tolist()
-    return ShaftFile(axial=axial, torsional=torsional, lateral=lateral, bending=bending)
-
-
 def _unit(bounds: list[Floats]) -> UnitFile:
-    carried = 6 if bounds[0][3:, 3:].any() else 3
-    soft, stiff = (1.0 / np.linalg.inv(k[:carried, :carried]).diagonal() for k in bounds)
-
-    def pair(component: int) -> tuple[float, float]:
-        return float(soft[component]), float(stiff[component])
-
-    return UnitFile(
-        tilt=pair(4) if carried == 6 else None,
-        yaw=pair(5) if carried == 6 else None,
-        axial=pair(0),
-        radial_y=pair(1),
-        radial_z=pair(2),
-    )
+    soft, stiff = (unit_numbers(k) for k in bounds)
+    found = {name: (soft[name], stiff[name]) for name in soft}
+    tilt, yaw = (pair if any(pair) else None for pair in (found.pop("tilt"), found.pop("yaw")))
+    return UnitFile(tilt=tilt, yaw=yaw, **found)
 
 
 def _reactions(model: LevelModel) -> ReactionsFile:
