@@ -77,6 +77,14 @@ def test_results_are_valid_and_physics_holds(reports, name):
     assert results.title in html.unescape(page)
 
 
+@pytest.mark.parametrize("name", ["calibrate_housing", "secant_stiffness"])
+def test_checks_pass_on_the_whole_scene(tmp_path, name):
+    """These are about its proportions, so that a stub of a shaft would not do."""
+    (case,) = find_cases(f"main_bearing/{name}")
+    results = run_case(case, tmp_path / "out", quick=True)
+    assert [v.quantity for v in results.verdicts if not v.passed] == []
+
+
 @pytest.mark.parametrize("name", ["bonded", "spherical", "rmse"])
 def test_stiffness_file_is_valid(reports, name):
     content = read_stiffness_json(reports / name / "stiffness.json")

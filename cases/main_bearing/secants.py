@@ -1,0 +1,191 @@
+"""Loads and motions of a bearing over load cases, and beams on springs of several forms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from fe_drivetrain.cases.main_bearing import bands, loads, study
+
+from fe_drivetrain import frame, secant
+from fe_drivetrain.case import Run
+from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.errors import InputError
+from fe_drivetrain.model import COMPONENTS, LOADS
+from fe_drivetrain.scene import Scene, change_scene
+from fe_drivetrain.scene_beam import beam_of_scene
+from fe_drivetrain.stiffness import bearing_unit_stiffness, without_gearbox
+from fe_drivetrain.surrogate import SHEARS, WIND_SPEEDS, Condition, hub_load_set
+
+QUANTITIES = ("Fx", "Fy", "Fz", "My", "Mz")
+
+SINGLE = "single springs (diagonal of the compliance)"
+SECANT = "single springs, K_R the secant"
+LEAN = "single springs at the elastic centre (thrust with tilt)"
+FULL = "full 6x6"
+
+OF_FORM = "My of the form"
+
+
+@dataclass(frozen=True)
+class Reacted:
+    """A bonded bearing over load cases.
+
+    Attributes
+    ----------
+    scene
+        As it was solved.
+    loads, motions
+        (m, 6) what the drivetrain puts on the housing's base, about the bearing's centre [N, N m],
+        and the mean motion of the seat [m, rad].
+    stiffness
+        (6, 6) condensed, from unit loads without a gearbox.
+    fit
+        The spring that the load cases show.
+    """
+
+    scene: Scene
+    loads: Floats
+    motions: Floats
+    stiffness: Floats
+    fit: secant.Spring
+
+
+def hub_loads(run: Run, every: int) -> tuple[Floats, str]:
+    """Load cases (m, 6) at the hub [N, N m], and what they are.
+
+    The user's own, where ``--set loads=FILE`` is given; else samples of made histories.
+    """
+    own = loads.own_hub_loads(run)
+    if own is not None:
+        return own.loads.reshape(-1, 6), own.statement
+    speeds = WIND_SPEEDS[1:2] if run.quick else WIND_SPEEDS
+    conditions = [Condition(speed, "medium", shear, 1) for speed in speeds for shear in SHEARS]
+    with run.step("hub loads"):
+        history = hub_load_set(conditions)
+    chosen = history.loads[:, ::every].reshape(-1, 6)
+    return chosen, (
+        f"Load cases: {len(chosen):,} samples of {len(conditions)} made ten-minute histories (wind "
+        f"of {', '.join(f'{s:g}' for s in speeds)} m/s, medium turbulence, both shear exponents, "
+        "one seed), each with the gearbox's weight. Your own: --set loads=FILE."
+    )
+
+
+def tall(scene: Scene, centre_height: float) -> Scene:
+    """The scene with the centre of its bearing higher over the base [m]."""
+    return change_scene(scene, {"bearing_units.0.housing.centre_height": centre_height})
+
+
+def reacted(run: Run, scene: Scene, factor: float, hub: Floats) -> tuple[Floats, Floats, Scene]:
+    """Loads and motions (m, 6) of the bearing of a scene on its gearbox, on a coarser mesh."""
+    scene = bands.coarser(scene, factor)
+    label = f"{scene.bearing_units[0].interface}, sizes x {factor:g}"
+    solved = study.solve_scene(run, scene, label)
+    factors = np.zeros((len(hub), len(LOADS)))
+    factors[:, :6] = hub
+    factors[:, 9] = scene.gearbox.weight
+    response = solved.response
+    return (
+        factors @ response.reactions[solved.bearing].T,
+        factors @ response.motions[f"{solved.bearing}.seat"].T,
+        scene,
+    )
+
+
+def solved(run: Run, scene: Scene, factor: float, hub: Floats) -> Reacted:
+    """A bonded bearing over load cases, with its condensed stiffness."""
+    on_bearing, motions, coarser = reacted(run, scene, factor, hub)
+    free = study.solve_scene(run, without_gearbox(coarser), f"without gearbox, sizes x {factor:g}")
+    stiffness = bearing_unit_stiffness(free.response, free.bearing)
+    fit = secant.fitted_spring(on_bearing, motions)
+    return Reacted(coarser, on_bearing, motions, stiffness, fit)
+
+
+def series(run: Run, scene: Scene, factors: tuple[float, float], hub: Floats) -> list[Reacted]:
+    """`solved` on two meshes, the finer last; on that alone if the other is too coarse to mesh."""
+    coarse, fine = factors
+    found = []
+    try:
+        found.append(solved(run, scene, coarse, hub))
+    except InputError as reason:
+        run.report(f"no coarser mesh: {reason}")
+    return [*found, solved(run, scene, fine, hub)]
+
+
+def at_centre(unit: Reacted) -> tuple[Floats, Floats]:
+    """Loads and motions at the elastic centre."""
+    arm = np.array([0.0, 0.0, secant.elastic_centre(unit.stiffness)])
+    return secant.moved(unit.loads, unit.motions, arm)
+
+
+def vertical_scatter(unit: Reacted) -> float:
+    """Of the secant about y, at the shaft's axis."""
+    return secant.secant(unit.loads, unit.motions, 4).scatter
+
+
+def scatter_at_centre(unit: Reacted) -> float:
+    """Of the secant about y, at the elastic centre."""
+    return secant.secant(*at_centre(unit), 4).scatter
+
+
+def predicted_scatter(unit: Reacted) -> float:
+    """Scatter of the secant about y from the condensed stiffness, thrusts and rotations alone.
+
+    With My = theta / C_55 + z Fx, z the elastic centre's height.
+    """
+    theta, thrust = unit.motions[:, 4], unit.loads[:, 0]
+    moment = theta / np.linalg.inv(unit.stiffness)[4, 4]
+    moment = moment + secant.elastic_centre(unit.stiffness) * thrust
+    made = np.zeros_like(unit.loads)
+    made[:, 4] = moment
+    return secant.secant(made, unit.motions, 4).scatter
+
+
+def springs(unit: Reacted) -> dict[str, Floats]:
+    """(6, 6) of a beam's support, in several forms."""
+    stiffness = unit.stiffness
+    single = 1.0 / np.linalg.inv(stiffness).diagonal()
+    by_secant = single.copy()
+    for a in (4, 5):
+        by_secant[a] = secant.secant(unit.loads, unit.motions, a).stiffness
+    arm = np.array([0.0, 0.0, secant.elastic_centre(stiffness)])
+    there = secant.moved_spring(stiffness, -arm)
+    return {
+        SINGLE: np.diag(single),
+        SECANT: np.diag(by_secant),
+        LEAN: secant.moved_spring(np.diag(there.diagonal()), arm),
+        FULL: stiffness,
+    }
+
+
+def on_beam(scene: Scene, stiffness: Floats, hub: Floats) -> tuple[Floats, Floats]:
+    """Loads and motions (m, 6) of the bearing of a beam on a spring."""
+    bearing = scene.bearing_units[0].bearing
+    beam = beam_of_scene(scene, {bearing.name: stiffness})
+    unit = frame.unit_load_response(beam, [scene.shaft.front, scene.shaft.rear], at=bearing.x)
+    cases = np.zeros((len(hub), 2, 6))
+    cases[:, 0] = hub
+    cases[:, 1, 2] = -scene.gearbox.weight
+    found = unit.solution(cases)
+    return found.reaction(bearing.name), found.displacements
+
+
+def beam_errors(unit: Reacted, hub: Floats) -> dict[str, Mapping[str, float]]:
+    """Root mean square error [%] of each reaction by form of the beam's spring.
+
+    `OF_FORM` is that of My against the beam on the full 6x6 instead of the solid.
+    """
+    beams = {form: on_beam(unit.scene, k, hub)[0] for form, k in springs(unit).items()}
+    found: dict[str, Mapping[str, float]] = {}
+    for form, beam in beams.items():
+        error = _error(beam, unit.loads)
+        by = {q: float(error[COMPONENTS.index(q)]) for q in QUANTITIES}
+        found[form] = by | {OF_FORM: float(_error(beam, beams[FULL])[4])}
+    return found
+
+
+def _error(found: Floats, reference: Floats) -> Floats:
+    """(6,) root mean square over that of the reference [%]."""
+    size = np.sqrt((reference**2).mean(axis=0))
+    return np.asarray(100.0 * np.sqrt(((found - reference) ** 2).mean(axis=0)) / size)
