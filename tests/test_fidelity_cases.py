@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fe_drivetrain.adviser import Quantity
@@ -10,25 +11,49 @@ from fe_drivetrain.levels import shaft_level, statics_level
 from fe_drivetrain.scene import library_scene
 
 SCENES = (
+    "housing_on_bedplate",
+    "iea_15mw_main_shaft",
     "main_bearing_bonded",
     "main_bearing_spherical",
-    "two_bearings",
+    "nrel_5mw_main_shaft",
+    "nrel_750kw_high_speed_shaft",
+    "nrel_750kw_low_speed_shaft",
     "short_thick_shaft",
     "stepped_shaft",
+    "three_point_suspension",
+    "two_bearings",
+)
+
+#: What else belongs to the ladder, each with a case of its own.
+OTHERS = (
+    "bearing_joints",
+    "gearbox_housing",
+    "overview",
+    "planet_carrier",
+    "raceway_influence",
+    "uncertain_stiffness",
 )
 
 
 def test_every_scene_has_its_case() -> None:
-    assert {case.name for case in find_cases("fidelity")} == {f"fidelity/{s}" for s in SCENES}
+    found = {case.name for case in find_cases("fidelity")}
+    assert found >= {f"fidelity/{name}" for name in (*SCENES, *OTHERS)}
 
 
-@pytest.mark.parametrize("name", ["main_bearing_spherical", "short_thick_shaft"])
+@pytest.mark.parametrize("name", OTHERS)
+def test_its_checks_pass(tmp_path: Path, name: str) -> None:
+    (case,) = find_cases(f"fidelity/{name}")
+    results = run_case(case, tmp_path / "out", quick=True)
+    assert [v.quantity for v in results.verdicts if not v.passed] == []
+
+
+@pytest.mark.parametrize("name", ["main_bearing_spherical", "housing_on_bedplate"])
 def test_a_level_is_found_that_is_enough(tmp_path: Path, name: str) -> None:
     (case,) = find_cases(f"fidelity/{name}")
     results = run_case(case, tmp_path / "out", quick=True)
     assert results.passed
     rungs = results.figures["rungs"]
-    assert [rung["level"] for rung in rungs] == [0, 1, 1, 2, 4]
+    assert [rung["level"] for rung in rungs] == [0, 1, 1, 2, 3, 4]
     assert rungs[-1]["error"] == 0.0
     assert rungs[1]["seconds"] < rungs[-1]["seconds"]
 
@@ -39,7 +64,8 @@ def test_cheap_levels_of_library_scenes(name: str) -> None:
     scene = library_scene(name)
     beam = shaft_level(scene, 1)
     Quantity("hub.stiffness.uz").check(scene)
+    # of the largest reaction to each load: a gearbox may carry nothing
+    size = np.max([abs(m).max(axis=0) for m in beam.reaction_matrices.values()], axis=0)
     for bearing, matrix in statics_level(scene).reaction_matrices.items():
-        reference = beam.reaction_matrices[bearing]
-        known = abs(matrix) < 1e30  # not NaN
-        assert abs((matrix - reference)[known]).max(initial=0.0) <= 1e-6 * abs(reference).max()
+        difference = (matrix - beam.reaction_matrices[bearing]) / size
+        assert np.nanmax(abs(difference), initial=0.0) <= 1e-6
