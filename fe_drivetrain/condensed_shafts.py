@@ -44,13 +44,13 @@ def ringed_shaft(scene: Scene) -> tuple[Shaft, frozenset[str]]:
     """The shaft with the rings of its bearings turned on it, and of which bearings.
 
     A ring stands on the shaft where its joint is outside of it, at the housing, and where it is of
-    the shaft's material; one that is bonded to the housing belongs to that. A spherical ring
-    becomes a cylinder of the same volume.
+    the shaft's material; one that is bonded to the housing, or on rollers in it, belongs to that. A
+    spherical ring becomes a cylinder of the same volume.
     """
     rings = {
         unit.bearing.name: unit.bearing
         for unit in scene.bearing_units
-        if unit.interface != "bonded"
+        if not unit.ring_on_housing
         and scene.material_of(unit.bearing.name) == scene.material_of("shaft")
     }
     shaft = scene.shaft.cut(end for ring in rings.values() for end in ring.span)
@@ -151,8 +151,10 @@ def meridian_shaft(
     names, positions = reference_points(scene)
     material = scene.material_of("shaft")
     mesh, sides = shaft_meridian(scene, size, order, rings)
-    axial = _harmonic(mesh, material, 0, (0, 3), names, positions, sides)
-    sideways = _harmonic(mesh, material, 1, (1, 5), names, positions, sides)
+    mass = harmonic_mass(mesh, material.density, 0)
+    axial = _harmonic(mesh, material, 0, (0, 3), names, positions, sides, mass)
+    mass = mass * (axisymmetric.turn(1) / axisymmetric.turn(0))
+    sideways = _harmonic(mesh, material, 1, (1, 5), names, positions, sides, mass)
     n = len(names)
     # along z and about y as along y and about z, but the rotation has the other sense
     along_y, along_z = (np.add.outer(6 * np.arange(n), rows).ravel() for rows in ([1, 5], [2, 4]))
@@ -279,8 +281,9 @@ def _harmonic(
     names: tuple[str, ...],
     positions: Floats,
     sides: list[Ints],
+    mass: sparse.csr_array,
 ) -> Condensed:
-    """The share of one harmonic: components ``kept`` of each point."""
+    """The share of one harmonic with its mass matrix: components ``kept`` of each point."""
     x, r = mesh.nodes.T
     columns = []
     for place, where in zip(positions[:, 0], sides, strict=True):
@@ -294,13 +297,8 @@ def _harmonic(
         0: np.concatenate([axisymmetric.freedoms(np.array(ends[:1]), c) for c in (0, 2)]),
         1: axisymmetric.freedoms(np.array(ends), 1),
     }[n]
-
-    def solved(F: Floats) -> Floats:
-        found = axisymmetric.harmonic_response(mesh, material, n, F, (held, np.zeros(len(held))))
-        return np.asarray(found.u.reshape(F.shape))
-
+    solved = axisymmetric.harmonic_solver(mesh, material, n, held)
     rigid = harmonic_motions(n, x - positions[0, 0], r).reshape(2, -1).T
-    mass = harmonic_mass(mesh, material.density, n)
     return condense(names, positions, np.hstack(columns), mass, rigid, solved, kept)
 
 
@@ -308,13 +306,18 @@ def harmonic_mass(mesh: Meridian, density: float, n: int) -> sparse.csr_array:
     """(3 n_nodes, 3 n_nodes) mass matrix in harmonic n [kg]."""
     element = mesh.element
     nodes = mesh.nodes[mesh.cells]
-    J = element.gradients @ nodes[:, None]
-    volume = np.linalg.det(J) * element.weights * (nodes[..., 1] @ element.values.T)
+    (xs, rs), (xt, rt) = np.moveaxis(element.gradients @ nodes[:, None], (2, 3), (0, 1))
+    volume = (xs * rt - rs * xt) * element.weights * (nodes[..., 1] @ element.values.T)
     local = (
         axisymmetric.turn(n) * density * (element.values.T @ (volume[..., None] * element.values))
     )
     rows = np.broadcast_to(mesh.cells[:, :, None], local.shape).ravel()
     columns = np.broadcast_to(mesh.cells[:, None, :], local.shape).ravel()
     size = len(mesh.nodes)
-    scalar = sparse.coo_array((local.ravel(), (rows, columns)), shape=(size, size))
-    return sparse.csr_array(sparse.kron(scalar, sparse.eye_array(3), format="csr"))
+    scalar = sparse.coo_array((local.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+    # the same of each component: every row three times, its columns three apart
+    turned = scalar[np.repeat(np.arange(size), 3)]
+    component = np.repeat(np.tile(np.arange(3), size), np.diff(turned.indptr))
+    return sparse.csr_array(
+        (turned.data, 3 * turned.indices + component, turned.indptr), shape=(3 * size, 3 * size)
+    )

@@ -13,6 +13,7 @@ from fe_drivetrain.axisymmetric import (
     end_stiffness,
     freedoms,
     harmonic_response,
+    harmonic_solver,
     rigid_motions,
     seat_stiffness,
     stiffness_between_ends,
@@ -371,7 +372,7 @@ def test_stiffness_falls_as_elements_gain_freedom_and_settles():
 def test_curved_triangles_and_quadrilaterals_agree():
     """A fillet of a hair's breadth on the step: the stiffness is that of the sharp step.
 
-    Fourth order leaves up to 1e-4 at such sizes.
+    Fourth order leaves up to 1e-4 at such sizes. Triangles, and quadrilaterals with a curved side.
     """
     hair = 1e-4
     shaft = Shaft(
@@ -382,8 +383,82 @@ def test_curved_triangles_and_quadrilaterals_agree():
         ],
     )
     sharp = end_stiffness(STEPPED, STEEL)
-    filleted = end_stiffness(shaft, STEEL, per_fillet=2)
-    np.testing.assert_allclose(filleted.diagonal(), sharp.diagonal(), rtol=1e-4)
+    for per_fillet, corners in ((3, 3), (2, 4)):
+        assert meridian(shaft, per_fillet=per_fillet).element.corners == corners
+        filleted = end_stiffness(shaft, STEEL, per_fillet=per_fillet)
+        np.testing.assert_allclose(filleted.diagonal(), sharp.diagonal(), rtol=1e-4)
+
+
+#: Up and down, at a flange and at a taper; on a thick and on a thin wall.
+ROUNDED = {
+    "down": Shaft(
+        front=0.0,
+        sections=[
+            Section(length=0.8, outer_diameter=0.7, inner_diameter=0.3, fillet=0.05),
+            Section(length=0.7, outer_diameter=0.5, inner_diameter=0.3),
+        ],
+    ),
+    "up, solid": Shaft(
+        front=-1.0,
+        sections=[
+            Section(length=0.8, outer_diameter=0.4, fillet=0.06),
+            Section(length=0.6, outer_diameter=0.7),
+        ],
+    ),
+    "flange and taper": Shaft(
+        front=0.0,
+        flange=Flange(outer_diameter=1.0, thickness=0.1, fillet=0.08),
+        sections=[
+            Section(length=1.0, outer_diameter=0.7, inner_diameter=0.4, outer_diameter_end=0.6)
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ROUNDED)
+def test_filleted_quadrilaterals_are_the_body_of_the_triangles(name):
+    """Volume, and stiffness to what fourth-order triangles leave, 1e-6; the quadrilaterals 1e-5."""
+    shaft = ROUNDED[name]
+    mesh = meridian(shaft, per_fillet=2)
+    assert mesh.element.corners == 4
+    assert volume(mesh) == pytest.approx(exact_volume(shaft), rel=1e-9)
+    few, many = (end_stiffness(shaft, STEEL, per_fillet=n) for n in (2, 6))
+    scale = np.sqrt(many.diagonal())
+    np.testing.assert_allclose(
+        few / np.outer(scale, scale), many / np.outer(scale, scale), atol=1e-5
+    )
+
+
+def test_a_fillet_beside_a_thin_layer_gets_quadrilaterals():
+    """The steps at both ends of the collar are 10 mm from each other in radius."""
+    shaft = Shaft(
+        front=0.0,
+        sections=[
+            Section(length=0.5, outer_diameter=0.2),
+            Section(length=0.3, outer_diameter=0.5, fillet=0.02),
+            Section(length=0.9, outer_diameter=0.22),
+        ],
+    )
+    mesh = meridian(shaft, per_fillet=2)
+    assert mesh.element.corners == 4
+    assert volume(mesh) == pytest.approx(exact_volume(shaft), rel=1e-9)
+    few, many = (
+        end_stiffness(shaft, STEEL, size, order=order, per_fillet=n).diagonal()
+        for size, order, n in ((0.06, 8, 2), (None, 5, 6))
+    )
+    np.testing.assert_allclose(few, many, rtol=1e-4)
+
+
+def test_a_fillet_that_fills_its_step_gets_triangles():
+    """Nothing of the step's face is left for a quadrilateral beside it."""
+    shaft = Shaft(
+        front=0.0,
+        sections=[
+            Section(length=0.5, outer_diameter=0.6, fillet=0.1),
+            Section(length=0.5, outer_diameter=0.4),
+        ],
+    )
+    assert meridian(shaft, per_fillet=2).element.corners == 3
 
 
 def test_stress_on_the_axis_is_the_limit_towards_it():
@@ -399,6 +474,24 @@ def test_stress_on_the_axis_is_the_limit_towards_it():
         u = harmonic_response(mesh, STEEL, n, held=(which, values)).u[..., 0]
         on, beside = stress_at(mesh, STEEL, n, u, np.array([[0.81, 0.0], [0.81, 1e-7]]))
         np.testing.assert_allclose(on, beside, atol=1e-5 * np.abs(on).max())
+
+
+@pytest.mark.parametrize("n", [0, 1, 2])
+def test_a_factor_solves_what_a_response_does(n):
+    """On a solid body, whose axis ties freedoms, with what is held moved and not."""
+    mesh = meridian(FILLETED, 0.3, order=3, layers=1, per_fillet=3)
+    front = mesh.where(lambda x, r: x < 1e-9)
+    held = np.concatenate([freedoms(front, c) for c in range(3)])
+    loads = np.random.default_rng(n).standard_normal((3 * len(mesh.nodes), 2))
+    found = harmonic_solver(mesh, STEEL, n, held)(loads)
+    response = harmonic_response(mesh, STEEL, n, loads, (held, np.zeros(len(held))))
+    np.testing.assert_allclose(
+        found, response.u.reshape(found.shape), atol=1e-12 * np.abs(found).max()
+    )
+    # work of the loads is twice the energy, and the two loads are reciprocal
+    np.testing.assert_allclose(np.einsum("ik,ik->k", loads, found), 2 * response.energy, rtol=1e-9)
+    work = loads.T @ found
+    assert work[0, 1] == pytest.approx(work[1, 0], abs=1e-9 * np.abs(work).max())
 
 
 def test_what_is_free_is_refused():

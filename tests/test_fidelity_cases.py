@@ -28,6 +28,8 @@ SCENES = (
 OTHERS = (
     "bearing_joints",
     "gearbox_housing",
+    "level_two_seats",
+    "level_two_torsion",
     "overview",
     "planet_carrier",
     "raceway_influence",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.errors import InputError
-from fe_drivetrain.fronts import JOIN, condensed, dissection, element_matrices
+from fe_drivetrain.fronts import JOIN, condensed, dissection, element_matrices, factored
 
 
 def grid(across, along):
@@ -61,6 +61,33 @@ def test_condensed_is_the_schur_complement(across, along):
         found / scale / scale[:, None], schur / scale / scale[:, None], atol=1e-9
     )
     np.testing.assert_array_equal(found, found.T)
+
+
+@pytest.mark.parametrize(("across", "along"), [(1, 1), (1, 7), (3, 5), (6, 9)])
+def test_a_factor_solves_the_assembled_system(across, along):
+    """Random laws and shares, one freedom held at zero, two that follow one, one of no element."""
+    rng = np.random.default_rng(across + 10 * along)
+    cells, centres, nodes = grid(across, along)
+    k, s, m = 3, 3, 4
+    grams = rng.standard_normal((len(cells), 5 * m, s * m))
+    grams = np.einsum("eqi,eqj->eij", grams, grams)
+    half = rng.standard_normal((9, k, s))
+    law = np.einsum("aps,aqt->pqst", half, half)
+    target = np.arange(k * nodes).reshape(k, nodes)
+    share = rng.uniform(0.5, 2.0, (k, nodes))
+    target[0, 0], target[1, -1] = -1, target[0, -1]
+    ids, shares = (a[:, cells].transpose(1, 0, 2).reshape(len(cells), -1) for a in (target, share))
+    K = np.zeros((k * nodes + 1, k * nodes + 1))
+    for rows, shared, matrix in zip(ids, shares, element_matrices(grams, law), strict=True):
+        np.add.at(K, (rows[:, None], rows), matrix * np.outer(shared, shared))
+    K = K[:-1, :-1]
+    loads = rng.standard_normal((len(K), 4))
+    found = factored(grams, law, ids, shares, dissection(centres)).solve(loads)
+    used = np.flatnonzero(K.diagonal() > 0)
+    expected = np.zeros_like(loads)
+    expected[used] = np.linalg.solve(K[np.ix_(used, used)], loads[used])
+    assert len(used) == k * nodes - 2
+    np.testing.assert_allclose(found, expected, atol=1e-8 * np.abs(expected).max())
 
 
 def test_what_has_no_stiffness_is_refused():

@@ -6,11 +6,12 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 
-from fe_drivetrain.elasticity import Floats, rigid_motions
+from fe_drivetrain.elasticity import Floats, Ints, rigid_motions
 from fe_drivetrain.hexahedra import shaft_hexahedra
 from fe_drivetrain.materials import MATERIALS, Material
+from fe_drivetrain.mesh import generate
 from fe_drivetrain.statics import solve_solid
 
 STEEL = MATERIALS["steel"]
@@ -33,12 +34,26 @@ SHAFTS = {
             Section(length=1.5, outer_diameter=0.7, inner_diameter=0.2, outer_diameter_end=0.45),
         ),
     ),
+    "filleted": Shaft(
+        front=0.0,
+        sections=(
+            Section(length=0.5, outer_diameter=0.6, inner_diameter=0.25, fillet=0.05),
+            Section(length=0.5, outer_diameter=0.45, inner_diameter=0.25),
+        ),
+    ),
 }
 
 SIZE = 0.5
 """Of the elements of the coarsest mesh [m]."""
 TURN, SOLID_TURN = 8, 4
 """Elements round the axis of the coarsest mesh, bored and solid: a solid core has many more."""
+TETRAHEDRA = 0.15
+"""Size of those of the coarsest mesh of a shaft with fillets [m]; `TURN` round their arcs too."""
+
+
+def has_fillets(shaft: Shaft) -> bool:
+    """Whether it has any: then it is meshed in curved tetrahedra."""
+    return any(piece.fillet > 0 for piece in shaft.pieces)
 
 
 @dataclass(frozen=True)
@@ -55,29 +70,39 @@ def solid_stiffness(shaft: Shaft, material: Material, cut: int) -> Solid:
 
     By the energy of unit motions of the front; the rest follows from equilibrium.
     """
-    turn = TURN if all(piece.inner_diameter > 0 for piece in shaft.pieces) else SOLID_TURN
-    mesh = shaft_hexahedra(shaft, SIZE, 27, elements_per_turn=turn, refinement=cut)
+    points, cells, front, rear = _mesh(shaft, cut)
     start = time.perf_counter()
-    ends = np.concatenate([mesh.front, mesh.rear])
+    ends = np.concatenate([front, rear])
     values = np.zeros((3 * len(ends), 6))
     middle = np.array([shaft.front, 0.0, 0.0])
-    values[: 3 * len(mesh.front)] = rigid_motions(mesh.points[mesh.front], middle)
+    values[: 3 * len(front)] = rigid_motions(points[front], middle)
     which = (3 * ends[:, None] + np.arange(3)).ravel()
     found = solve_solid(
-        mesh.points,
-        mesh.cells,
+        points,
+        cells,
         material.lame,
         [],
-        np.zeros((mesh.points.size, 6)),
+        np.zeros((points.size, 6)),
         (which, values),
     )
-    front = found.u.T @ (found.K @ found.u)
+    K = found.u.T @ (found.K @ found.u)
     # only what the front moves by relative to the rear stores energy
     to_front = np.eye(6)
     to_front[:3] = rigid_motions(middle[None], np.array([shaft.rear, 0.0, 0.0]))
     relative = np.hstack([np.eye(6), -to_front])
-    K = relative.T @ front @ relative
-    return Solid(K, mesh.points.size, time.perf_counter() - start)
+    return Solid(relative.T @ K @ relative, points.size, time.perf_counter() - start)
+
+
+def _mesh(shaft: Shaft, cut: int) -> tuple[Floats, Ints, Ints, Ints]:
+    """Points, cells, and the nodes of the front and the rear."""
+    if has_fillets(shaft):
+        sizes = MeshSizes(shaft=TETRAHEDRA / cut, elements_per_turn=TURN * cut)
+        mesh = generate(shaft, sizes=sizes)
+        front, rear = (mesh.face_nodes(f"shaft.{end}") for end in ("front", "rear"))
+        return mesh.points, mesh.cells, front, rear
+    turn = TURN if all(piece.inner_diameter > 0 for piece in shaft.pieces) else SOLID_TURN
+    found = shaft_hexahedra(shaft, SIZE, 27, elements_per_turn=turn, refinement=cut)
+    return found.points, found.cells, found.front, found.rear
 
 
 def imbalance(K: Floats, shaft: Shaft) -> float:
