@@ -7,7 +7,7 @@ from fe_drivetrain.case import Case, Run
 SCENE = "main_bearing_spherical"
 
 #: Coarsening of the mesh, in full and under --quick.
-SIZES = (1.25, 2.2)
+SIZES = (1.6, 2.2)
 
 #: Tilt stiffness of main bearings [N m/rad], and whose.
 KNOWN = {
