@@ -19,7 +19,7 @@ from fe_drivetrain.incompressible import assemble_unlocked
 from fe_drivetrain.joints import in_series, joint_stiffness, roller_joint
 from fe_drivetrain.mesh_cache import cached_mesh
 from fe_drivetrain.reduction import reduce
-from fe_drivetrain.scene import Coupling, Scene
+from fe_drivetrain.scene import Coupling, Scene, as_numbers
 from fe_drivetrain.solvers import solve
 
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
@@ -119,8 +119,7 @@ def unit_stiffness(
     if unit.bedplate is not None:
         # the base moves as a rigid body, so this is exact
         lever = wrench_transport(np.array([0.0, 0.0, unit.housing.centre_height])).T
-        give = [0.0 if k == "rigid" else 1.0 / float(k) for k in unit.bedplate]
-        softness = lever @ np.diag(give) @ lever.T
+        softness = lever @ np.diag(1.0 / as_numbers(unit.bedplate)) @ lever.T
         stiffness = np.linalg.solve(np.eye(6) + stiffness @ softness, stiffness)
     stiffness = 0.5 * (stiffness + stiffness.T)
     return stiffness if unit.rollers is not None else in_series(stiffness, joint_stiffness(unit))
@@ -145,7 +144,7 @@ def scene_supports(scene: Scene, housings: Mapping[str, Floats]) -> dict[str, Fl
         (6, 6) of each bearing unit by name, see `unit_stiffness`.
     """
     supports = {unit.bearing.name: housings[unit.bearing.name] for unit in scene.bearing_units}
-    gearbox = np.array([np.inf if k == "rigid" else float(k) for k in scene.gearbox.stiffness])
+    gearbox = as_numbers(scene.gearbox.stiffness)
     if gearbox.any():
         supports["gearbox"] = np.diag(gearbox)
     return supports

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from rich.progress import TaskID
 
-    from fe_drivetrain.case import Case
+    from fe_drivetrain.case import Case, Run
     from fe_drivetrain.component import Component
     from fe_drivetrain.parallel import Report
     from fe_drivetrain.results import Results, Verdict
@@ -530,23 +530,17 @@ def _advise(
         found = _scene_of(scene, parse_settings(set_ or ()))
         from fe_drivetrain.advice_page import advised
         from fe_drivetrain.adviser import Quantity
-        from fe_drivetrain.case import Case, run_case
 
-        name = Path(scene).stem
         asked = Quantity(quantity, _parse_load(load or ()))
         asked.check(found)
         share = _parse_share(tolerance)
-        case = Case(
-            name=f"advise/{name}",
-            title=f"{found.title}: which level {quantity} needs",
-            source=f"the scene {name}",
-            run=lambda run: advised(case, run, found, asked, share, to_the_top),
+        return _run_on_scene(
+            "advise",
+            scene,
+            f"{found.title}: which level {quantity} needs",
+            out,
+            lambda case, run: advised(case, run, found, asked, share, to_the_top),
         )
-        folder = Path("reports", "advise", name) if out is None else out
-        with _progress() as report:
-            results = run_case(case, folder.resolve(), report=report)
-        _write(sys.stdout, _outcome(results, folder / "report.html"))
-        return PASSED if results.passed else FAILED
 
     with _stopped_by_terminate():
         raise typer.Exit(_guarded(work))
@@ -616,29 +610,47 @@ def _uncertainty(
     def work() -> int:
         hold_threads()
         found = _scene_of(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.case import Case, run_case
         from fe_drivetrain.uncertainty_page import uncertain
 
-        name = Path(scene).stem
         factors = _parse_load(load or ())
         share = _parse_share(tolerance)
         shares = 2 ** (samples.bit_length() - 1) if sobol else 0
-        case = Case(
-            name=f"uncertainty/{name}",
-            title=f"{found.title}: how certain the results are",
-            source=f"the scene {name}",
-            run=lambda run: uncertain(
+        return _run_on_scene(
+            "uncertainty",
+            scene,
+            f"{found.title}: how certain the results are",
+            out,
+            lambda case, run: uncertain(
                 case, run, found, quantity or (), factors, share, level, samples, seed, shares
             ),
         )
-        folder = Path("reports", "uncertainty", name) if out is None else out
-        with _progress() as report:
-            results = run_case(case, folder.resolve(), report=report)
-        _write(sys.stdout, _outcome(results, folder / "report.html"))
-        return PASSED if results.passed else FAILED
 
     with _stopped_by_terminate():
         raise typer.Exit(_guarded(work))
+
+
+def _run_on_scene(
+    command: str,
+    scene: str,
+    title: str,
+    out: Path | None,
+    study: Callable[[Case, Run], Results],
+) -> int:
+    """Run what a command makes of a scene as a case of its own, and say how it ended."""
+    from fe_drivetrain.case import Case, run_case
+
+    name = Path(scene).stem
+    case = Case(
+        name=f"{command}/{name}",
+        title=title,
+        source=f"the scene {name}",
+        run=lambda run: study(case, run),
+    )
+    folder = Path("reports", command, name) if out is None else out
+    with _progress() as report:
+        results = run_case(case, folder.resolve(), report=report)
+    _write(sys.stdout, _outcome(results, folder / "report.html"))
+    return PASSED if results.passed else FAILED
 
 
 def _component_of(scene: str, changes: Mapping[str, Any]) -> Component | None:

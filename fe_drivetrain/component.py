@@ -12,16 +12,17 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
 from fe_drivetrain.materials import MATERIALS, Material
-from fe_drivetrain.plain_yaml import no_truth_value, shown
 from fe_drivetrain.scene import (
     COMPONENTS,
     Coupling,
+    Keys,
+    check_material,
     file_text,
     library_text,
     parse_mapping,
@@ -51,25 +52,19 @@ class Attachment(NamedTuple):
     coupling: Coupling
 
 
-class _Keys(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    _truth = field_validator("*", mode="before")(no_truth_value)
-
-
-class Reference(_Keys):
+class Reference(Keys):
     """How a reference point holds its face."""
 
     coupling: Coupling = "averaged"
 
 
-class RigidReference(_Keys):
+class RigidReference(Keys):
     """The same, of a face that a stiff neighbour keeps in shape."""
 
     coupling: Coupling = "rigid"
 
 
-class Bushings(_Keys):
+class Bushings(Keys):
     """The elastic bushing in each eye, to ground, and how its outer sleeve holds the eye.
 
     Stiffness is along x, y, z [N/m] and about them [N m/rad].
@@ -81,7 +76,7 @@ class Bushings(_Keys):
     coupling: Coupling = "rigid"
 
 
-class HousingComponent(_Keys):
+class HousingComponent(Keys):
     """A gearbox housing's section on two bushings, loaded at the middle of its ring."""
 
     title: str
@@ -94,7 +89,7 @@ class HousingComponent(_Keys):
 
     @model_validator(mode="after")
     def _known_material(self) -> HousingComponent:
-        _check_material(self.gearbox_housing.material, self.materials)
+        check_material(self.gearbox_housing.material, self.materials)
         return self
 
     @property
@@ -125,7 +120,7 @@ class HousingComponent(_Keys):
         return {"left": given, "right": given}
 
 
-class CarrierComponent(_Keys):
+class CarrierComponent(Keys):
     """A planet carrier, its flange held, loaded at the middle of each pin."""
 
     title: str
@@ -137,7 +132,7 @@ class CarrierComponent(_Keys):
 
     @model_validator(mode="after")
     def _known_material(self) -> CarrierComponent:
-        _check_material(self.planet_carrier.material, self.materials)
+        check_material(self.planet_carrier.material, self.materials)
         return self
 
     @property
@@ -172,15 +167,6 @@ _KINDS: dict[str, type[HousingComponent] | type[CarrierComponent]] = {
     "gearbox_housing": HousingComponent,
     "planet_carrier": CarrierComponent,
 }
-
-
-def _check_material(name: str, own: Mapping[str, Material]) -> None:
-    known = {**MATERIALS, **own}
-    if name not in known:
-        raise ValueError(
-            f"material {shown(name)} is unknown: use one of {', '.join(known)}, or define it "
-            "under 'materials'"
-        )
 
 
 def material_of(component: Component) -> Material:

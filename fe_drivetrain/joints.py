@@ -19,7 +19,7 @@ from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.facets import MEANS, face_weights, facet_points
 from fe_drivetrain.interfaces import Constraint, ReferencePoint
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.scene import SPHERICAL_JOINTS, BearingUnit, Rollers
+from fe_drivetrain.scene import SPHERICAL_JOINTS, BearingUnit, Rollers, as_numbers
 
 SECTORS = 8
 """A mean over a face is the sum of its shares over so many sectors, else each node met each other.
@@ -64,7 +64,7 @@ def spring_matrix(unit: BearingUnit) -> Floats:
     given = unit.stiffness or ()
     if any(isinstance(k, tuple) for k in given):
         return np.array(given, dtype=float)
-    return np.diag([np.inf if k == "rigid" else k for k in given]).astype(float)
+    return np.diag(as_numbers(k for k in given if not isinstance(k, tuple)))
 
 
 def in_series(first: Floats, second: Floats) -> Floats:

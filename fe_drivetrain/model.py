@@ -18,7 +18,7 @@ from fe_drivetrain.mechanisms import refuse_mechanisms, warn_of_weak_restraints
 from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.mesh_cache import cached_mesh
 from fe_drivetrain.mesh_checks import refuse_unsound
-from fe_drivetrain.scene import BearingUnit, Scene, Springs
+from fe_drivetrain.scene import BearingUnit, Scene, Springs, as_numbers
 
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
@@ -233,11 +233,12 @@ def _stand(
     held: dict[str, Sequence[int]],
 ) -> None:
     """Put a reference point on the ground."""
-    rigid = [c for c, k in enumerate(stiffness) if k == "rigid"]
+    numbers = as_numbers(stiffness)
+    rigid = np.flatnonzero(np.isinf(numbers)).tolist()
     if rigid:
         constraints.append(interfaces.held(f"{point.name} reaction", point, rigid))
         held[point.name] = rigid
-    k = np.diag([0.0 if k == "rigid" else float(k) for k in stiffness])
+    k = np.diag(np.where(np.isinf(numbers), 0.0, numbers))
     if k.any():
         springs.append((point, k))
 

@@ -1,12 +1,13 @@
 """A scene: parts, materials, interfaces, supports and mesh sizes; typed, validated, from YAML."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 import yaml
+from numpy.typing import NDArray
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -39,7 +40,9 @@ _STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
-class _Part(BaseModel):
+class Keys(BaseModel):
+    """A mapping of a scene file: known keys only, and no truth values where numbers stand."""
+
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     _truth = field_validator("*", mode="before")(no_truth_value)
@@ -75,7 +78,34 @@ _Spring = Annotated[
 ]
 
 
-class RollerRow(_Part):
+def as_numbers(springs: Iterable[float | Literal["rigid"]]) -> NDArray[np.float64]:
+    """Springs as numbers, inf where they are "rigid"."""
+    return np.array([np.inf if k == "rigid" else k for k in springs], dtype=float)
+
+
+def check_material(name: str, own: Mapping[str, Material], of: str = "") -> None:
+    """Refuse a material that neither the program nor a scene has.
+
+    Parameters
+    ----------
+    name, own
+        Of the material, and those that the scene defines.
+    of
+        The part, where there are several, as in " of shaft".
+
+    Raises
+    ------
+    ValueError
+    """
+    known = {**MATERIALS, **own}
+    if name not in known:
+        raise ValueError(
+            f"material {shown(name)}{of} is unknown: use one of {', '.join(known)}, or define it "
+            "under 'materials'"
+        )
+
+
+class RollerRow(Keys):
     """One row of rollers: x from the bearing's centre [m], and its contact angle [deg].
 
     The angle leans the line of contact from the radius towards +x on its way out. That of a
@@ -86,7 +116,7 @@ class RollerRow(_Part):
     contact_angle: float = Field(default=0.0, gt=-90, lt=90)
 
 
-class Rollers(_Part):
+class Rollers(Keys):
     """Rollers as springs along their lines of contact, which push and pull."""
 
     count: int = Field(ge=3, le=1000, description="rollers in a row")
@@ -101,7 +131,7 @@ class Rollers(_Part):
         return self
 
 
-class BearingUnit(_Part):
+class BearingUnit(Keys):
     """A bearing, its housing, and the interface between the two.
 
     What stands on the ground is the housing's base, or a bedplate that gives, as springs at the
@@ -181,13 +211,13 @@ def _check_rows(bearing: Bearing, rollers: Rollers) -> None:
             )
 
 
-class Hub(_Part):
+class Hub(Keys):
     """The reference point of the hub loads, at the centre of the shaft's front face."""
 
     coupling: Coupling = "averaged"
 
 
-class Gearbox(_Part):
+class Gearbox(Keys):
     """Springs to ground and a weight, at the centre of the shaft's rear face."""
 
     stiffness: Springs
@@ -200,7 +230,7 @@ class Gearbox(_Part):
         return [c for c, k in enumerate(self.stiffness) if k == "rigid"]
 
 
-class Spread(_Part):
+class Spread(Keys):
     """How certain a value is, relative to it: half the width of an even distribution, the standard
     deviation of a normal one, or the coefficient of variation of a lognormal one about its median.
     """
@@ -219,7 +249,7 @@ class Spread(_Part):
         return self
 
 
-class Scene(_Part):
+class Scene(Keys):
     """A drivetrain: one shaft on any number of bearing units, with a hub and a gearbox."""
 
     title: str
@@ -246,13 +276,8 @@ class Scene(_Part):
                     f"spherical-joint interface {unit.interface!r}: make its kind 'spherical' or "
                     "its interface 'bonded', 'spring' or 'rollers'"
                 )
-        known = {**MATERIALS, **self.materials}
         for part, material in used:
-            if material not in known:
-                raise ValueError(
-                    f"material {shown(material)} of {part} is unknown: use one of "
-                    f"{', '.join(known)}, or define it under 'materials'"
-                )
+            check_material(material, self.materials, f" of {part}")
         return self
 
     def material_of(self, part: str) -> Material:

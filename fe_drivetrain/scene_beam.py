@@ -3,14 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.beams import MainBearingBeam
 from fe_drivetrain.errors import InputError
 from fe_drivetrain.frame import Beam, Support
 from fe_drivetrain.geometry import Bearing
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.scene import Scene, as_numbers
 from fe_drivetrain.sections import BeamSection
 
 
@@ -56,8 +55,8 @@ def beam_of_scene(
         Support(unit.bearing.name, unit.bearing.x, bearing_stiffness[unit.bearing.name])
         for unit in scene.bearing_units
     ]
-    gearbox = [np.inf if k == "rigid" else float(k) for k in scene.gearbox.stiffness]
-    if any(gearbox):
+    gearbox = as_numbers(scene.gearbox.stiffness)
+    if gearbox.any():
         supports.append(Support("gearbox", shaft.rear, gearbox))
     return Beam(
         sections=sections,
@@ -124,7 +123,7 @@ def main_bearing_beam(scene: Scene, tilt: float = 0.0, yaw: float = 0.0) -> Main
     else:
         x = scene.bearing_units[0].bearing.x
         section = shaft.sections[0]
-        k1, k2 = (np.inf if k == "rigid" else float(k) for k in (radial[0], axial))
+        k1, k2 = as_numbers([radial[0], axial]).tolist()
         return MainBearingBeam(
             overhang=x - shaft.front,
             span=shaft.rear - x,
