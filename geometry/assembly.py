@@ -9,7 +9,7 @@ from itertools import combinations
 import gmsh
 from pydantic import Field
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 from .bearing import Bearing
 from .housing import Housing
@@ -97,7 +97,7 @@ def build(
     """Build the assembly in the open gmsh model, with physical groups and element sizes.
 
     All parts are made conforming, joints included: the nodes of a joint that is not bonded are
-    doubled when the mesh is read (`fe_drivetrain.mesh`), so that the two sides match exactly.
+    doubled when the mesh is read (`fe_drivetrain.mesh.mesh`), so that the two sides match exactly.
 
     Parameters
     ----------

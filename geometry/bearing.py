@@ -8,7 +8,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 from .part import LENGTH_TOLERANCE, Part, dimension
 from .shaft import Segment, revolve, split

@@ -9,7 +9,7 @@ from itertools import product
 import gmsh
 from pydantic import Field
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 from .assembly import CAD_TOLERANCE, GROWTH, MOST_ELEMENTS
 from .part import Part, dimension

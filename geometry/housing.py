@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple, Self
 import gmsh
 from pydantic import Field, model_validator
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 from .bearing import Bearing
 from .part import LENGTH_TOLERANCE, Part, dimension

@@ -10,7 +10,7 @@ import gmsh
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 from .part import LENGTH_TOLERANCE
 from .session import gmsh_session

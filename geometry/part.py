@@ -15,8 +15,8 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.plain_yaml import no_truth_value, shown
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 
 LENGTH_TOLERANCE = 1e-9
 """Two lengths closer than this (m) are the same length."""

@@ -8,7 +8,7 @@ from typing import Literal, Self
 import gmsh
 from pydantic import Field, model_validator
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 from .assembly import refuse_millimetres
 from .body import (

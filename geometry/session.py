@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import gmsh
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Self
 import gmsh
 from pydantic import Field, field_validator, model_validator
 
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
 
 from .part import LENGTH_TOLERANCE, Part, dimension
 

@@ -8,11 +8,11 @@ import hypothesis
 import numpy as np
 import pytest
 
-from fe_drivetrain import cache, parallel
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import Model, build_model, mesh_scene
-from fe_drivetrain.response import Response, unit_load_response
-from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.common import cache, processes
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.response.model import Model, build_model, mesh_scene
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
+from fe_drivetrain.scene.scene import Scene, change_scene, library_scene
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.
@@ -42,8 +42,8 @@ def coarse_scene(kind: str, **changes: object) -> Scene:
 def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """A cache for the tests alone, and one process; tests of either set their own."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(cache.VARIABLE, str(tmp_path_factory.mktemp("cache")))
-        patch.setenv(parallel.VARIABLE, "1")
+        patch.setenv(cache.CACHE_VARIABLE, str(tmp_path_factory.mktemp("cache")))
+        patch.setenv(processes.CORES_VARIABLE, "1")
         yield
 
 

@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
-from fe_drivetrain.geometry import Flange, Section, Shaft
-from fe_drivetrain.geometry.meridian import outline
 from skfem import Basis, BilinearForm, ElementQuad2, ElementVector, MeshQuad
 
-from fe_drivetrain.axisymmetric import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.geometry import Flange, Section, Shaft
+from fe_drivetrain.geometry.meridian import outline
+from fe_drivetrain.mesh.hexahedra import shaft_hexahedra
+from fe_drivetrain.operator.elasticity import rigid_motions as solid_motions
+from fe_drivetrain.revolution.harmonics import (
     COMPONENTS,
     along_sides,
     element_matrices,
@@ -22,12 +25,9 @@ from fe_drivetrain.axisymmetric import (
     surface_loads,
     turn,
 )
-from fe_drivetrain.elasticity import rigid_motions as solid_motions
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.hexahedra import shaft_hexahedra
-from fe_drivetrain.materials import MATERIALS, Material
-from fe_drivetrain.meridian import meridian
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.revolution.meridian_mesh import meridian
+from fe_drivetrain.scene.materials import MATERIALS, Material
+from fe_drivetrain.solve.solid import solve_solid
 
 STEEL = MATERIALS["steel"]
 CORK = Material(youngs_modulus=1e10, poisson_ratio=0.0, density=1.0)

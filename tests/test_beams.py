@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_drivetrain.beams import (
+from fe_drivetrain.beam.closed_forms import (
     MainBearingBeam,
     frame_model,
     main_bearing_frame,
@@ -12,8 +12,8 @@ from fe_drivetrain.beams import (
     torsional_spring_model,
     torsional_spring_reaction,
 )
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.frame import solve
+from fe_drivetrain.beam.shaft import solve
+from fe_drivetrain.common.errors import InputError
 
 inf = np.inf
 TABLE = MainBearingBeam()

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.blocks import FACES, brick, joined
-from fe_drivetrain.elasticity import assemble, rigid_motions
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.facets import facet_points, local_facets
-from fe_drivetrain.loads import body_loads, pressure, traction_loads
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.blocks import FACES, brick, joined
+from fe_drivetrain.mesh.facets import facet_points, local_facets
+from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.operator.loads import body_loads, pressure, traction_loads
 
 KINDS = (4, 10, 8, 20, 27)
 LAME = (1.0, 0.7)

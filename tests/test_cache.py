@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from conftest import COARSE, coarse_scene
 
-from fe_drivetrain import cache as cache_module
-from fe_drivetrain import mesh_cache
-from fe_drivetrain.cache import VARIABLE, Cache, key, switched_off, user_cache
-from fe_drivetrain.case import Case, Run, find_cases, run_case
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import build_model, mesh_scene
-from fe_drivetrain.response import unit_load_response
-from fe_drivetrain.results import Environment, Results, read_results
-from fe_drivetrain.scene import change_scene
+from fe_drivetrain.common import cache as cache_module
+from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache, key, switched_off, user_cache
+from fe_drivetrain.mesh import cached
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.report.results import Environment, Results, read_results
+from fe_drivetrain.response.model import build_model, mesh_scene
+from fe_drivetrain.response.unit_loads import unit_load_response
+from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.suite.case import Case, Run, find_cases, run_case
 
 CONTENT = {"a": 0.1, "b": [1, "x", None]}
 
@@ -35,7 +35,7 @@ def arrays(seed: int = 0, n: int = 1000) -> dict[str, Any]:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A user's cache of its own."""
-    monkeypatch.setenv(VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
     return tmp_path / "cache"
 
 
@@ -43,13 +43,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def meshings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """One entry for each time that gmsh meshes."""
     made: list[int] = []
-    generate = mesh_cache.generate
+    generate = cached.generate
 
     def counted(*arguments: Any) -> Mesh:
         made.append(len(made))
         return generate(*arguments)
 
-    monkeypatch.setattr(mesh_cache, "generate", counted)
+    monkeypatch.setattr(cached, "generate", counted)
     return made
 
 
@@ -173,7 +173,7 @@ def test_beyond_the_limit_what_was_used_longest_ago_is_dropped(tmp_path: Path) -
 def test_the_variable_moves_the_cache_or_switches_it_off(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     assert user_cache().folder == tmp_path
     with switched_off():
         assert user_cache().folder is None
@@ -182,15 +182,15 @@ def test_the_variable_moves_the_cache_or_switches_it_off(
     assert user_cache().folder == tmp_path
     assert list(tmp_path.iterdir()) == []
     for word in ("off", "OFF", "0"):
-        monkeypatch.setenv(VARIABLE, word)
+        monkeypatch.setenv(CACHE_VARIABLE, word)
         assert user_cache().folder is None
-    monkeypatch.delenv(VARIABLE)
+    monkeypatch.delenv(CACHE_VARIABLE)
     folder = user_cache().folder
     assert folder is not None
     assert folder.is_absolute()
     with switched_off():
         pass
-    assert VARIABLE not in os.environ
+    assert CACHE_VARIABLE not in os.environ
 
 
 # --- meshes --------------------------------------------------------------------------------------
@@ -264,7 +264,7 @@ def test_what_a_mesh_depends_on_makes_another(
     """Only the key is looked at, so that nothing needs to be meshed."""
     asked: list[str] = []
     monkeypatch.setattr(Cache, "load", lambda self, kind, content: asked.append(key(content)))
-    monkeypatch.setattr(mesh_cache, "generate", lambda *arguments: _mesh())
+    monkeypatch.setattr(cached, "generate", lambda *arguments: _mesh())
     scene = coarse_scene("spherical")
     mesh_scene(scene)
     mesh_scene(change_scene(scene, change))
@@ -282,9 +282,9 @@ def test_another_mesher_or_other_code_meshes_anew(
 ) -> None:
     scene = coarse_scene("bonded")
     mesh_scene(scene)
-    made_by = mesh_cache._made_by()
+    made_by = cached._made_by()
     for name in ("gmsh", "code"):
-        monkeypatch.setattr(mesh_cache, "_made_by", lambda n=name: {**made_by, n: "another"})
+        monkeypatch.setattr(cached, "_made_by", lambda n=name: {**made_by, n: "another"})
         assert not mesh_scene(scene).kept
     assert len(meshings) == 3
 

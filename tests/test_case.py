@@ -5,11 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from fe_drivetrain import case as case_module
-from fe_drivetrain import files
-from fe_drivetrain.case import Case, Run, find_cases, run_case
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.results import (
+from fe_drivetrain.common import files
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.results import (
     AssumptionRow,
     Chart,
     Environment,
@@ -21,6 +19,8 @@ from fe_drivetrain.results import (
     judge,
     read_results,
 )
+from fe_drivetrain.suite import case as case_module
+from fe_drivetrain.suite.case import Case, Run, find_cases, run_case
 
 
 def results_of(run: Run, *items: Text | Table | Chart | Image, computed: float = 1.01) -> Results:

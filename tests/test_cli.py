@@ -13,11 +13,11 @@ from typing import Any
 
 import pytest
 
-from fe_drivetrain import case as case_module
-from fe_drivetrain import cli
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.results import Environment, Results, judge, read_results
+from fe_drivetrain.commands import app
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.results import Environment, Results, judge, read_results
+from fe_drivetrain.suite import case as case_module
+from fe_drivetrain.suite.case import Case, Run
 
 # a script of a case, as under cases/, that counts to one or does what --set work says
 SCRIPT = """
@@ -71,7 +71,7 @@ def invoke(
     """Run the command in an empty folder, with one case that does the given work."""
     monkeypatch.chdir(tmp_path)
 
-    def run(*arguments: str, work: Any = count, main: Callable[[], None] = cli.main) -> Result:
+    def run(*arguments: str, work: Any = count, main: Callable[[], None] = app.main) -> Result:
         cases = {
             "group/tiny": Case("group/tiny", "A tiny case", "nobody", work),
             "group/other": Case("group/other", "Another [bold] case", "nobody", work),
@@ -160,12 +160,12 @@ def test_a_script_of_a_case_has_the_same_options(
     invoke: Callable[..., Result], tmp_path: Path
 ) -> None:
     case = Case("group/tiny", "A tiny case", "nobody", count)
-    status, out, _ = invoke("--out", "x", "--set", "k=1", main=lambda: cli.main_of_case(case))
+    status, out, _ = invoke("--out", "x", "--set", "k=1", main=lambda: app.main_of_case(case))
     assert status == 0
     assert out.endswith("x/report.html\n")
     assert (tmp_path / "x/report.html").is_file()
-    assert invoke("--set", "k", main=lambda: cli.main_of_case(case))[0] == 2
-    assert "A tiny case" in invoke("--help", main=lambda: cli.main_of_case(case))[1]
+    assert invoke("--set", "k", main=lambda: app.main_of_case(case))[0] == 2
+    assert "A tiny case" in invoke("--help", main=lambda: app.main_of_case(case))[1]
 
 
 @pytest.mark.parametrize(
@@ -247,7 +247,7 @@ def test_our_own_faults_are_not_blamed_on_the_user(
     case = Case("group/tiny", "t", "s", work)
     monkeypatch.setattr(sys, "argv", ["tiny.py", "--out", str(tmp_path / "out")])
     with pytest.raises(FileNotFoundError):
-        cli.main_of_case(case)
+        app.main_of_case(case)
 
 
 def test_ctrl_c_exits_130_and_keeps_the_earlier_results(
@@ -404,13 +404,17 @@ def test_version_is_the_installed_one(invoke: Callable[..., Result]) -> None:
 @pytest.mark.parametrize("argument", ["--help", "--version", "list"])
 def test_help_and_list_import_nothing_heavy(argument: str) -> None:
     heavy = ["numpy", "scipy", "gmsh", "skfem", "numba", "pyvista", "plotly", "jinja2", "PIL"]
-    heavy += ["fe_drivetrain.results", "fe_drivetrain.scene", "fe_drivetrain.mesh"]
+    heavy += [
+        "fe_drivetrain.report.results",
+        "fe_drivetrain.scene.scene",
+        "fe_drivetrain.mesh.mesh",
+    ]
     if argument != "list":
         heavy.append("pydantic")  # which typer uses itself to run a command
     program = (
         "import sys\n"
         f"sys.argv = ['fe-drivetrain', {argument!r}]\n"
-        "from fe_drivetrain.cli import main\n"
+        "from fe_drivetrain.commands.app import main\n"
         "try:\n"
         "    main()\n"
         "finally:\n"
@@ -443,13 +447,13 @@ def test_help_and_list_import_nothing_heavy(argument: str) -> None:
     ],
 )
 def test_settings_are_numbers_words_and_lists(text: str, value: object) -> None:
-    parsed = cli.parse_settings([f"key.0.name={text}"])
+    parsed = app.parse_settings([f"key.0.name={text}"])
     assert parsed == {"key.0.name": value}
     assert isinstance(parsed["key.0.name"], type(value))
 
 
 def test_a_step_that_counts_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    with cli._plain_steps() as report:
+    with app._plain_steps() as report:
         report("part")
         report("loads (1 of 2)")
         report("loads (2 of 2)")
@@ -459,7 +463,7 @@ def test_a_step_that_counts_is_one_line(capsys: pytest.CaptureFixture[str]) -> N
 
 
 def test_steps_side_by_side_are_whole_lines(capsys: pytest.CaptureFixture[str]) -> None:
-    with cli._plain_steps() as report:
+    with app._plain_steps() as report:
         report("before")
         report("")
         report("one (1 of 2)", 1)
@@ -484,7 +488,7 @@ def test_steps_side_by_side_are_whole_lines(capsys: pytest.CaptureFixture[str]) 
 
 def test_a_line_that_is_open_is_not_written_into(capsys: pytest.CaptureFixture[str]) -> None:
     def stopped() -> None:
-        with cli._plain_steps() as report:
+        with app._plain_steps() as report:
             report("here")
             report("there", 1)
             report("", 1)
@@ -508,7 +512,7 @@ def test_on_a_terminal_steps_end_as_lines(monkeypatch: pytest.MonkeyPatch) -> No
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setenv("TERM", "xterm")
-    with cli._progress() as report:
+    with app._progress() as report:
         report("part [bold]")
         report("loads (1 of 2)")
         report("loads (2 of 2)")
@@ -522,7 +526,7 @@ def test_on_a_terminal_steps_end_as_lines(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_a_file_pattern_is_a_word() -> None:
     """To YAML a leading asterisk is an alias; to a user it is all files."""
-    assert cli.parse_settings(["loads=*.csv", "mesh.shaft=1e-1"]) == {
+    assert app.parse_settings(["loads=*.csv", "mesh.shaft=1e-1"]) == {
         "loads": "*.csv",
         "mesh.shaft": 0.1,
     }
@@ -531,7 +535,7 @@ def test_a_file_pattern_is_a_word() -> None:
 def exported(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     monkeypatch.setattr("sys.argv", ["fe-drivetrain", "export", *arguments])
     with pytest.raises(SystemExit) as end:
-        cli.main()
+        app.main()
     return int(end.value.code or 0)
 
 
@@ -541,7 +545,7 @@ CONDENSED = ("main_bearing_bonded", "--out", "a", "--format", "csv")
 def test_export_lists_every_format(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from fe_drivetrain.export import FORMATS
+    from fe_drivetrain.export.files import FORMATS
 
     assert exported(monkeypatch, "--list") == 0
     head, *lines = capsys.readouterr().out.splitlines()
@@ -562,7 +566,7 @@ def test_export_condenses_and_writes(
     from conftest import coarse_scene
 
     from fe_drivetrain import export
-    from fe_drivetrain.scene_export import superelement_of
+    from fe_drivetrain.export.scene_export import superelement_of
 
     scene = coarse_scene("bonded")
     file = tmp_path / "mine.yaml"
@@ -590,8 +594,8 @@ def test_the_exported_drivetrain_stands_on_springs_within_its_band() -> None:
     import numpy as np
     from conftest import coarse_scene
 
-    from fe_drivetrain.levels import housing_springs, shaft_level
-    from fe_drivetrain.scene_export import superelement_of
+    from fe_drivetrain.export.scene_export import superelement_of
+    from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level
 
     scene = coarse_scene("bonded")
     element = superelement_of(scene, "drivetrain", level=1)

@@ -3,8 +3,8 @@ import warnings
 import numpy as np
 import pytest
 
-from fe_drivetrain import compare as cp
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.compare import statistics as cp
 
 NAMES, UNITS = ("Fy", "Fz", "My", "Mz"), ("N", "N", "N m", "N m")
 

@@ -5,16 +5,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from conftest import coarse_scene
+
+from fe_drivetrain.beam import closed_forms
+from fe_drivetrain.beam.of_scene import main_bearing_beam
 from fe_drivetrain.cases.main_bearing.comparison import Linear
 from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.mesh.mesh import quality
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import GRAVITY, Response
 
-from fe_drivetrain import beams
-from fe_drivetrain.mesh import quality
-from fe_drivetrain.model import Model
-from fe_drivetrain.response import GRAVITY, Response
-from fe_drivetrain.scene_beam import main_bearing_beam
-
-Beam = beams.MainBearingBeam
+Beam = closed_forms.MainBearingBeam
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def solved(bonded_model: Model, bonded_response: Response) -> Solved:
     return Solved(bonded_model.scene, bonded_model, bonded_response, quality(bonded_model.mesh))
 
 
-@pytest.mark.parametrize("model", [beams.pinned_model, beams.torsional_spring_model])
+@pytest.mark.parametrize("model", [closed_forms.pinned_model, closed_forms.torsional_spring_model])
 def test_a_beam_is_its_closed_form(
     model: Callable[[np.ndarray, Beam], np.ndarray], loads: np.ndarray
 ) -> None:

@@ -5,29 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
 from typer.testing import CliRunner
 
-from fe_drivetrain import cli, export
-from fe_drivetrain import mesh as meshes
-from fe_drivetrain.component import (
-    Bushings,
-    CarrierComponent,
-    HousingComponent,
-    change_component,
-    is_component,
-    library_component,
-    parse_component,
-    read_component,
-)
-from fe_drivetrain.component_solid import component_mesh
-from fe_drivetrain.condensation import point_motions, wrench_transport
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.frame import Beam, shaft_stiffness
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.sections import BeamSection
-from fe_drivetrain.spatial_frame import (
+from fe_drivetrain import export
+from fe_drivetrain.beam.frame import (
     CrossSection,
     Follower,
     Member,
@@ -39,7 +20,27 @@ from fe_drivetrain.spatial_frame import (
     round_section,
     sector_centroid,
 )
-from fe_drivetrain.symmetric_mesh import meshed, mirror, repeated, turns
+from fe_drivetrain.beam.sections import BeamSection
+from fe_drivetrain.beam.shaft import Beam, shaft_stiffness
+from fe_drivetrain.commands import app
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.component_solid import component_mesh
+from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
+from fe_drivetrain.mesh import mesh as meshes
+from fe_drivetrain.mesh.symmetry import meshed, mirror, repeated, turns
+from fe_drivetrain.scene.component import (
+    Bushings,
+    CarrierComponent,
+    HousingComponent,
+    change_component,
+    is_component,
+    library_component,
+    parse_component,
+    read_component,
+)
+from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.scene.scene import library_scene
+from fe_drivetrain.solve.condensation import point_motions, wrench_transport
 
 ROOT = Path(__file__).parents[1]
 DOC = (ROOT / "docs" / "component.md").read_text(encoding="utf-8")
@@ -263,7 +264,7 @@ def test_a_follower_of_one_rigid_body_moves_with_it() -> None:
 
 
 def _export(*arguments: str) -> tuple[int, str]:
-    outcome = CliRunner().invoke(cli._app, ["export", *arguments])
+    outcome = CliRunner().invoke(app._app, ["export", *arguments])
     return outcome.exit_code, outcome.output
 
 
@@ -304,18 +305,18 @@ def test_a_component_s_mesh_is_written(tmp_path: Path) -> None:
 def test_what_cannot_be_exported_is_said(tmp_path: Path, options: list[str], message: str) -> None:
     out = tmp_path / "c.json"
     status, said = _export("planet_carrier", "--format", "json", "--out", str(out), *options)
-    assert status == cli.MISTAKE
+    assert status == app.MISTAKE
     assert message in said
     assert not list(tmp_path.iterdir())
 
 
 def test_a_component_is_no_model_for_calculix(tmp_path: Path) -> None:
     status, said = _export("planet_carrier", "--out", str(tmp_path / "c.inp"))
-    assert status == cli.MISTAKE
+    assert status == app.MISTAKE
     assert ".vtu or .msh" in said
 
 
 def test_advice_is_for_scenes() -> None:
-    outcome = CliRunner().invoke(cli._app, ["advise", "planet_carrier", "--quantity", "hub.Fx"])
-    assert outcome.exit_code == cli.MISTAKE
+    outcome = CliRunner().invoke(app._app, ["advise", "planet_carrier", "--quantity", "hub.Fx"])
+    assert outcome.exit_code == app.MISTAKE
     assert "is a component" in outcome.output

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fe_drivetrain.convergence import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.compare.convergence import (
     GridConvergence,
     grid_convergence,
     observed_order,
     richardson,
 )
-from fe_drivetrain.errors import InputError
 
 RATIOS = [(1.0, 0.5, 0.25), (1.0, 0.7, 0.5), (2.0, 1.4, 1.0, 0.7), (3.0, 2.0, 0.5)]
 

@@ -6,11 +6,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from fe_drivetrain.geometry import Bearing, Flange, Housing, MeshSizes, Section, Shaft
 
-from fe_drivetrain.materials import Material
-from fe_drivetrain.model import mesh_scene
-from fe_drivetrain.scene import BearingUnit, Gearbox, Hub, Scene, Spread, parse_scene
+from fe_drivetrain.geometry import Bearing, Flange, Housing, MeshSizes, Section, Shaft
+from fe_drivetrain.response.model import mesh_scene
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.scene.scene import BearingUnit, Gearbox, Hub, Scene, Spread, parse_scene
 
 ROOT = Path(__file__).parents[1]
 SCENE_DOC = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
+
 from fe_drivetrain.cases.drivetrain import from_table, published
 from fe_drivetrain.cases.drivetrain.independent import (
     certified,
@@ -10,10 +12,9 @@ from fe_drivetrain.cases.drivetrain.independent import (
     modes_below,
     two_mass_frequencies,
 )
-from numpy.testing import assert_allclose
-
-from fe_drivetrain.case import Run
-from fe_drivetrain.drivetrain import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.suite.case import Run
+from fe_drivetrain.torsion.gear_table import (
     GENERATOR,
     ROTOR,
     gear_masses,
@@ -25,8 +26,7 @@ from fe_drivetrain.drivetrain import (
     stage_masses,
     two_masses,
 )
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.torsion import (
+from fe_drivetrain.torsion.system import (
     Element,
     Inertia,
     Torsional,

@@ -17,17 +17,11 @@ from skfem import (
 from skfem.models.elasticity import linear_elasticity
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.elasticity import (
-    assemble,
-    element_kind,
-    is_straight,
-    rigid_motions,
-    sparsity,
-    volume_weights,
-)
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.facets import face_weights
-from fe_drivetrain.materials import MATERIALS, Material
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.facets import face_weights
+from fe_drivetrain.mesh.shapes import element_kind, is_straight
+from fe_drivetrain.operator.elasticity import assemble, rigid_motions, sparsity, volume_weights
+from fe_drivetrain.scene.materials import MATERIALS, Material
 
 STEEL = MATERIALS["steel"]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from fe_drivetrain.export.stiffness_file import (
+from fe_drivetrain.export.formats.stiffness_file import (
     read_stiffness_json,
     stiffness_matrix,
     write_stiffness_json,

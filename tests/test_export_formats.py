@@ -15,21 +15,21 @@ from scipy.linalg import eigh
 from test_superelement import random_element
 
 from fe_drivetrain import export
-from fe_drivetrain.calculix import ROUNDING, read_dat, run_calculix
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError, MissingToolError
-from fe_drivetrain.export import nastran
-from fe_drivetrain.export.calculix_runs import (
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.export.calculix_deck import ROUNDING, read_dat, run_calculix
+from fe_drivetrain.export.formats import nastran
+from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
+from fe_drivetrain.export.formats.dmig import double
+from fe_drivetrain.export.formats.statement import comment_lines, commented, statement
+from fe_drivetrain.export.from_scene import shaft_superelement, unit_superelement
+from fe_drivetrain.export.programs.calculix_runs import (
     compliance_by_calculix,
     frequencies_by_calculix,
     held,
 )
-from fe_drivetrain.export.calculix_springs import model_lines, squares
-from fe_drivetrain.export.dmig import double
-from fe_drivetrain.export.statement import comment_lines, commented, statement
-from fe_drivetrain.levels import shaft_level
-from fe_drivetrain.scene_superelements import shaft_superelement, unit_superelement
-from fe_drivetrain.superelement import FRAME, UNITS, Superelement, scaled
+from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement, scaled
+from fe_drivetrain.fidelity.ladder import shaft_level
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
 TEXTS = ("csv", "mtx", "mtx-mass", "dmig", "calculix")

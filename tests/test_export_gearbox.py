@@ -10,13 +10,13 @@ import yaml
 from conftest import coarse_scene
 
 from fe_drivetrain import export
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.export import rexs, simpack, windio
-from fe_drivetrain.export.elastodyn import Torsion
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.scene_superelements import unit_superelement
-from fe_drivetrain.seat_superelements import seats_superelement
-from fe_drivetrain.superelement import Origin, Superelement
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.formats import rexs, simpack, windio
+from fe_drivetrain.export.formats.elastodyn import Torsion
+from fe_drivetrain.export.from_scene import unit_superelement
+from fe_drivetrain.export.seat_superelements import seats_superelement
+from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.scene.scene import library_scene
 
 TURBINE = """\
 # a turbine, with a comment

@@ -8,17 +8,26 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import coarse_scene
-from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from scipy.linalg import eigh
 
 from fe_drivetrain import export
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.export import extptfm, subdyn
-from fe_drivetrain.export.elastodyn import Torsion, read_elastodyn, read_torsion, write_torsion
-from fe_drivetrain.export.statement import commented
-from fe_drivetrain.export.torsion import series_stiffness, torsional_damping, torsional_stiffness
-from fe_drivetrain.scene_superelements import shaft_superelement, unit_superelement
-from fe_drivetrain.superelement import Origin, Superelement
+from fe_drivetrain.cases.export.sample_elastodyn import TEXT
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.formats import extptfm, subdyn
+from fe_drivetrain.export.formats.elastodyn import (
+    Torsion,
+    read_elastodyn,
+    read_torsion,
+    write_torsion,
+)
+from fe_drivetrain.export.formats.statement import commented
+from fe_drivetrain.export.formats.torsion import (
+    series_stiffness,
+    torsional_damping,
+    torsional_stiffness,
+)
+from fe_drivetrain.export.from_scene import shaft_superelement, unit_superelement
+from fe_drivetrain.export.superelement import Origin, Superelement
 
 NEW = Torsion(87876717.58333518, 123456.78901234567)
 

@@ -10,24 +10,20 @@ from conftest import coarse_scene
 from scipy import linalg
 from scipy.optimize import brentq
 
-from fe_drivetrain.bearing_units import scene_supports
-from fe_drivetrain.condensation import Condensed, on_supports, supported
-from fe_drivetrain.condensed_shafts import meridian_shaft, reference_points, shaft_meridian
-from fe_drivetrain.craig_bampton import (
-    _Harmonic,
-    craig_bampton_shaft,
-    free_frequencies,
-)
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError, MissingToolError
-from fe_drivetrain.export import exudyn_system, ross_rotor
-from fe_drivetrain.frame import Beam, Support, shaft_stiffness, unit_load_response
-from fe_drivetrain.levels import shaft_level
-from fe_drivetrain.lumped_shaft import lumped_superelement, rigid_mass
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.scene_superelements import shaft_superelement
-from fe_drivetrain.sections import BeamSection, cowper_shear_coefficient
-from fe_drivetrain.supported_modes import natural_frequencies
+from fe_drivetrain.beam.sections import BeamSection, cowper_shear_coefficient
+from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.export.craig_bampton import _Harmonic, craig_bampton_shaft, free_frequencies
+from fe_drivetrain.export.from_scene import shaft_superelement
+from fe_drivetrain.export.lumped_shaft import lumped_superelement, rigid_mass
+from fe_drivetrain.export.modes import natural_frequencies
+from fe_drivetrain.export.programs import exudyn_system, ross_rotor
+from fe_drivetrain.fidelity.bearing_units import scene_supports
+from fe_drivetrain.fidelity.ladder import shaft_level
+from fe_drivetrain.fidelity.shafts import meridian_shaft, reference_points, shaft_meridian
+from fe_drivetrain.scene.scene import Scene, library_scene
+from fe_drivetrain.solve.condensation import Condensed, on_supports, supported
 
 #: Polynomial order of the meridians here: identities hold at any.
 ORDER = 3

@@ -9,19 +9,20 @@ import pytest
 from conftest import coarse_scene
 from typer.testing import CliRunner
 
-from fe_drivetrain import cli, export
-from fe_drivetrain.craig_bampton import craig_bampton_shaft
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.export.craig_bampton_json import (
+from fe_drivetrain import export
+from fe_drivetrain.commands import app
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.craig_bampton import craig_bampton_shaft
+from fe_drivetrain.export.formats.craig_bampton_json import (
     CraigBamptonFile,
     read_craig_bampton,
     write_craig_bampton,
 )
-from fe_drivetrain.export.summary import SummaryFile, read_summary, summary, write_summary
-from fe_drivetrain.export.superelement_json import SuperelementFile
-from fe_drivetrain.levels import assembly_level
-from fe_drivetrain.model import Model
-from fe_drivetrain.scene_superelements import shaft_superelement, unit_superelement
+from fe_drivetrain.export.formats.summary import SummaryFile, read_summary, summary, write_summary
+from fe_drivetrain.export.formats.superelement_json import SuperelementFile
+from fe_drivetrain.export.from_scene import shaft_superelement, unit_superelement
+from fe_drivetrain.fidelity.ladder import assembly_level
+from fe_drivetrain.response.model import Model
 
 DOCS = Path(__file__).parents[1] / "docs"
 SCHEMAS = {
@@ -114,15 +115,15 @@ def test_the_command_writes_summary_and_seats(tmp_path: Path) -> None:
     coarse = [word for size in sizes for word in ("--set", size)]
     command = ["export", "main_bearing_bonded", *coarse, "--format", "json"]
     path = tmp_path / "summary.json"
-    done = CliRunner().invoke(cli._app, [*command, "--what", "summary", "--out", str(path)])
+    done = CliRunner().invoke(app._app, [*command, "--what", "summary", "--out", str(path)])
     assert done.exit_code == 0, done.output
     assert set(read_summary(path).parts) == {"shaft", "main_bearing", "main_bearing.housing"}
     seats = tmp_path / "seats.json"
-    done = CliRunner().invoke(cli._app, [*command, "--what", "seats", "--out", str(seats)])
+    done = CliRunner().invoke(app._app, [*command, "--what", "seats", "--out", str(seats)])
     assert done.exit_code == 0, done.output
     assert export.read(seats, "json").points == ("main_bearing",)
     wrong = [*command[:-1], "csv", "--what", "summary", "--out", str(tmp_path / "a.csv")]
-    assert CliRunner().invoke(cli._app, wrong).exit_code == cli.MISTAKE
+    assert CliRunner().invoke(app._app, wrong).exit_code == app.MISTAKE
 
 
 def test_compliance_is_written_where_there_is_one(tmp_path: Path) -> None:
@@ -139,7 +140,7 @@ def test_compliance_is_written_where_there_is_one(tmp_path: Path) -> None:
 def test_modes_by_the_command_come_back(tmp_path: Path) -> None:
     path = tmp_path / "modes.json"
     command = ["export", "main_bearing_bonded", "--format", "json", "--out", str(path)]
-    done = CliRunner().invoke(cli._app, [*command, "--at", "hub,gearbox", "--modes", "4"])
+    done = CliRunner().invoke(app._app, [*command, "--at", "hub,gearbox", "--modes", "4"])
     assert done.exit_code == 0, done.output
     body = read_craig_bampton(path)
     assert body.points == ("hub", "gearbox")
@@ -152,4 +153,4 @@ def test_modes_by_the_command_come_back(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a column for each of"):
         read_craig_bampton(path)
     other = [*command[:-1], str(tmp_path / "a"), "--what", "drivetrain", "--modes", "4"]
-    assert CliRunner().invoke(cli._app, other).exit_code == cli.MISTAKE
+    assert CliRunner().invoke(app._app, other).exit_code == app.MISTAKE

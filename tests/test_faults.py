@@ -18,18 +18,20 @@ import gmsh
 import numpy as np
 import pytest
 from conftest import coarse_scene
-from fe_drivetrain.geometry import gmsh_session
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fe_drivetrain import cli, files, mesh_cache
-from fe_drivetrain.cache import VARIABLE, Cache
-from fe_drivetrain.case import Case, Run, new_folder, run_case
-from fe_drivetrain.files import HiddenFolder, atomic_path
-from fe_drivetrain.model import mesh_scene
-from fe_drivetrain.parallel import VARIABLE as CORES
-from fe_drivetrain.results import Environment, Results, judge, read_results
-from fe_drivetrain.suite import run_cases
+from fe_drivetrain.commands import app
+from fe_drivetrain.common import files
+from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
+from fe_drivetrain.common.files import HiddenFolder, atomic_path
+from fe_drivetrain.common.processes import CORES_VARIABLE as CORES
+from fe_drivetrain.geometry import gmsh_session
+from fe_drivetrain.mesh import cached
+from fe_drivetrain.report.results import Environment, Results, judge, read_results
+from fe_drivetrain.response.model import mesh_scene
+from fe_drivetrain.suite.case import Case, Run, new_folder, run_case
+from fe_drivetrain.suite.suite import run_cases
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are forked")
 
@@ -128,7 +130,7 @@ def run_quietly(case: Case, out: Path) -> int:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.dup2(nowhere, 2)
-    return cli._run(lambda: [case], out, [], quick=False)
+    return app._run(lambda: [case], out, [], quick=False)
 
 
 def hidden(folder: Path) -> list[str]:
@@ -197,7 +199,7 @@ def test_a_disk_that_is_full_at_any_size_of_file_is_told(tmp_path: Path, size: i
         read, write = os.pipe()
         os.set_blocking(read, False)
         sys.stdout = sys.stderr = open(write, "w")  # noqa: SIM115
-        status = cli._run(lambda: [marked(NEW)], out, [], quick=False)
+        status = app._run(lambda: [marked(NEW)], out, [], quick=False)
         sys.stderr.flush()
         said = os.read(read, 10_000).decode()
         return status if "Traceback" not in said and "File too large" in said else 98
@@ -360,7 +362,7 @@ def test_a_cache_that_can_only_be_read_gives_what_it_has(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """To root nothing is read-only, so the system's answer is put in its place."""
-    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     scene = coarse_scene("bonded")
     made = mesh_scene(scene)
 
@@ -373,7 +375,7 @@ def test_a_cache_that_can_only_be_read_gives_what_it_has(
     assert kept.kept
     np.testing.assert_array_equal(kept.points, made.points)
     before = sorted(tmp_path.rglob("*"))
-    monkeypatch.setattr(mesh_cache, "generate", lambda *arguments: made)
+    monkeypatch.setattr(cached, "generate", lambda *arguments: made)
     other = mesh_scene(coarse_scene("bonded", **{"mesh.shaft": 0.29}))
     assert not other.kept
     assert sorted(tmp_path.rglob("*")) == before
@@ -501,7 +503,7 @@ def test_a_signal_while_it_meshes_solves_or_writes_leaves_the_old_results(
     run_case(marked(OLD), out)
     environment = {
         **os.environ,
-        VARIABLE: str(tmp_path / "cache"),
+        CACHE_VARIABLE: str(tmp_path / "cache"),
         "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path]),
     }
     with subprocess.Popen(

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_drivetrain.adviser import Quantity
-from fe_drivetrain.case import find_cases, run_case
-from fe_drivetrain.levels import shaft_level, statics_level
-from fe_drivetrain.scene import library_scene
+from fe_drivetrain.fidelity.adviser import Quantity
+from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
+from fe_drivetrain.scene.scene import library_scene
+from fe_drivetrain.suite.case import find_cases, run_case
 
 SCENES = (
     "housing_on_bedplate",

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from fe_drivetrain.cases.verification import fillets
 from fe_drivetrain.cases.verification.solid_fillet import fitted_peak
 

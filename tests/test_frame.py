@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.frame import Beam, Support, shaft_stiffness, solve, unit_load_response
-from fe_drivetrain.materials import Material
-from fe_drivetrain.sections import (
+from fe_drivetrain.beam.sections import (
     BeamSection,
     RigiditySection,
     cowper_shear_coefficient,
     transport,
 )
+from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, solve, unit_load_response
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.materials import Material
 
 inf = np.inf
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)

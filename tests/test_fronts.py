@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.fronts import JOIN, condensed, dissection, element_matrices, factored
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.revolution.frontal import (
+    JOIN,
+    condensed,
+    dissection,
+    element_matrices,
+    factored,
+)
 
 
 def grid(across, along):

@@ -5,6 +5,9 @@ import math
 import gmsh
 import numpy as np
 import pytest
+from pydantic import ValidationError
+
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import (
     Bearing,
     Flange,
@@ -16,9 +19,6 @@ from fe_drivetrain.geometry import (
     gmsh_session,
 )
 from fe_drivetrain.geometry.assembly import _elements_beside, _size_limit
-from pydantic import ValidationError
-
-from fe_drivetrain.errors import InputError
 
 
 def plain_shaft(length=1.0, outer=0.4, inner=0.0):

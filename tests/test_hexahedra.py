@@ -4,19 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 from skfem import Basis, ElementHex1, ElementHex2, ElementVector, MeshHex1, MeshHex2
 from skfem.models.elasticity import linear_elasticity
 
-from fe_drivetrain.elasticity import assemble, element_kind
-from fe_drivetrain.elements import first_order, straightened
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.hexahedra import VTK_LATTICE, Grading, shaft_hexahedra
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.mesh import generate
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
+from fe_drivetrain.mesh.hexahedra import VTK_LATTICE, Grading, shaft_hexahedra
+from fe_drivetrain.mesh.linear import first_order, straightened
+from fe_drivetrain.mesh.mesh import generate
+from fe_drivetrain.mesh.shapes import element_kind
+from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.scene.materials import MATERIALS
 
 STEEL = MATERIALS["steel"]
 

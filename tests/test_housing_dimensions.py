@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+
 from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
 from fe_drivetrain.cases.main_bearing.housing_dimensions import BOLTED, ONE_BODY, STEEL, WIDTH
-
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.scene import change_scene, library_scene
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.scene import change_scene, library_scene
 
 PLATE = np.array([0.14, 0.11, 0.5, 0.95, 0.1])
 
@@ -61,7 +61,7 @@ def test_a_stub_of_the_shaft_is_enough(scene):
 
 
 def test_the_mass_is_that_of_the_mesh(scene):
-    from fe_drivetrain.model import build_model, mesh_scene
+    from fe_drivetrain.response.model import build_model, mesh_scene
 
     plate = housings.housed(scene, ONE_BODY, PLATE)
     stub = housings.stub(plate, housings.COARSE)
@@ -82,7 +82,7 @@ def test_the_nominal_stress_is_that_of_a_rectangular_beam(scene):
 
 
 def test_a_housing_whose_bore_breaks_through_is_left_out(scene):
-    from fe_drivetrain.calibration import fitted, hypercube
+    from fe_drivetrain.compare.calibration import fitted, hypercube
 
     low = change_scene(scene, {"bearing_units.0.bearing.raceway_diameter": 0.9})
     x = hypercube(housings.LOW, housings.HIGH, 12)

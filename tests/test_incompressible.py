@@ -5,16 +5,17 @@ import pytest
 from conftest import coarse_scene
 from pydantic import ValidationError
 
-from fe_drivetrain import elasticity, incompatible, incompressible, stress
-from fe_drivetrain.blocks import Block, brick
-from fe_drivetrain.elasticity import element_kind, rigid_motions
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.interfaces import held_nodes
-from fe_drivetrain.loads import pressure, traction_loads
-from fe_drivetrain.materials import HIGHEST_POISSON_RATIO, Material
-from fe_drivetrain.model import build_model, mesh_scene
-from fe_drivetrain.scene import change_scene
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces.constraints import held_nodes
+from fe_drivetrain.mesh.blocks import Block, brick
+from fe_drivetrain.mesh.shapes import element_kind
+from fe_drivetrain.operator import elasticity, incompatible, incompressible, stress
+from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.operator.loads import pressure, traction_loads
+from fe_drivetrain.response.model import build_model, mesh_scene
+from fe_drivetrain.scene.materials import HIGHEST_POISSON_RATIO, Material
+from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.solve.solid import solve_solid
 
 KINDS = [
     (incompressible.assemble, 8),

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from fe_drivetrain import interfaces
-from fe_drivetrain.elasticity import rigid_motions
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.operator.elasticity import rigid_motions
 
 CENTRE = np.array([0.1, -0.2, 0.3])
 
@@ -24,18 +24,20 @@ def sphere(rng):
 def forms(sphere):
     points, inner, outer, weights = sphere
     n = points.size + 3 * 8
-    w = interfaces.centred_weights(weights, points[inner], CENTRE)
+    w = constraints.centred_weights(weights, points[inner], CENTRE)
     groups = np.tile(np.arange(60) % 8, 2)
     return {
-        "sliding": interfaces.sliding_sphere("joint", inner, outer, points, CENTRE, n),
-        "averaged": interfaces.averaged_sphere("joint", inner, outer, w, w, groups, points.size, n),
+        "sliding": constraints.sliding_sphere("joint", inner, outer, points, CENTRE, n),
+        "averaged": constraints.averaged_sphere(
+            "joint", inner, outer, w, w, groups, points.size, n
+        ),
     }, n
 
 
 @pytest.mark.parametrize("form", ["sliding", "averaged"])
 def test_elimination_fulfils_every_row(sphere, form, rng):
     constraints, n = forms(sphere)
-    elimination = interfaces.eliminate([constraints[form]], n)
+    elimination = constraints.eliminate([constraints[form]], n)
     T = elimination.T
     q = rng.standard_normal(T.shape[1])
     assert elimination.free.sum() == n - len(constraints[form].pivots)
@@ -47,9 +49,9 @@ def test_averaged_form_equals_its_dense_definition(sphere, rng):
     """Grouping is a matter of sparsity only: the means of both faces are equal, nothing else."""
     points, inner, outer, weights = sphere
     constraints, n = forms(sphere)
-    T = interfaces.eliminate([constraints["averaged"]], n).T
+    T = constraints.eliminate([constraints["averaged"]], n).T
     u = (T @ rng.standard_normal(T.shape[1]))[: points.size].reshape(-1, 3)
-    w = interfaces.centred_weights(weights, points[inner], CENTRE)
+    w = constraints.centred_weights(weights, points[inner], CENTRE)
     np.testing.assert_allclose(w @ u[inner], w @ u[outer], atol=1e-11)
     dense = np.zeros((3, points.size))
     for axis in range(3):
@@ -67,9 +69,9 @@ def test_sphere_turns_freely_about_its_centre_and_carries_translation(sphere, fo
     points, inner, _, weights = sphere
     constraints, n = forms(sphere)
     rigid = np.zeros((n, 6))
-    rigid[interfaces.freedoms(inner).ravel()] = rigid_motions(points[inner], CENTRE)
+    rigid[constraints.freedoms(inner).ravel()] = rigid_motions(points[inner], CENTRE)
     if form == "averaged":  # its group sums follow the nodes: take the last rows, of the means
-        w = interfaces.centred_weights(weights, points[inner], CENTRE)
+        w = constraints.centred_weights(weights, points[inner], CENTRE)
         mean = np.einsum("n,nik->ik", w / w.sum(), rigid[: 3 * 60].reshape(60, 3, 6))
         assert np.abs(mean[:, 3:]).max() < 1e-14
         assert np.linalg.matrix_rank(mean[:, :3]) == 3
@@ -81,7 +83,7 @@ def test_sphere_turns_freely_about_its_centre_and_carries_translation(sphere, fo
 
 def test_centred_weights_put_the_centroid_to_the_centre(sphere):
     points, inner, _, weights = sphere
-    w = interfaces.centred_weights(weights, points[inner], CENTRE)
+    w = constraints.centred_weights(weights, points[inner], CENTRE)
     np.testing.assert_allclose(w @ (points[inner] - CENTRE), 0.0, atol=1e-12)
     assert np.abs(w / weights - 1).max() < 0.5
 
@@ -90,7 +92,7 @@ def test_averaged_point_recovers_a_rigid_motion_and_balances_its_load(rng):
     """RBE3: a rigid motion of the face is the point's motion; forces add up to the point's load."""
     points = rng.standard_normal((40, 3))
     position = np.array([0.5, 2.0, -1.0])
-    point = interfaces.averaged_point(
+    point = constraints.averaged_point(
         "p", np.arange(40), rng.uniform(1, 2, 40), points, position, 120
     )
     np.testing.assert_allclose(
@@ -105,9 +107,9 @@ def test_averaged_point_recovers_a_rigid_motion_and_balances_its_load(rng):
 
 def test_rigid_face_moves_with_its_point(rng):
     points = rng.standard_normal((20, 3))
-    point = interfaces.rigid_point("p", CENTRE, 60, 66)
-    face = interfaces.rigid_face("p", np.arange(20), points, point)
-    elimination = interfaces.eliminate([face], 66)
+    point = constraints.rigid_point("p", CENTRE, 60, 66)
+    face = constraints.rigid_face("p", np.arange(20), points, point)
+    elimination = constraints.eliminate([face], 66)
     assert np.flatnonzero(elimination.free).tolist() == [60, 61, 62, 63, 64, 65]
     T = elimination.T.toarray()
     assert np.abs(T[:, :60]).max() == 0.0
@@ -116,8 +118,8 @@ def test_rigid_face_moves_with_its_point(rng):
 
 def test_held_point_of_a_face_does_not_turn(rng):
     points = rng.standard_normal((20, 3))
-    point = interfaces.averaged_point("p", np.arange(20), np.ones(20), points, CENTRE, 60)
-    T = interfaces.eliminate([interfaces.held("p", point, [3, 5])], 60).T
+    point = constraints.averaged_point("p", np.arange(20), np.ones(20), points, CENTRE, 60)
+    T = constraints.eliminate([constraints.held("p", point, [3, 5])], 60).T
     motion = point.motion @ T.toarray()
     assert np.abs(motion[[3, 5]]).max() < 1e-12
     assert np.linalg.matrix_rank(motion) == 4
@@ -130,10 +132,10 @@ def test_multipliers_are_the_constraint_forces(rng):
     for a, b, k in ((0, 3, 2.0), (3, 6, 3.0)):
         stiffness[np.ix_([a, b], [a, b])] += k * np.array([[1, -1], [-1, 1]])
     walls = [
-        interfaces.fixed("left", np.array([0]), n),
-        interfaces.fixed("right", np.array([2]), n),
+        constraints.fixed("left", np.array([0]), n),
+        constraints.fixed("right", np.array([2]), n),
     ]
-    elimination = interfaces.eliminate(walls, n)
+    elimination = constraints.eliminate(walls, n)
     load = np.zeros((n, 1))
     load[3] = 10.0
     u = np.zeros((n, 1))
@@ -144,12 +146,12 @@ def test_multipliers_are_the_constraint_forces(rng):
 
 
 def test_two_owners_of_one_face_are_refused():
-    first = interfaces.fixed("base", np.array([0, 1]), 9)
-    second = interfaces.fixed("rear", np.array([1, 2]), 9)
+    first = constraints.fixed("base", np.array([0, 1]), 9)
+    second = constraints.fixed("rear", np.array([1, 2]), 9)
     with pytest.raises(InputError, match="'rear' and 'base' constrain the same nodes"):
-        interfaces.eliminate([first, second], 9)
+        constraints.eliminate([first, second], 9)
 
 
 def test_no_constraint_leaves_everything_free():
-    T = interfaces.eliminate([], 6).T
+    T = constraints.eliminate([], 6).T
     assert abs(T - sparse.eye_array(6)).max() == 0.0

@@ -3,9 +3,8 @@
 from pathlib import Path
 from xml.etree import ElementTree
 
-from fe_drivetrain.junit import write_junit
-from fe_drivetrain.results import Environment, Results, judge
-from fe_drivetrain.suite import Problem
+from fe_drivetrain.report.junit import write_junit
+from fe_drivetrain.report.results import Environment, Problem, Results, judge
 
 
 def results_of(name: str, *computed: float) -> Results:

@@ -5,20 +5,20 @@ import pytest
 from conftest import coarse_scene
 from typer.testing import CliRunner
 
-from fe_drivetrain import cli
-from fe_drivetrain.adviser import Quantity, advise
-from fe_drivetrain.condensation import wrench_transport
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.levels import (
+from fe_drivetrain.commands import app
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.adviser import Quantity, advise
+from fe_drivetrain.fidelity.ladder import (
     LevelModel,
     assembly_level,
     housing_springs,
     shaft_level,
     statics_level,
 )
-from fe_drivetrain.model import Model
-from fe_drivetrain.results import read_results
-from fe_drivetrain.scene import Scene
+from fe_drivetrain.report.results import read_results
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.solve.condensation import wrench_transport
 
 
 @pytest.fixture(scope="module")
@@ -131,15 +131,15 @@ def test_a_quantity_that_is_zero_is_refused() -> None:
     ],
 )
 def test_a_wrong_option_gets_one_sentence(options: list[str], message: str) -> None:
-    outcome = CliRunner().invoke(cli._app, ["advise", "main_bearing_spherical", *options])
-    assert outcome.exit_code == cli.MISTAKE
+    outcome = CliRunner().invoke(app._app, ["advise", "main_bearing_spherical", *options])
+    assert outcome.exit_code == app.MISTAKE
     assert message in outcome.stderr
 
 
 def test_advise_writes_a_page(tmp_path) -> None:  # type: ignore[no-untyped-def]
     arguments = ["advise", "main_bearing_spherical", "--quantity", "main_bearing.Fz"]
-    outcome = CliRunner().invoke(cli._app, [*arguments, "--out", str(tmp_path / "out")])
-    assert outcome.exit_code == cli.PASSED, outcome.output
+    outcome = CliRunner().invoke(app._app, [*arguments, "--out", str(tmp_path / "out")])
+    assert outcome.exit_code == app.PASSED, outcome.output
     assert "level 0" in outcome.stdout
     assert read_results(tmp_path / "out" / "results.json").passed
     assert (tmp_path / "out" / "report.html").exists()

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from conftest import coarse_scene
+
 from fe_drivetrain.cases.main_bearing import bands
 from fe_drivetrain.cases.main_bearing.bands import FACTORS, LEAST_ORDER, Series
-
-from fe_drivetrain.case import Run
-from fe_drivetrain.scene import change_scene
+from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.suite.case import Run
 
 
 def series_of_order(order, limit=5.0):

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from conftest import COARSE
 
-from fe_drivetrain.case import all_cases, find_cases, run_case
-from fe_drivetrain.cli import main
-from fe_drivetrain.export.stiffness_file import read_stiffness_json
-from fe_drivetrain.results import read_results
+from fe_drivetrain.commands.app import main
+from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
+from fe_drivetrain.report.results import read_results
+from fe_drivetrain.suite.case import all_cases, find_cases, run_case
 
 ROOT = Path(__file__).parents[1]
 CASES = (

@@ -6,6 +6,9 @@ import gmsh
 import meshio
 import numpy as np
 import pytest
+from skfem import Basis, ElementTetP2, Functional
+
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import (
     Bearing,
     Flange,
@@ -16,10 +19,7 @@ from fe_drivetrain.geometry import (
     build,
     gmsh_session,
 )
-from skfem import Basis, ElementTetP2, Functional
-
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.mesh import (
+from fe_drivetrain.mesh.mesh import (
     CUBIC,
     EDGES,
     GMSH_TO_VTK,
@@ -572,7 +572,7 @@ def test_relaxing_leaves_seats_and_joints_exactly_where_they_are():
 
 
 def test_elements_that_stay_inverted_are_refused_with_their_place(monkeypatch):
-    monkeypatch.setattr("fe_drivetrain.mesh.inverted_cells", lambda mesh: np.array([0]))
+    monkeypatch.setattr("fe_drivetrain.mesh.mesh.inverted_cells", lambda mesh: np.array([0]))
     with pytest.raises(InputError, match=r"part 'shaft': 1 of its .* near \(.*\) m.*reduce"):
         generate(plain_shaft(), sizes=COARSE)
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.blocks import brick, joined
-from fe_drivetrain.elasticity import assemble, rigid_motions
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.interfaces import eliminate
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.mortar import mortar_tie, node_tie, settled
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces.constraints import eliminate
+from fe_drivetrain.interfaces.mortar import mortar_tie, node_tie, settled
+from fe_drivetrain.mesh.blocks import brick, joined
+from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.operator.loads import traction_loads
 
 # Nothing is parallel to an axis, no angle is a right one.
 OBLIQUE = np.array([[0.9, 0.3, -0.4], [-0.2, 1.1, 0.3], [0.5, -0.1, 0.8]])

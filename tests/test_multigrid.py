@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from scipy import linalg
 
-from fe_drivetrain import direct, multigrid, solvers
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import assemble
-from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.mesh import generate
-from fe_drivetrain.reduction import reduce
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from fe_drivetrain.interfaces.constraints import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.mesh.mesh import generate
+from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.solve import direct_solvers, multigrid, solvers
+from fe_drivetrain.solve.reduction import reduce
 
 
 def cantilever(length, size, inner=0.3, linear=False):
@@ -45,7 +45,7 @@ def energy_norm(K, x):
 
 
 def refined(system, F):
-    factor = direct.factorise(system.K, "superlu")
+    factor = direct_solvers.factorise(system.K, "superlu")
     x = factor.apply(F)
     return x + factor.apply(F - system.K @ x)
 

@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_drivetrain.case import Run
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.parallel import VARIABLE, Processes, Report, cores
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.processes import CORES_VARIABLE, Processes, Report, cores
+from fe_drivetrain.suite.case import Run
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="looks at processes by their number")
 
 
 @pytest.fixture(autouse=True)
 def two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(VARIABLE, "2")
+    monkeypatch.setenv(CORES_VARIABLE, "2")
 
 
 def is_running(pid: int) -> bool:
@@ -172,7 +172,7 @@ def test_one_core_or_one_job_needs_no_process(monkeypatch: pytest.MonkeyPatch) -
     with Processes(1) as processes:
         assert processes.count == 0
         assert processes.start(square, 3.0).result() == (os.getpid(), 9.0)
-    monkeypatch.setenv(VARIABLE, "1")
+    monkeypatch.setenv(CORES_VARIABLE, "1")
     with Processes(3) as processes:
         jobs = [processes.start(square, x) for x in (1.0, 2.0, 3.0)]
         assert [job.result() for job in processes.finished(jobs)] == [
@@ -186,7 +186,7 @@ def test_jobs_nobody_asks_for_are_done_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for number in ("1", "2"):
-        monkeypatch.setenv(VARIABLE, number)
+        monkeypatch.setenv(CORES_VARIABLE, number)
         folder = tmp_path / number
         folder.mkdir()
         (folder / "b").touch()
@@ -215,7 +215,7 @@ def test_the_users_folder_hides_no_module(tmp_path: Path, monkeypatch: pytest.Mo
 def test_all_processes_together_have_no_more_threads_than_cores(
     monkeypatch: pytest.MonkeyPatch, available: int, jobs: int, share: int
 ) -> None:
-    monkeypatch.setenv(VARIABLE, str(available))
+    monkeypatch.setenv(CORES_VARIABLE, str(available))
     monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
     monkeypatch.setenv("MKL_NUM_THREADS", "1")
     monkeypatch.setenv("NUMBA_NUM_THREADS", "64")
@@ -242,9 +242,9 @@ def test_this_process_keeps_to_one_thread_meanwhile() -> None:
 def test_the_command_line_holds_itself_to_the_cores_that_the_user_gives() -> None:
     program = (
         "import sys; sys.argv[:] = ['fe-drivetrain', 'run', 'unknown']\n"
-        "from fe_drivetrain import cli\n"
+        "from fe_drivetrain.commands import main\n"
         "try:\n"
-        "    cli.main()\n"
+        "    main()\n"
         "except SystemExit:\n"
         "    pass\n"
         "import numpy, scipy.linalg\n"
@@ -254,7 +254,7 @@ def test_the_command_line_holds_itself_to_the_cores_that_the_user_gives() -> Non
     environment = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
     done = subprocess.run(
         [sys.executable, "-c", program],
-        env={**environment, VARIABLE: "1"},
+        env={**environment, CORES_VARIABLE: "1"},
         capture_output=True,
         text=True,
         check=True,
@@ -264,13 +264,13 @@ def test_the_command_line_holds_itself_to_the_cores_that_the_user_gives() -> Non
 
 @pytest.mark.parametrize("number", ["0", "-1", "two", "1.5"])
 def test_a_wrong_number_of_cores_is_told(monkeypatch: pytest.MonkeyPatch, number: str) -> None:
-    monkeypatch.setenv(VARIABLE, number)
-    with pytest.raises(InputError, match=rf"{VARIABLE} is '{number}'"):
+    monkeypatch.setenv(CORES_VARIABLE, number)
+    with pytest.raises(InputError, match=rf"{CORES_VARIABLE} is '{number}'"):
         cores()
 
 
 def test_left_alone_it_takes_the_cores_it_may_use(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(VARIABLE)
+    monkeypatch.delenv(CORES_VARIABLE)
     assert cores() == len(os.sched_getaffinity(0))
 
 
@@ -357,7 +357,7 @@ def test_an_error_in_this_process_ends_all_others(tmp_path: Path) -> None:
 
 
 def test_a_killed_process_is_explained() -> None:
-    with pytest.raises(InputError, match=rf"memory.*{VARIABLE}=1"), Processes(2) as processes:
+    with pytest.raises(InputError, match=rf"memory.*{CORES_VARIABLE}=1"), Processes(2) as processes:
         processes.start(end, -signal.SIGKILL).result()
     with pytest.raises(RuntimeError, match=r"status 3.*last words"), Processes(2) as processes:
         processes.start(end, 3).result()
@@ -430,7 +430,7 @@ def test_a_signal_ends_every_process_and_leaves_nothing_half_written(
 
 def test_a_mistake_in_a_process_is_one_sentence_on_the_command_line(tmp_path: Path) -> None:
     (tmp_path / "jobs_of_script.py").write_text(
-        "from fe_drivetrain.errors import InputError\n"
+        "from fe_drivetrain.common.errors import InputError\n"
         "def work(run, name):\n"
         "    raise InputError(f'{name}: too long: make it shorter')\n"
     )

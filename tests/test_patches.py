@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import assemble, rigid_motions
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.patches import CutOut, partition, shown_lame
-from fe_drivetrain.reduction import reduce
+from fe_drivetrain.interfaces.constraints import eliminate, fixed
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.subdomains import CutOut, partition, shown_lame
 
 
 def bar(nodes, bend=0.0, second=None):

@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from fe_drivetrain.cases.performance import peers, problems, rounds
 from fe_drivetrain.cases.performance.tools import launch, runner
 from fe_drivetrain.cases.performance.tools.launch import Limits, Outcome, Variant
-
-from fe_drivetrain.case import Run, find_cases, run_case
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.mesh import FACETS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.mesh import FACETS
+from fe_drivetrain.suite.case import Run, find_cases, run_case
 
 PEERS = launch.parse(
     ["calculix.spooles", "ngsolve.multigrid", "sfepy.superlu", "felupe.superlu", "dolfinx.mumps"]

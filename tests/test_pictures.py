@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from fe_drivetrain import pictures
-from fe_drivetrain.mesh import Mesh, area, boundary
-from fe_drivetrain.model import Model
-from fe_drivetrain.pictures import SIZE, NoPictureError
-from fe_drivetrain.response import Response
+from fe_drivetrain.mesh.mesh import Mesh, area, boundary
+from fe_drivetrain.report import pictures
+from fe_drivetrain.report.pictures import SIZE, NoPictureError
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import Response
 
 needs_opengl = pytest.mark.skipif(not pictures.can_draw(), reason="no off-screen OpenGL here")
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from fe_drivetrain.cases.verification.plane_rings import (
     CurvedBar,
     Lame,

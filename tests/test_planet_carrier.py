@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from test_component import coarse
 
-from fe_drivetrain import component_frames
-from fe_drivetrain.component import CarrierComponent, material_of
-from fe_drivetrain.component_levels import (
+from fe_drivetrain.beam.frame import round_section
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.from_component import component_superelement
+from fe_drivetrain.fidelity import component_frames
+from fe_drivetrain.fidelity.component_levels import (
     PinMotions,
     frame_level,
     loads_of,
@@ -17,13 +19,11 @@ from fe_drivetrain.component_levels import (
     solid_level,
     torque_share,
 )
-from fe_drivetrain.component_solid import SolidComponent, solid_component
-from fe_drivetrain.component_superelements import component_superelement
-from fe_drivetrain.condensation import wrench_transport
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.levels import LevelModel
-from fe_drivetrain.spatial_frame import round_section
-from fe_drivetrain.symmetric_mesh import turns
+from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
+from fe_drivetrain.fidelity.ladder import LevelModel
+from fe_drivetrain.mesh.symmetry import turns
+from fe_drivetrain.scene.component import CarrierComponent, material_of
+from fe_drivetrain.solve.condensation import wrench_transport
 
 
 @pytest.fixture(scope="module")

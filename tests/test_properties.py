@@ -6,21 +6,19 @@ Random shafts of cheap models: beams, meridians, and blocks of solid elements.
 from dataclasses import replace
 
 import numpy as np
-from fe_drivetrain.geometry import Section, Shaft
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
-from fe_drivetrain.axisymmetric import end_stiffness
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.frame import Beam, Support, shaft_stiffness, unit_load_response
-from fe_drivetrain.interfaces import fixed
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.materials import Material
-from fe_drivetrain.sections import BeamSection
-from fe_drivetrain.statics import Static, solve_solid
-
-Floats = NDArray[np.float64]
+from fe_drivetrain.beam.sections import BeamSection
+from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.interfaces.constraints import fixed
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.operator.loads import traction_loads
+from fe_drivetrain.revolution.harmonics import end_stiffness
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.solve.solid import Static, solve_solid
 
 #: The few thousand roundings of a small dense system, amplified by its conditioning: springs from
 #: 1e5 N/m to rigid on shafts of 1e6 to 1e11 N/m.

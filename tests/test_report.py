@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image as Pixels
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.report import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.page import (
     error_text,
     formatted,
     safe_range,
@@ -23,7 +23,7 @@ from fe_drivetrain.report import (
     write_index,
     write_page,
 )
-from fe_drivetrain.results import (
+from fe_drivetrain.report.results import (
     AssumptionRow,
     Chart,
     Environment,

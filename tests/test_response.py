@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
-from fe_drivetrain.beams import pinned_model
-from fe_drivetrain.model import LOADS, build_model
-from fe_drivetrain.response import GRAVITY, unit_load_response
-from fe_drivetrain.scene import change_scene
-from fe_drivetrain.scene_beam import main_bearing_beam
+from fe_drivetrain.beam.closed_forms import pinned_model
+from fe_drivetrain.beam.of_scene import main_bearing_beam
+from fe_drivetrain.response.model import LOADS, build_model
+from fe_drivetrain.response.unit_loads import GRAVITY, unit_load_response
+from fe_drivetrain.scene.scene import change_scene
 
 FORMS = ("sliding", "averaged", "rigid")
 
@@ -116,7 +116,7 @@ def test_reactions_do_not_depend_on_where_the_scene_stands(bonded_response):
     moved = change_scene(
         coarse_scene("bonded"), {"shaft.front": 4.0, "bearing_units.0.bearing.x": 5.0}
     )
-    from fe_drivetrain.model import mesh_scene
+    from fe_drivetrain.response.model import mesh_scene
 
     response = unit_load_response(build_model(moved, mesh_scene(moved)))
     reference = bonded_response.reactions["main_bearing"]

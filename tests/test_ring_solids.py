@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from fe_drivetrain.cases.verification.bar_sections import (
     round_bar,
     section_motion,
@@ -18,12 +19,11 @@ from fe_drivetrain.cases.verification.ring_solids import (
     ring_sector,
     sector_symmetry,
 )
-
-from fe_drivetrain.elasticity import rigid_motions
-from fe_drivetrain.facets import facet_points
-from fe_drivetrain.interfaces import held_nodes
-from fe_drivetrain.loads import pressure, traction_loads
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.interfaces.constraints import held_nodes
+from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.operator.loads import pressure, traction_loads
+from fe_drivetrain.solve.solid import solve_solid
 
 E, NU = 3.0, 0.25
 LAME = (E * NU / ((1 + NU) * (1 - 2 * NU)), E / (2 * (1 + NU)))

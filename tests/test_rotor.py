@@ -7,8 +7,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.rotor import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.aero_rotor import (
     Rotor,
     aerodynamic_hub_loads,
     assumptions,

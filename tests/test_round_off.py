@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import assemble
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.reduction import reduce
-from fe_drivetrain.round_off import round_off
+from fe_drivetrain.interfaces.constraints import eliminate, fixed
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.rounding import round_off
 
 
 def rod(slenderness):

@@ -2,8 +2,8 @@
 
 import pytest
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.scene import change_scene, library_scene, parse_scene, read_scene
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.scene import change_scene, library_scene, parse_scene, read_scene
 
 TEXT = """
 title: small

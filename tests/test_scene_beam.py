@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
-from fe_drivetrain import frame
-from fe_drivetrain.beams import pinned_model, torsional_spring_model
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.scene import change_scene, library_scene
-from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
+from fe_drivetrain.beam import shaft
+from fe_drivetrain.beam.closed_forms import pinned_model, torsional_spring_model
+from fe_drivetrain.beam.of_scene import beam_of_scene, main_bearing_beam
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.scene import change_scene, library_scene
 
 PINNED = (np.inf, np.inf, np.inf, 0.0, 0.0, 0.0)
 
@@ -22,7 +22,7 @@ def test_parameters_are_the_scenes():
 
 def test_pinned_beam_of_the_scene_is_eq_3_1():
     scene = library_scene("main_bearing_spherical")
-    response = frame.unit_load_response(
+    response = shaft.unit_load_response(
         beam_of_scene(scene, {"main_bearing": PINNED}), [scene.shaft.front]
     )
     exact = pinned_model(np.eye(6), main_bearing_beam(scene)).T
@@ -33,7 +33,7 @@ def test_pinned_beam_of_the_scene_is_eq_3_1():
 def test_spring_beam_of_the_scene_is_eq_3_19():
     scene = library_scene("main_bearing_bonded")
     spring = (np.inf, np.inf, np.inf, 0.0, 145e6, 392e6)
-    response = frame.unit_load_response(
+    response = shaft.unit_load_response(
         beam_of_scene(scene, {"main_bearing": spring}, shear=False), [scene.shaft.front]
     )
     parameters = main_bearing_beam(scene, 145e6, 392e6)
@@ -47,7 +47,7 @@ def test_spring_beam_of_the_scene_is_eq_3_19():
 def test_a_ring_stiffens_the_beam():
     scene = library_scene("main_bearing_spherical")
     motion = [
-        frame.solve(
+        shaft.solve(
             beam_of_scene(scene, {"main_bearing": PINNED}, rings=rings),
             scene.shaft.front,
             np.eye(6)[2],

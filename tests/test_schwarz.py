@@ -2,18 +2,18 @@
 
 import numpy as np
 import pytest
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from scipy import linalg
 
-from fe_drivetrain import cost, direct, multigrid, schwarz, solvers
-from fe_drivetrain.elasticity import assemble
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.hexahedra import shaft_hexahedra
-from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.mesh import generate
-from fe_drivetrain.patches import dense_part
-from fe_drivetrain.reduction import System, reduce
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from fe_drivetrain.interfaces.constraints import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.mesh.hexahedra import shaft_hexahedra
+from fe_drivetrain.mesh.mesh import generate
+from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.solve import cost_model, direct_solvers, multigrid, schwarz, solvers
+from fe_drivetrain.solve.reduction import System, reduce
+from fe_drivetrain.solve.subdomains import dense_part
 
 
 def cantilever(diameter, wall, length, size, turn, nodes=27):
@@ -52,7 +52,7 @@ def iterations(system, F, options=schwarz.DEFAULTS):
 
 
 def energy_error(system, F, x):
-    factor = direct.factorise(system.K, "superlu")
+    factor = direct_solvers.factorise(system.K, "superlu")
     exact = factor.apply(F)
     exact += factor.apply(F - system.K @ exact)
     energy = [np.einsum("nm,nm->m", v, system.K @ v) for v in (x - exact, exact)]
@@ -174,9 +174,9 @@ def test_without_elements_there_are_no_patches(tube):
 def test_patches_take_the_place_of_multigrid_where_no_factor_fits(tube, monkeypatch):
     """Two GiB, of which a factor is told to need more."""
     system, F = tube
-    costly = {m: d._replace(bytes=1e12) for m, d in cost.DIRECT.items()}
-    monkeypatch.setattr("fe_drivetrain.cost.DIRECT", costly)
-    monkeypatch.setattr("fe_drivetrain.cost.available_memory", lambda: 2.0 * 2**30)
+    costly = {m: d._replace(bytes=1e12) for m, d in cost_model.DIRECT.items()}
+    monkeypatch.setattr("fe_drivetrain.solve.cost_model.DIRECT", costly)
+    monkeypatch.setattr("fe_drivetrain.solve.cost_model.available_memory", lambda: 2.0 * 2**30)
     solution = solvers.solve(system, F, "multigrid")
     assert solution.method == "schwarz"
     assert "multigrid stopped" in solution.reason

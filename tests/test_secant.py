@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain import frame
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.scene_beam import beam_of_scene
-from fe_drivetrain.secant import (
+from fe_drivetrain.beam import shaft
+from fe_drivetrain.beam.of_scene import beam_of_scene
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.response.secant_stiffness import (
     elastic_centre,
     fitted_spring,
     moved,
@@ -16,6 +15,7 @@ from fe_drivetrain.secant import (
     secant,
     statement,
 )
+from fe_drivetrain.scene.scene import library_scene
 
 DIAGONAL = np.array([2e9, 3e9, 5e9, 4e8, 6e8, 9e8])
 
@@ -35,7 +35,7 @@ def on_a_beam(K):
     """Loads and motions of the bearing of a shaft on that spring, under random hub loads."""
     scene = library_scene("main_bearing_bonded")
     beam = beam_of_scene(scene, {"main_bearing": K})
-    unit = frame.unit_load_response(beam, [scene.shaft.front, scene.shaft.rear], at=0.0)
+    unit = shaft.unit_load_response(beam, [scene.shaft.front, scene.shaft.rear], at=0.0)
     loads = np.zeros((50, 2, 6))
     loads[:, 0] = some(1, 50, (3e5, 1e4, 4e5, 1e6, 1e6, 1e6))
     loads[:, 1, 2] = -scene.gearbox.weight

@@ -2,9 +2,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.materials import Material
-from fe_drivetrain.sections import (
+from fe_drivetrain.beam.sections import (
     BeamSection,
     RigiditySection,
     cowper_shear_coefficient,
@@ -12,6 +10,8 @@ from fe_drivetrain.sections import (
     sections_from_profile,
     transport,
 )
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.materials import Material
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.28, density=7850.0)
 

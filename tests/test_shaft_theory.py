@@ -2,6 +2,9 @@
 
 import numpy as np
 import pytest
+
+from fe_drivetrain.beam.sections import BeamSection
+from fe_drivetrain.beam.shaft import Beam, Support, unit_load_response
 from fe_drivetrain.cases.verification.shaft_theory import (
     Spring,
     Tube,
@@ -25,10 +28,7 @@ from fe_drivetrain.cases.verification.solid_shafts import (
 )
 from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
 from fe_drivetrain.geometry import Section, Shaft
-
-from fe_drivetrain.frame import Beam, Support, unit_load_response
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.sections import BeamSection
+from fe_drivetrain.scene.materials import MATERIALS
 
 STEEL = MATERIALS["steel"]
 TUBES = [Tube(0.4, bore, 1.5, STEEL) for bore in (0.0, 0.2, 0.36)]
@@ -188,7 +188,7 @@ def test_torsion_bounds_close_in_on_a_stepped_shaft(bore):
 def test_a_circle_of_parabolas_falls_short_as_the_formula_says():
     mesh = solid(straight((0.0, 0.3), 0.4), 3)
     facets = mesh.section_facets(0.0)
-    from fe_drivetrain.facets import face_weights
+    from fe_drivetrain.mesh.facets import face_weights
 
     area = face_weights(mesh.points, facets, len(mesh.points)).sum() / (np.pi * 0.04)
     assert 1 - area == pytest.approx(2 * parabola_shortfall(12), rel=0.02)

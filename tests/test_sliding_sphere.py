@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from fe_drivetrain.cases.verification.spherical_shells import (
     AXIS,
     JOINTS,

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from fe_drivetrain import cost, direct, multigrid
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import assemble, rigid_motions
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.reduction import System, reduce
-from fe_drivetrain.solvers import ITERATIVE, METHODS, factorise, solve
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces.constraints import eliminate, fixed
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.solve import cost_model, direct_solvers, multigrid
+from fe_drivetrain.solve.reduction import System, reduce
+from fe_drivetrain.solve.solvers import ITERATIVE, METHODS, factorise, solve
 
 
 def missing(method):
-    return method in direct.PACKAGES and not direct.is_installed(method)
+    return method in direct_solvers.PACKAGES and not direct_solvers.is_installed(method)
 
 
 EACH = [
@@ -135,7 +135,7 @@ def test_an_iteration_that_stalls_falls_back_and_says_so(cube, rng, monkeypatch,
     x, F = known(system, elimination, rng)
     monkeypatch.setattr(multigrid, "MAX_ITERATIONS", 3)
     solution = solve(system, F, method)
-    assert solution.method in direct.PACKAGES
+    assert solution.method in direct_solvers.PACKAGES
     assert f"{method} stopped after 3 iterations" in solution.reason
     np.testing.assert_allclose(solution.x, x, atol=1e-9 * np.abs(x).max())
 
@@ -144,7 +144,7 @@ def test_an_iteration_that_stalls_fails_where_no_factor_fits(cube, rng, monkeypa
     system, elimination = cube
     _, F = known(system, elimination, rng)
     monkeypatch.setattr(multigrid, "MAX_ITERATIONS", 3)
-    monkeypatch.setattr(cost, "available_memory", lambda: 1000.0)
+    monkeypatch.setattr(cost_model, "available_memory", lambda: 1000.0)
     with pytest.raises(InputError, match=r"stopped after 3 iterations.*relative residual.*memory"):
         solve(system, F, "multigrid")
 
@@ -153,7 +153,7 @@ def test_auto_names_its_choice_and_the_others(cube, rng):
     system, elimination = cube
     _, F = known(system, elimination, rng)
     solution = solve(system, F)
-    costs = cost.predict(system, F.shape[1])
+    costs = cost_model.predict(system, F.shape[1])
     assert solution.method == costs[0].method
     for each in costs:
         assert each.method in solution.reason
@@ -162,10 +162,10 @@ def test_auto_names_its_choice_and_the_others(cube, rng):
 
 def test_auto_takes_no_factor_that_does_not_fit(cube, monkeypatch):
     system, _ = cube
-    monkeypatch.setattr(cost, "available_memory", lambda: 1000.0)
-    assert not any(c.fits for c in cost.predict(system, 1))
-    monkeypatch.setattr(cost, "available_memory", lambda: 1e12)
-    assert all(c.fits for c in cost.predict(system, 1))
+    monkeypatch.setattr(cost_model, "available_memory", lambda: 1000.0)
+    assert not any(c.fits for c in cost_model.predict(system, 1))
+    monkeypatch.setattr(cost_model, "available_memory", lambda: 1e12)
+    assert all(c.fits for c in cost_model.predict(system, 1))
 
 
 def test_width_tells_a_rod_from_a_cube():
@@ -180,7 +180,7 @@ def test_width_tells_a_rod_from_a_cube():
         everywhere = np.round(np.vstack(moved), 9)
         unique, number = np.unique(everywhere, axis=0, return_inverse=True)
         rod = number[np.vstack(joined)]
-        rows.append(cost.width(assemble(unique, rod, (1.0, 1.0))))
+        rows.append(cost_model.width(assemble(unique, rod, (1.0, 1.0))))
     assert 0.5 < rows[1] / rows[0] < 2.0
 
 
@@ -220,11 +220,11 @@ def test_thin_and_slender_solids_are_expected_to_take_multigrid_long(size, divis
     K = assemble(block.points, block.cells, (1.0, 1.0))
     wall = fixed("wall", block.face_nodes("x0"), block.points.size)
     system = reduce(block.points, block.cells, K, eliminate([wall], block.points.size))
-    alone = cost.iterations(replace(system, elements=None))
+    alone = cost_model.iterations(replace(system, elements=None))
     if chunky:
-        assert cost.iterations(system) == alone
+        assert cost_model.iterations(system) == alone
     else:
-        assert cost.iterations(system) > multigrid.MAX_ITERATIONS > alone
+        assert cost_model.iterations(system) > multigrid.MAX_ITERATIONS > alone
 
 
 def test_thinness_of_a_plate_is_that_of_its_wall():
@@ -233,7 +233,7 @@ def test_thinness_of_a_plate_is_that_of_its_wall():
     K = assemble(block.points, block.cells, (1.0, 1.0))
     system = reduce(block.points, block.cells, K, eliminate([], block.points.size))
     expected = 0.1 / 1e-4 * np.sqrt(np.sqrt(2.0) / 2e-4)
-    assert cost.thinness(system.elements) == pytest.approx(expected, rel=1e-3)
+    assert cost_model.thinness(system.elements) == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.skipif(missing("cholmod"), reason="cholmod is not installed")
@@ -243,10 +243,10 @@ def test_entries_of_a_factor_are_counted(cube):
 
     A = sparse.csc_matrix(cube[0].K)
     factor = cholesky(A, ordering_method="metis", mode="simplicial")
-    counted = direct.entries_of_factor(A.indptr, A.indices, factor.P())
+    counted = direct_solvers.entries_of_factor(A.indptr, A.indices, factor.P())
     assert counted == factor.L().nnz
     dense = sparse.csc_matrix(np.ones((7, 7)))
-    assert direct.entries_of_factor(dense.indptr, dense.indices, np.arange(7)) == 28
+    assert direct_solvers.entries_of_factor(dense.indptr, dense.indices, np.arange(7)) == 28
 
 
 def test_what_rounding_decides_is_refused_by_every_solver():

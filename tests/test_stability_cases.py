@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from fe_drivetrain.case import find_cases
-from fe_drivetrain.results import Chart, Results, read_results
-from fe_drivetrain.suite import result_folder, run_cases
+from fe_drivetrain.report.results import Chart, Results, read_results
+from fe_drivetrain.suite.case import find_cases
+from fe_drivetrain.suite.suite import result_folder, run_cases
 
 CASES = find_cases("stability")
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from fe_drivetrain.cases.stability import couplings, fingerprints, floats, layers
-from fe_drivetrain.cases.stability.decades import decades, safe_range, slope
 from scipy import sparse
 
-from fe_drivetrain.elasticity import assemble
-from fe_drivetrain.materials import MATERIALS
+from fe_drivetrain.cases.stability import couplings, fingerprints, floats, layers
+from fe_drivetrain.cases.stability.decades import decades, safe_range, slope
+from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.scene.materials import MATERIALS
 
 
 def test_safe_range_is_the_run_about_the_least_error():

@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import rigid_motions
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.interfaces import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces.constraints import (
     fixed,
     freedoms,
     held_nodes,
     rigid_face,
     rigid_point,
 )
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.statics import solve_solid
-from fe_drivetrain.stress import nodal_stresses, principal, tensor, von_mises
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.operator.loads import traction_loads
+from fe_drivetrain.operator.stress import nodal_stresses, principal, tensor, von_mises
+from fe_drivetrain.solve.solid import solve_solid
 
 E, NU = 3.0, 0.25
 LAME = (E * NU / ((1 + NU) * (1 - 2 * NU)), E / (2 * (1 + NU)))

@@ -5,10 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.model import build_model
-from fe_drivetrain.response import unit_load_response
-from fe_drivetrain.stiffness import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.response.bearing_stiffness import (
     HORIZONTAL,
     PLANES,
     VERTICAL,
@@ -16,6 +14,8 @@ from fe_drivetrain.stiffness import (
     tilt_stiffness,
     without_gearbox,
 )
+from fe_drivetrain.response.model import build_model
+from fe_drivetrain.response.unit_loads import unit_load_response
 
 pytestmark = pytest.mark.filterwarnings("ignore:tilt stiffness of:UserWarning")
 
@@ -70,7 +70,7 @@ def test_energy_estimator_scales_with_the_housing_modulus(bonded_model):
         "bearing_units.0.bearing.material": "steel2",
         "bearing_units.0.housing.material": "iron2",
     }
-    from fe_drivetrain.scene import change_scene
+    from fe_drivetrain.scene.scene import change_scene
 
     found = []
     for changes in ({}, twice):

@@ -5,9 +5,9 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from fe_drivetrain.compare import compare
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.streaming import BLOCK, compare_streamed, moments
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.compare.statistics import compare
+from fe_drivetrain.compare.streaming import BLOCK, compare_streamed, moments
 
 NAMES, UNITS = ("Fy", "My"), ("N", "N m")
 

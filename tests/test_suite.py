@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from fe_drivetrain.cache import user_cache
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.errors import InputError, MissingToolError
-from fe_drivetrain.parallel import VARIABLE, cores
-from fe_drivetrain.report import write_index
-from fe_drivetrain.results import Environment, Results, judge, read_results
-from fe_drivetrain.suite import run_cases
+from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.processes import CORES_VARIABLE, cores
+from fe_drivetrain.report.page import write_index
+from fe_drivetrain.report.results import Environment, Results, judge, read_results
+from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.suite import run_cases
 
 
 def results_of(run: Run, name: str, computed: float = 1.0, **figures: object) -> Results:
@@ -86,7 +86,7 @@ def a_case(name: str, work: object, alone: bool = False) -> Case:
 
 @pytest.fixture(params=["1", "2"])
 def number_of_cores(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    monkeypatch.setenv(VARIABLE, request.param)
+    monkeypatch.setenv(CORES_VARIABLE, request.param)
     return str(request.param)
 
 
@@ -158,7 +158,7 @@ def test_earlier_results_stay_where_a_case_cannot_run(tmp_path: Path) -> None:
 def test_measuring_cases_run_alone_in_processes_of_their_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(VARIABLE, "2")
+    monkeypatch.setenv(CORES_VARIABLE, "2")
     names = [f"a/beside{k}" for k in range(3)] + [f"b/alone{k}" for k in range(2)]
     cases = [a_case(name, count, alone=name.startswith("b/")) for name in reversed(names)]
     assert run_cases(cases, tmp_path) == {}
@@ -211,14 +211,15 @@ def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
     program = (
         "import sys; sys.argv[:] = ['fe-drivetrain', 'run', '--all']\n"
         "import test_suite as t\n"
-        "from fe_drivetrain import case, cli\n"
+        "from fe_drivetrain.commands import main\n"
+        "from fe_drivetrain.suite import case\n"
         "found = [t.a_case('a/one', t.count), t.a_case('a/wait', t.wait)]\n"
         "case.all_cases = lambda: {c.name: c for c in found}\n"
-        "cli.main()\n"
+        "main()\n"
     )
     environment = {
         **os.environ,
-        VARIABLE: "2",
+        CORES_VARIABLE: "2",
         "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path]),
     }
     with subprocess.Popen(

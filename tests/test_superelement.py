@@ -7,20 +7,20 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain import export
-from fe_drivetrain.condensation import keep_points
-from fe_drivetrain.condensed_shafts import meridian_shaft
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.levels import shaft_level
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.scene_superelements import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.from_scene import (
     difference,
     shaft_superelement,
     supported_superelement,
     unit_superelement,
 )
-from fe_drivetrain.superelement import Origin, Superelement
+from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.fidelity.ladder import shaft_level
+from fe_drivetrain.fidelity.shafts import meridian_shaft
+from fe_drivetrain.scene.scene import library_scene
+from fe_drivetrain.solve.condensation import keep_points
 
-READABLE = [name for name in export.FORMATS if hasattr(export._module(name), "read")]
+READABLE = [name for name in export.FORMATS if hasattr(export.format_module(name), "read")]
 
 #: What the extra of a format installs.
 IMPORTS = {"hdf5": "h5py", "nastran": "pyNastran"}

@@ -9,11 +9,17 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from fe_drivetrain import surrogate
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.rotor import Rotor, operating_point
-from fe_drivetrain.surrogate import Condition, HubLoadSet, hub_load_set, hub_loads, surrogate_grid
-from fe_drivetrain.wind import turbulence_sigma
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads import surrogate
+from fe_drivetrain.hub_loads.aero_rotor import Rotor, operating_point
+from fe_drivetrain.hub_loads.surrogate import (
+    Condition,
+    HubLoadSet,
+    hub_load_set,
+    hub_loads,
+    surrogate_grid,
+)
+from fe_drivetrain.hub_loads.wind import turbulence_sigma
 
 FX, FY, FZ, MX, MY, MZ = range(6)
 LEVEL = Rotor(shaft_tilt=0.0)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.uncertainty import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.scene import Scene, change_scene
+from fe_drivetrain.uncertainty.sampling import (
     Samples,
     nominal_value,
     sample,

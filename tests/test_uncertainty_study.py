@@ -7,35 +7,36 @@ import pytest
 from conftest import coarse_scene
 from typer.testing import CliRunner
 
-from fe_drivetrain import cli, resolve
-from fe_drivetrain.bearing_units import unit_stiffness
-from fe_drivetrain.condensation import wrench_transport
-from fe_drivetrain.energy_slopes import (
+from fe_drivetrain.commands import app
+from fe_drivetrain.commands.uncertainty_page import bands, figures, inputs
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.formats.summary import summary
+from fe_drivetrain.fidelity.bearing_units import unit_stiffness
+from fe_drivetrain.fidelity.energy_sensitivities import (
     compliance,
     energy_slopes,
     hub_elasticities,
     moment_elasticities,
     total,
 )
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.export.summary import summary
-from fe_drivetrain.levels import shaft_level
-from fe_drivetrain.model import LOADS, Model, build_model
-from fe_drivetrain.reported import (
+from fe_drivetrain.fidelity.ladder import shaft_level
+from fe_drivetrain.fidelity.quantities import (
     numbers,
     shaft_numbers,
     stiffness_names,
     unit_numbers,
     without_zeros,
 )
-from fe_drivetrain.resolve import Resolver, shaft_content, unit_content
-from fe_drivetrain.response import Response, unit_load_response
-from fe_drivetrain.results import read_results
-from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.uncertainty import check_spreads, nominal_value, with_values
-from fe_drivetrain.uncertainty_page import bands, figures, inputs
-from fe_drivetrain.uncertainty_study import Study, study
-from fe_drivetrain.unit_surface import touching, unit_surface
+from fe_drivetrain.report.results import read_results
+from fe_drivetrain.response.model import LOADS, Model, build_model
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
+from fe_drivetrain.scene.scene import Scene, change_scene, library_scene
+from fe_drivetrain.solve.condensation import wrench_transport
+from fe_drivetrain.uncertainty import resolver as resolver_module
+from fe_drivetrain.uncertainty.input_study import Study, study
+from fe_drivetrain.uncertainty.resolver import Resolver, shaft_content, unit_content
+from fe_drivetrain.uncertainty.response_surface import touching, unit_surface
+from fe_drivetrain.uncertainty.sampling import check_spreads, nominal_value, with_values
 
 BEARING = "main_bearing"
 STEEL, IRON = "materials.steel.youngs_modulus", "materials.ductile_iron.youngs_modulus"
@@ -95,13 +96,13 @@ def test_only_what_a_change_touches_is_solved_again(
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("solved again")
 
-    monkeypatch.setattr(resolve, "unit_stiffness", refuse)
+    monkeypatch.setattr(resolver_module, "unit_stiffness", refuse)
     resolver(with_values(scene, {SPRING: 5e7}))
     resolver(with_values(scene, {"shaft.front": -1.1}))
     resolver(with_values(scene, {"shaft.sections.0.length": 2.3}))
     with pytest.raises(AssertionError, match="solved again"):
         resolver(with_values(scene, {IRON: 160e9}))
-    monkeypatch.setattr(resolve, "condensed_shaft", refuse)
+    monkeypatch.setattr(resolver_module, "condensed_shaft", refuse)
     resolver(with_values(scene, {SPRING: 6e7}))
     with pytest.raises(AssertionError, match="solved again"):
         resolver(with_values(scene, {"shaft.sections.0.length": 2.4}))
@@ -324,7 +325,7 @@ def scene_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def _run(scene_file: Path, out: Path, *options: str) -> tuple[int, str, str]:
     arguments = [str(scene_file) if a == "SCENE" else a for a in RUN]
-    outcome = CliRunner().invoke(cli._app, [*arguments, *options, "--out", str(out)])
+    outcome = CliRunner().invoke(app._app, [*arguments, *options, "--out", str(out)])
     return outcome.exit_code, outcome.stdout, outcome.stderr
 
 
@@ -334,7 +335,7 @@ def test_the_command_writes_a_page_and_the_same_again(scene_file: Path, tmp_path
         status, said, steps = _run(
             scene_file, tmp_path / name, "--quantity", "main_bearing.My", "--seed", "5", "--sobol"
         )
-        assert status == cli.PASSED, steps
+        assert status == app.PASSED, steps
         assert "main_bearing.My of hub.My" in said
         assert "samples ..." in steps
         assert "samples of Sobol's shares ..." in steps
@@ -365,7 +366,7 @@ def test_a_wrong_option_gets_one_sentence_and_no_file(
     scene_file: Path, tmp_path: Path, options: list[str], message: str
 ) -> None:
     status, _, said = _run(scene_file, tmp_path / "out", *options)
-    assert status == cli.MISTAKE
+    assert status == app.MISTAKE
     assert message in said
     assert "Traceback" not in said
     assert list(tmp_path.iterdir()) == []
@@ -373,9 +374,9 @@ def test_a_wrong_option_gets_one_sentence_and_no_file(
 
 def test_a_scene_without_spreads_says_what_to_add(tmp_path: Path) -> None:
     outcome = CliRunner().invoke(
-        cli._app, ["uncertainty", "main_bearing_bonded", "--out", str(tmp_path / "out")]
+        app._app, ["uncertainty", "main_bearing_bonded", "--out", str(tmp_path / "out")]
     )
-    assert outcome.exit_code == cli.MISTAKE
+    assert outcome.exit_code == app.MISTAKE
     assert "add some under 'uncertainty'" in outcome.stderr
     assert list(tmp_path.iterdir()) == []
 
@@ -384,8 +385,8 @@ def test_the_adviser_chooses_the_level_and_judges_it(scene_file: Path, tmp_path:
     """A tolerance that no cheap level meets: the results are there, and the status says so."""
     out = tmp_path / "out"
     arguments = ["uncertainty", str(scene_file), "--tolerance", "0.1%", "--samples", "40"]
-    outcome = CliRunner().invoke(cli._app, [*arguments, "--out", str(out)])
-    assert outcome.exit_code == cli.FAILED, outcome.stderr
+    outcome = CliRunner().invoke(app._app, [*arguments, "--out", str(out)])
+    assert outcome.exit_code == app.FAILED, outcome.stderr
     results = read_results(out / "results.json")
     (verdict,) = results.verdicts
     level = results.figures["level"]

@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from fe_drivetrain import cli, statics
-from fe_drivetrain.case import find_cases
-from fe_drivetrain.results import Chart, Image, Results, read_results
-from fe_drivetrain.suite import result_folder, run_cases
+from fe_drivetrain.commands import app
+from fe_drivetrain.report.results import Chart, Image, Results, read_results
+from fe_drivetrain.solve import solid
+from fe_drivetrain.suite.case import find_cases
+from fe_drivetrain.suite.suite import result_folder, run_cases
 
 CASES = find_cases("verification")
 
@@ -53,19 +54,19 @@ def test_a_modulus_that_is_five_per_cent_wrong_is_caught(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The solids get another modulus than the closed forms: the run says so, and exits with 1."""
-    right = statics.solve_solid.__defaults__
+    right = solid.solve_solid.__defaults__
     assert right is not None
 
     def wrong(points, cells, lame, *rest):  # type: ignore[no-untyped-def]
-        return statics.assemble(points, cells, tuple(1.05 * constant for constant in lame), *rest)
+        return solid.assemble(points, cells, tuple(1.05 * constant for constant in lame), *rest)
 
-    changed = tuple(wrong if value is statics.assemble else value for value in right)
+    changed = tuple(wrong if value is solid.assemble else value for value in right)
     assert changed != right
-    monkeypatch.setattr(statics.solve_solid, "__defaults__", changed)
+    monkeypatch.setattr(solid.solve_solid, "__defaults__", changed)
     arguments = ["run", "verification/thick_cylinder", "--quick", "--out", str(tmp_path / "out")]
-    outcome = CliRunner().invoke(cli._app, [*arguments, "--junit", str(tmp_path / "out.xml")])
-    assert outcome.exit_code == cli.FAILED
+    outcome = CliRunner().invoke(app._app, [*arguments, "--junit", str(tmp_path / "out.xml")])
+    assert outcome.exit_code == app.FAILED
     assert "FAIL" in outcome.stdout
     assert "<failure" in (tmp_path / "out.xml").read_text()
     monkeypatch.undo()
-    assert CliRunner().invoke(cli._app, arguments).exit_code == cli.PASSED
+    assert CliRunner().invoke(app._app, arguments).exit_code == app.PASSED

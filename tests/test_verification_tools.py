@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+
 from fe_drivetrain.cases.verification import condensed, distorted, manufactured
 from fe_drivetrain.cases.verification.round_shafts import Bush
-
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.facets import facet_points
-from fe_drivetrain.loads import body_loads
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.operator.loads import body_loads
 
 
 @pytest.mark.parametrize("waves", [manufactured.three_waves(), manufactured.plane_waves()])

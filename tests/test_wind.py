@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.signal import welch
 
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.wind import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.wind import (
     DiscTurbulence,
     at_azimuth,
     coherence_decay,

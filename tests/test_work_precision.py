@@ -4,6 +4,9 @@ import csv
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from fe_drivetrain.cases.performance.choices import (
     CURVED,
     ELEMENTS,
@@ -25,20 +28,17 @@ from fe_drivetrain.cases.performance.precision import (
 from fe_drivetrain.cases.performance.studies import beam_stiffness, meridian_stiffness
 from fe_drivetrain.cases.performance.tilt import QUANTITIES, assemble_tilt, in_element
 from fe_drivetrain.cases.performance.work_precision import PARTS, parts_of
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Section, Shaft
-from hypothesis import given
-from hypothesis import strategies as st
-
-from fe_drivetrain import solvers
-from fe_drivetrain.case import Run, find_cases, run_case
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.hexahedra import Grading
-from fe_drivetrain.materials import MATERIALS, Material
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import Model
-from fe_drivetrain.response import unit_load_response
-from fe_drivetrain.results import read_results
-from fe_drivetrain.stiffness import PLANES, tilt_stiffness, without_gearbox
+from fe_drivetrain.mesh.hexahedra import Grading
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.report.results import read_results
+from fe_drivetrain.response.bearing_stiffness import PLANES, tilt_stiffness, without_gearbox
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import unit_load_response
+from fe_drivetrain.scene.materials import MATERIALS, Material
+from fe_drivetrain.solve import solvers
+from fe_drivetrain.suite.case import Run, find_cases, run_case
 
 STEEL = MATERIALS["steel"]
 TUBE = Shaft(front=-2.0, sections=(Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3),))
@@ -148,7 +148,7 @@ def test_every_element_has_the_stiffness_of_its_own_material(element):
 
 def test_tilt_stiffness_is_that_of_the_model(bonded_model: Model):
     """The sweep's own assembly of the bonded scene against the model, for curved elements."""
-    from fe_drivetrain.model import build_model
+    from fe_drivetrain.response.model import build_model
 
     scene, mesh = without_gearbox(bonded_model.scene), bonded_model.mesh
     assembled = assemble_tilt(scene, in_element(mesh, "main_bearing", CURVED))

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Section 4.1: average damping ratios of shafts and of gear meshes.
 SHAFT_RATIO, MESH_RATIO = 0.006, 0.1
@@ -15,21 +15,24 @@ LOW = 10.0
 def run(run: Run) -> Any:
     """Eigenvalues with the dampers as tabled, and as the damping ratios of the text mean them."""
     import numpy as np
-    from fe_drivetrain.cases.drivetrain import published
     from scipy.linalg import expm
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.drivetrain import (
+    from fe_drivetrain.cases.drivetrain import published
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.torsion import (
         GENERATOR,
         ROTOR,
+        damped,
+        damped_modes,
         gear_masses,
         mesh_damping,
+        modal_damping,
+        natural_modes,
+        response,
         shaft_damping,
         stage_masses,
         two_masses,
     )
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
-    from fe_drivetrain.torsion import damped, damped_modes, modal_damping, natural_modes, response
 
     table = published.table("nrel_750kw")
     planetary, *parallel = published.nrel_stages(table)
@@ -423,6 +426,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

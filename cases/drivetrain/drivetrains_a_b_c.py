@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: What each table of inputs needs in place of one entry, and the number in Table 6.4 (from 1) that
 #: it is solved for.
@@ -19,13 +19,19 @@ BEHIND_IT = {"B": ("HSS", "generator"), "C": ("LSS", "generator")}
 def run(run: Run) -> Any:
     """Frequencies against Table 6.4, and what restores it where it is not of its inputs."""
     import numpy as np
-    from fe_drivetrain.cases.drivetrain import independent, published
     from scipy.optimize import brentq
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.drivetrain import Drivetrain, gear_masses, gear_speeds, stage_masses
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text
-    from fe_drivetrain.torsion import Torsional, changed, natural_modes
+    from fe_drivetrain.cases.drivetrain import independent, published
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, trace
+    from fe_drivetrain.torsion import (
+        Drivetrain,
+        Torsional,
+        changed,
+        gear_masses,
+        gear_speeds,
+        natural_modes,
+        stage_masses,
+    )
 
     def free(table: Drivetrain) -> Torsional:
         return gear_masses(table, "free")
@@ -266,6 +272,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.
 ASTRAY = frozenset({3, 4, 5, 6, 8})
@@ -15,20 +15,21 @@ def run(run: Run) -> Any:
     from functools import partial
 
     import numpy as np
-    from fe_drivetrain.cases.drivetrain import independent, published
     from scipy.optimize import brentq, fsolve
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.drivetrain import (
+    from fe_drivetrain.cases.drivetrain import independent, published
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.torsion import (
         GENERATOR,
         ROTOR,
         Drivetrain,
+        changed,
         gear_masses,
         gear_speeds,
+        natural_modes,
         stage_masses,
+        static_stiffness,
     )
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
-    from fe_drivetrain.torsion import changed, natural_modes, static_stiffness
 
     name = "nrel_750kw"
     table = published.table(name)
@@ -356,7 +357,7 @@ def run(run: Run) -> Any:
                         "as solid discs of the J_P of Table 4.2: bored planets bring what "
                         "is missing. "
                         "Table 4.2's carrier is the bare part; the model behind Table 6.1 has its "
-                        "planets on it. A carrier given for `fe_drivetrain.drivetrain` must count "
+                        "planets on it. A carrier given for `fe_drivetrain.torsion` must count "
                         "them as points."
                     ),
                 ],
@@ -414,9 +415,7 @@ def _readings(table: Any, np: Any) -> list[list[Any]]:
     import itertools
 
     from fe_drivetrain.cases.drivetrain import published
-
-    from fe_drivetrain.drivetrain import gear_masses
-    from fe_drivetrain.torsion import natural_modes
+    from fe_drivetrain.torsion import gear_masses, natural_modes
 
     stage = table.stages[0]
     p = stage.planet_over_sun
@@ -472,6 +471,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Elements round a turn of the meshes.
 TURNS, QUICK_TURNS = (8, 11, 14), (8, 9, 10)
@@ -13,16 +13,20 @@ FILLETS, QUICK_FILLETS = (0.01, 0.02), (0.02,)
 def run(run: Run) -> Any:
     """Stiffness by sections, meridian and solid, and two, five and eleven masses with each."""
     import numpy as np
+    from scipy.optimize import brentq
+
     from fe_drivetrain.cases.drivetrain import low_speed_shaft as lss
     from fe_drivetrain.cases.drivetrain import published
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
-    from scipy.optimize import brentq
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.drivetrain import gear_masses, stage_masses, two_masses
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
-    from fe_drivetrain.torsion import frequency_bands, natural_modes
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.torsion import (
+        frequency_bands,
+        gear_masses,
+        natural_modes,
+        stage_masses,
+        two_masses,
+    )
 
     table = published.table("nrel_750kw")
     row = table.shafts[0]
@@ -386,6 +390,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.
 ASTRAY = frozenset({3, 4})
@@ -13,12 +13,21 @@ def run(run: Run) -> Any:
     from functools import partial
 
     import numpy as np
-    from fe_drivetrain.cases.drivetrain import independent, published
     from scipy.optimize import brentq, fsolve
 
-    from fe_drivetrain.drivetrain import GENERATOR, ROTOR, Drivetrain, stage_masses, two_masses
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.torsion import Torsional, changed, natural_modes, referred
+    from fe_drivetrain.cases.drivetrain import independent, published
+    from fe_drivetrain.report import Section, Table, Text, judge
+    from fe_drivetrain.torsion import (
+        GENERATOR,
+        ROTOR,
+        Drivetrain,
+        Torsional,
+        changed,
+        natural_modes,
+        referred,
+        stage_masses,
+        two_masses,
+    )
 
     name = "nrel_750kw"
     table = published.table(name)
@@ -346,6 +355,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,15 +2,17 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 
 def run(run: Run) -> Any:
     """Frequencies, shapes, shares of energy and damping at three levels of detail."""
     import numpy as np
-    from fe_drivetrain.cases.drivetrain import independent, published
 
-    from fe_drivetrain.drivetrain import (
+    from fe_drivetrain.cases.drivetrain import independent, published
+    from fe_drivetrain.common import InputError
+    from fe_drivetrain.report import Section, Table, Text, judge
+    from fe_drivetrain.torsion import (
         GENERATOR,
         ROTOR,
         Drivetrain,
@@ -18,15 +20,16 @@ def run(run: Run) -> Any:
         ParallelStage,
         PlanetaryStage,
         ShaftRow,
+        damped_modes,
         gear_masses,
         gear_speeds,
+        modal_damping,
+        natural_modes,
         read_drivetrain,
         stage_masses,
+        static_stiffness,
         two_masses,
     )
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.torsion import damped_modes, modal_damping, natural_modes, static_stiffness
 
     unknown = sorted(set(run.settings) - {"table"})
     if unknown:
@@ -185,6 +188,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

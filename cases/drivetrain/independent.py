@@ -8,7 +8,8 @@ from fractions import Fraction
 import numpy as np
 from scipy.optimize import brentq
 
-from fe_drivetrain.torsion import Floats, Torsional
+from fe_drivetrain.common import Floats
+from fe_drivetrain.torsion import Torsional
 
 
 def holzer(

@@ -14,16 +14,18 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from fe_drivetrain.charts import chart, trace
-from fe_drivetrain.drivetrain import (
+from fe_drivetrain.common import Floats
+from fe_drivetrain.report import Chart, Verdict, chart, judge, trace
+from fe_drivetrain.torsion import (
     Drivetrain,
     GeneratorState,
+    Modes,
     ParallelStage,
     PlanetaryStage,
+    Torsional,
+    natural_modes,
     parse_drivetrain,
 )
-from fe_drivetrain.results import Chart, Verdict, judge
-from fe_drivetrain.torsion import Floats, Modes, Torsional, natural_modes
 
 Ints = NDArray[np.intp]
 

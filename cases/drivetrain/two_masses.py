@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 
 def run(run: Run) -> Any:
@@ -10,13 +10,11 @@ def run(run: Run) -> Any:
     from functools import partial
 
     import numpy as np
-    from fe_drivetrain.cases.drivetrain import independent, published
     from scipy.optimize import brentq
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.drivetrain import GENERATOR, ROTOR, two_masses
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.torsion import changed, natural_modes
+    from fe_drivetrain.cases.drivetrain import independent, published
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.torsion import GENERATOR, ROTOR, changed, natural_modes, two_masses
 
     table = published.table("nrel_750kw")
     verdicts: list[Any] = []
@@ -284,6 +282,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

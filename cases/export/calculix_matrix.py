@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Natural frequencies that are compared.
 COUNT = 3
@@ -14,16 +14,17 @@ def run(run: Run) -> Any:
     from pathlib import Path
 
     import numpy as np
-    from fe_drivetrain.cases.export.samples import frequencies, samples
 
-    from fe_drivetrain.calculix import ROUNDING, find_calculix
-    from fe_drivetrain.export.calculix_runs import (
+    from fe_drivetrain.cases.export.samples import frequencies, samples
+    from fe_drivetrain.export import (
+        ROUNDING,
         compliance_by_calculix,
+        find_calculix,
         frequencies_by_calculix,
         held,
+        scaled,
     )
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.superelement import scaled
+    from fe_drivetrain.report import Section, Table, Text, judge
 
     find_calculix()
     rows: list[list[Any]] = []
@@ -131,6 +132,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

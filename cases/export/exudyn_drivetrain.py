@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Fixed-interface modes of the flexible body, and of the convergence study.
 MODES = 12
@@ -20,15 +20,17 @@ def run(run: Run) -> Any:
     from itertools import pairwise
 
     import numpy as np
-    from fe_drivetrain.cases.export import rotor_scenes
 
-    from fe_drivetrain.bearing_units import scene_supports
-    from fe_drivetrain.craig_bampton import craig_bampton_shaft, free_frequencies
-    from fe_drivetrain.export import exudyn_system
-    from fe_drivetrain.levels import shaft_level
-    from fe_drivetrain.lumped_shaft import lumped_superelement
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.supported_modes import natural_frequencies
+    from fe_drivetrain.cases.export import rotor_scenes
+    from fe_drivetrain.export import (
+        craig_bampton_shaft,
+        free_frequencies,
+        lumped_superelement,
+        natural_frequencies,
+    )
+    from fe_drivetrain.export.programs import exudyn_system
+    from fe_drivetrain.fidelity import scene_supports, shaft_level
+    from fe_drivetrain.report import Section, Table, Text, judge
 
     version = exudyn_system.exudyn_version()
     verdicts: list[Any] = []
@@ -182,6 +184,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 REASON = "seventeen digits, or the bits, name every double; the rest is one addition of the halves"
 
@@ -17,13 +17,12 @@ def run(run: Run) -> Any:
     from pathlib import Path
 
     import numpy as np
-    from fe_drivetrain.cases.export.samples import difference, samples
     from scipy.io import mmread
 
     from fe_drivetrain import export
-    from fe_drivetrain.elasticity import Floats
-    from fe_drivetrain.errors import MissingToolError
-    from fe_drivetrain.results import Section, Table, judge
+    from fe_drivetrain.cases.export.samples import difference, samples
+    from fe_drivetrain.common import Floats, MissingToolError
+    from fe_drivetrain.report import Section, Table, judge
 
     try:
         h5py = import_module("h5py")
@@ -123,6 +122,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 SOURCE = "the matrices before they were written"
 DMIG_REASON = (
@@ -17,11 +17,11 @@ def run(run: Run) -> Any:
     from pathlib import Path
 
     import numpy as np
-    from fe_drivetrain.cases.export.samples import difference, frequencies, samples
 
     from fe_drivetrain import export
-    from fe_drivetrain.export.nastran import pynastran
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.cases.export.samples import difference, frequencies, samples
+    from fe_drivetrain.export import pynastran
+    from fe_drivetrain.report import Section, Table, Text, judge
 
     pynastran("bdf.bdf")  # absent, it is missed before anything is solved
     elements = samples(run)
@@ -134,6 +134,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 SOURCE = "the values before they were written"
 DIGITS = "the file keeps every digit"
@@ -25,15 +25,19 @@ def run(run: Run) -> Any:
     from pathlib import Path
 
     import numpy as np
+
     from fe_drivetrain.cases.export.sample_elastodyn import TEXT
     from fe_drivetrain.cases.export.samples import FACTOR, difference, frequencies
-
-    from fe_drivetrain.export import elastodyn, extptfm, subdyn
-    from fe_drivetrain.export.torsion import torsional_damping, torsional_stiffness
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.export import (
+        Superelement,
+        shaft_superelement,
+        torsional_damping,
+        torsional_stiffness,
+        unit_superelement,
+    )
+    from fe_drivetrain.export.formats import elastodyn, extptfm, subdyn
+    from fe_drivetrain.report import Section, Table, Text, judge
     from fe_drivetrain.scene import library_scene
-    from fe_drivetrain.scene_superelements import shaft_superelement, unit_superelement
-    from fe_drivetrain.superelement import Superelement
 
     scene = library_scene("main_bearing_bonded")
     with run.step("free shaft"):
@@ -198,6 +202,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Elements along the shaft, and natural frequencies that are compared.
 PARTS, COUNT = 32, 6
@@ -20,16 +20,14 @@ def run(run: Run) -> Any:
     from itertools import pairwise
 
     import numpy as np
-    from fe_drivetrain.cases.export import rotor_scenes
 
-    from fe_drivetrain.bearing_units import scene_supports
-    from fe_drivetrain.craig_bampton import craig_bampton_shaft, free_frequencies
-    from fe_drivetrain.export import ross_rotor
-    from fe_drivetrain.frame import Support, shaft_stiffness, unit_load_response
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.beam import Support, beam_of_scene, shaft_stiffness, unit_load_response
+    from fe_drivetrain.cases.export import rotor_scenes
+    from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
+    from fe_drivetrain.export.programs import ross_rotor
+    from fe_drivetrain.fidelity import scene_supports
+    from fe_drivetrain.report import Section, Table, Text, judge
     from fe_drivetrain.scene import library_scene
-    from fe_drivetrain.scene_beam import beam_of_scene
-    from fe_drivetrain.supported_modes import natural_frequencies
 
     with run.step("ROSS starts"):
         version = ross_rotor.ross_version()
@@ -258,6 +256,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

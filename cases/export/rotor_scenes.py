@@ -16,7 +16,7 @@ ORDER = 4
 
 def scene_and_units(name: str) -> tuple[Any, dict[str, Any]]:
     """A library scene on a coarse mesh, and the (6, 6) stiffness of each of its bearing units."""
-    from fe_drivetrain.levels import housing_springs
+    from fe_drivetrain.fidelity import housing_springs
     from fe_drivetrain.scene import library_scene
 
     scene = library_scene(name)

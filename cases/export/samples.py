@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.case import Run
-from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.common import Floats
+from fe_drivetrain.export import Superelement, superelement_of
 from fe_drivetrain.scene import library_scene
-from fe_drivetrain.scene_export import superelement_of
-from fe_drivetrain.superelement import Superelement
+from fe_drivetrain.suite import Run
 
 SCENE = "two_bearings"
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 RATIO = 0.05
 #: Main shaft: outer and inner diameter [m].
@@ -27,13 +27,16 @@ def run(run: Run) -> Any:
     from importlib import import_module
     from pathlib import Path
 
-    from fe_drivetrain.errors import MissingToolError
-    from fe_drivetrain.export import windio
-    from fe_drivetrain.export.elastodyn import Torsion
-    from fe_drivetrain.export.torsion import torsional_damping, torsional_stiffness
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.common import MissingToolError
+    from fe_drivetrain.export import (
+        Torsion,
+        shaft_superelement,
+        torsional_damping,
+        torsional_stiffness,
+    )
+    from fe_drivetrain.export.formats import windio
+    from fe_drivetrain.report import Section, Table, Text, judge
     from fe_drivetrain.scene import change_scene, library_scene
-    from fe_drivetrain.scene_superelements import shaft_superelement
 
     scene = library_scene("main_bearing_bonded")
     material = scene.material_of("shaft")
@@ -238,7 +241,7 @@ def drivetrain(young: float, shear: float) -> Any:
 
 
 def _torsion(problem: Any) -> Any:
-    from fe_drivetrain.export.elastodyn import Torsion
+    from fe_drivetrain.export import Torsion
 
     return Torsion(
         float(problem.get_val("drivetrain_spring_constant", units="N*m/rad")[0]),
@@ -254,6 +257,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 SCENE = "main_bearing_spherical"
 
@@ -28,13 +28,12 @@ ENOUGH = 0.05
 def run(run: Run) -> Any:
     """Sweep the tilt stiffness of the joint from none to all, and set the other joints beside."""
     import numpy as np
+
     from fe_drivetrain.cases.fidelity import joint_ladder
     from fe_drivetrain.cases.fidelity.joint_ladder import BEARING, solved, tilting, with_joint
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.condensed_shafts import meridian_shaft
-    from fe_drivetrain.joints import joint_stiffness, roller_lines, roller_loads
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.fidelity import meridian_shaft
+    from fe_drivetrain.interfaces import joint_stiffness, roller_lines, roller_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import change_scene, library_scene
 
     scene = change_scene(library_scene(SCENE), run.settings)
@@ -277,6 +276,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

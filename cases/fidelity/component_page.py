@@ -5,41 +5,44 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from fe_drivetrain import export, scene_superelements
-from fe_drivetrain.adviser import LEAST_ORDER
-from fe_drivetrain.case import Run
-from fe_drivetrain.charts import chart, trace
-from fe_drivetrain.component import Component, SomeComponent
-from fe_drivetrain.component_levels import frame_levels, solid_level
-from fe_drivetrain.component_pictures import picture_of_displacements
-from fe_drivetrain.component_solid import SolidComponent, solid_component
-from fe_drivetrain.convergence import GridConvergence, grid_convergence
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.levels import LevelModel
-from fe_drivetrain.pictures import NoPictureError
-from fe_drivetrain.results import (
+from fe_drivetrain import export
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import GridConvergence, grid_convergence
+from fe_drivetrain.export import Superelement, difference, from_scene
+from fe_drivetrain.fidelity import (
+    LEAST_ORDER,
+    LevelModel,
+    SolidComponent,
+    frame_levels,
+    solid_component,
+    solid_level,
+)
+from fe_drivetrain.report import (
     AssumptionRow,
     Cell,
     Image,
+    NoPictureError,
     Section,
     Table,
     Text,
     Verdict,
+    chart,
     judge,
+    picture_of_displacements,
+    trace,
 )
-from fe_drivetrain.scene_superelements import difference
-from fe_drivetrain.superelement import Superelement
+from fe_drivetrain.scene import Component, SomeComponent
+from fe_drivetrain.suite import Run
 
 #: Coarsening of the mesh under --quick.
 QUICK = 1.8
 
 #: Factors on mesh sizes of the two coarser solids that give the finest its band.
-COARSER = (1.8, scene_superelements.COARSER)
+COARSER = (1.8, from_scene.COARSER)
 
 #: Allowed error of the level that is recommended.
 TOLERANCE = 0.1
@@ -283,7 +286,7 @@ def files_section(run: Run, element: Superelement) -> tuple[Section, Verdict]:
     worst = 0.0
     with run.step("export"):
         for name, form in export.FORMATS.items():
-            module = import_module(f"fe_drivetrain.export.{form.module}")
+            module = export.format_module(name)
             if form.extra or not hasattr(module, "read") or name == "mtx-mass":
                 continue
             path = run.folder / f"{element.name}_{name}{form.suffix}"

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Bushing stiffness is varied by these factors, decades about the one given.
 DECADES = (-2.0, 3.0)
@@ -15,11 +15,11 @@ SCENE = "main_bearing_spherical"
 def run(run: Run) -> Any:
     """Climb the ladder, vary the bushings, export."""
     import numpy as np
-    from fe_drivetrain.cases.fidelity import component_page as page
 
-    from fe_drivetrain.component import HousingComponent, change_component, library_component
-    from fe_drivetrain.component_levels import gearbox_springs
-    from fe_drivetrain.component_superelements import component_superelement
+    from fe_drivetrain.cases.fidelity import component_page as page
+    from fe_drivetrain.export import component_superelement
+    from fe_drivetrain.fidelity import gearbox_springs
+    from fe_drivetrain.scene import HousingComponent, change_component, library_component
 
     component = library_component("gearbox_housing")
     assert isinstance(component, HousingComponent)
@@ -83,14 +83,12 @@ def _sweep(ladder: Any, component: Any) -> tuple[Any, float, float]:
     with the bushings given, and of beams with the stiffest ones.
     """
     import numpy as np
-    from fe_drivetrain.cases.fidelity.component_page import TOLERANCE
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.component import change_component
-    from fe_drivetrain.component_frames import housing_frame
-    from fe_drivetrain.component_levels import rigid_level
-    from fe_drivetrain.condensation import supported
-    from fe_drivetrain.results import Section, Text
+    from fe_drivetrain.cases.fidelity.component_page import TOLERANCE
+    from fe_drivetrain.fidelity import housing_frame, rigid_level
+    from fe_drivetrain.report import Section, Text, chart, trace
+    from fe_drivetrain.scene import change_component
+    from fe_drivetrain.solve import supported
 
     bodies = {
         "arms as beams, rigid ring": housing_frame(component, ring_gives=False),
@@ -142,8 +140,8 @@ def _reactions(ladder: Any, component: Any) -> Any:
     """Forces on the bushings under torque and weight, at each level and by statics."""
     import numpy as np
 
-    from fe_drivetrain.component_levels import loads_of
-    from fe_drivetrain.results import Section, Table, Text
+    from fe_drivetrain.fidelity import loads_of
+    from fe_drivetrain.report import Section, Table, Text
 
     loads = np.zeros((2, len(loads_of(component))))
     loads[0, 3] = TORQUE
@@ -180,9 +178,8 @@ def _in_a_scene(springs: Any, component: Any) -> tuple[Any, float]:
     """The housing as the gearbox springs of a scene, and what that does to the hub's stiffness: how
     much softer it is in torsion [%], too.
     """
-    from fe_drivetrain.adviser import Quantity
-    from fe_drivetrain.levels import shaft_level
-    from fe_drivetrain.results import Section, Table, Text
+    from fe_drivetrain.fidelity import Quantity, shaft_level
+    from fe_drivetrain.report import Section, Table, Text
     from fe_drivetrain.scene import change_scene, library_scene
 
     scene = library_scene(SCENE)
@@ -228,8 +225,8 @@ def _in_a_scene(springs: Any, component: Any) -> tuple[Any, float]:
 
 def _bushings(component: Any) -> Any:
     """Where the stiffness of the bushings comes from."""
-    from fe_drivetrain.component import library_component
-    from fe_drivetrain.results import AssumptionRow
+    from fe_drivetrain.report import AssumptionRow
+    from fe_drivetrain.scene import library_component
 
     library = library_component("gearbox_housing").model_dump()
     given = component.bushings.model_dump() == library["bushings"]
@@ -248,13 +245,13 @@ def _bushings(component: Any) -> Any:
 def _checks(ladder: Any, component: Any) -> list[Any]:
     """Balances, symmetry, mass, and the beams against their closed form."""
     import numpy as np
-    from fe_drivetrain.cases.fidelity.component_page import SOLVED, SOLVED_REASON
 
-    from fe_drivetrain.component import change_component, material_of
-    from fe_drivetrain.component_levels import frame_level
-    from fe_drivetrain.condensation import wrench_transport
-    from fe_drivetrain.results import judge
-    from fe_drivetrain.spatial_frame import rectangle
+    from fe_drivetrain.beam import rectangle
+    from fe_drivetrain.cases.fidelity.component_page import SOLVED, SOLVED_REASON
+    from fe_drivetrain.fidelity import frame_level
+    from fe_drivetrain.report import judge
+    from fe_drivetrain.scene import change_component, material_of
+    from fe_drivetrain.solve import wrench_transport
 
     top = ladder.top
     places = {a.name: a.position for a in component.attachments}
@@ -333,6 +330,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: A tenth of what the tilt takes from the generator's air gap.
 SCENE, QUANTITY, TOLERANCE = "iea_15mw_main_shaft", "hub.stiffness.ry", 0.1
@@ -29,6 +29,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

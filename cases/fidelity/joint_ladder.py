@@ -9,14 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.bearing_units import unit_stiffness
-from fe_drivetrain.condensation import Condensed
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.joints import in_series, joint_stiffness
-from fe_drivetrain.levels import shaft_level
-from fe_drivetrain.model import Model, build_model, mesh_scene
-from fe_drivetrain.response import Response, unit_load_response
+from fe_drivetrain.common import Floats
+from fe_drivetrain.fidelity import shaft_level, unit_stiffness
+from fe_drivetrain.interfaces import in_series, joint_stiffness
+from fe_drivetrain.response import Model, Response, build_model, mesh_scene, unit_load_response
 from fe_drivetrain.scene import Scene, change_scene
+from fe_drivetrain.solve import Condensed
 
 BEARING = "main_bearing"
 HELD: tuple[Any, ...] = ("rigid", "rigid", "rigid")

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from fe_drivetrain.cases.fidelity.published_torsion import Published, beside_published
 from fe_drivetrain.cases.fidelity.stiffness_files import stiffness_files
-
-from fe_drivetrain.advice_page import advised
-from fe_drivetrain.adviser import Quantity
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.results import Results
+from fe_drivetrain.commands import advised
+from fe_drivetrain.fidelity import Quantity
+from fe_drivetrain.report import Results
 from fe_drivetrain.scene import change_scene, library_scene
+from fe_drivetrain.suite import Case, Run
 
 #: Coarsening of the mesh under --quick.
 QUICK = 1.4
@@ -32,7 +31,7 @@ def climbed(
     name
         Of the scene.
     quantity, tolerance
-        See `fe_drivetrain.adviser`.
+        See `fe_drivetrain.fidelity.adviser`.
     published
         What the shaft's torsion is held against, as long as shaft and materials are the library's.
     """

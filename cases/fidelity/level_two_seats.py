@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Shafts of verification/shaft_ends, and a seat on each [m].
 SEATS = {"bored": (0.6, 0.85), "stepped": (1.0, 1.2)}
@@ -28,15 +28,14 @@ def run(run: Run) -> Any:
     import time
 
     import numpy as np
-    from fe_drivetrain.cases.verification import shaft_ends
 
-    from fe_drivetrain.axisymmetric import seat_stiffness
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence, richardson
-    from fe_drivetrain.elasticity import rigid_motions
-    from fe_drivetrain.hexahedra import shaft_hexahedra
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
+    from fe_drivetrain.cases.verification import shaft_ends
+    from fe_drivetrain.compare import grid_convergence, richardson
+    from fe_drivetrain.mesh import shaft_hexahedra
+    from fe_drivetrain.operator import rigid_motions
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import seat_stiffness
+    from fe_drivetrain.solve import solve_solid
 
     steel = shaft_ends.STEEL
 
@@ -187,6 +186,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -3,7 +3,7 @@
 from itertools import pairwise
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 LARGE, SMALL, LENGTH = 0.6, 0.4, 0.6
 BORES = {"bored": 0.2, "solid": 0.0}
@@ -24,12 +24,9 @@ def run(run: Run) -> Any:
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
-
-    from fe_drivetrain.axisymmetric import stiffness_between_ends
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.meridian import meridian
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import meridian, stiffness_between_ends
+    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     verdicts, traces = [], []
@@ -174,6 +171,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.common import Floats
 from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.uncertainty import with_values

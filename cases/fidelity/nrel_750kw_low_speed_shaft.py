@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Of torsion, 1 % is half a percent of a frequency; measured ones have three digits.
 SCENE, QUANTITY, TOLERANCE = "nrel_750kw_low_speed_shaft", "hub.stiffness.rx", 0.01
@@ -34,6 +34,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 SCENES = (
     "main_bearing_spherical",
@@ -36,8 +36,7 @@ def run(run: Run) -> Any:
         compared,
         table,
     )
-
-    from fe_drivetrain.results import Section, Text, judge
+    from fe_drivetrain.report import Section, Text, judge
     from fe_drivetrain.scene import library_scene
 
     found, verdicts = [], []
@@ -132,6 +131,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

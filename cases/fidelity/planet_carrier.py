@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: N m. Rated torque of the NREL 5 MW turbine: generator torque 43 093.55 N m at a ratio of 97
 #: (Jonkman 2009, NREL/TP-500-38060, Table 1-1 and section 7).
@@ -13,11 +13,11 @@ FACE_WIDTH = 0.491  # m, of the planets, by the tables that the component's file
 def run(run: Run) -> Any:
     """Climb the ladder with two walls, compare with one, export."""
     import numpy as np
-    from fe_drivetrain.cases.fidelity import component_page as page
 
-    from fe_drivetrain.component import CarrierComponent, change_component, library_component
-    from fe_drivetrain.component_levels import pin_motions, torque_share
-    from fe_drivetrain.component_superelements import component_superelement
+    from fe_drivetrain.cases.fidelity import component_page as page
+    from fe_drivetrain.export import component_superelement
+    from fe_drivetrain.fidelity import pin_motions, torque_share
+    from fe_drivetrain.scene import CarrierComponent, change_component, library_component
 
     component = library_component("planet_carrier")
     assert isinstance(component, CarrierComponent)
@@ -101,11 +101,9 @@ def _percent(ladder: Any, quantity: Any) -> float:
 def _walls(run: Run, component: Any, ladder: Any, bands: Any) -> Any:
     """Two walls, with the bands of their wind-up and tilt, against pins on one."""
     from fe_drivetrain.cases.fidelity import component_page as page
-
-    from fe_drivetrain.component import change_component
-    from fe_drivetrain.component_levels import frame_level, pin_motions, solid_level
-    from fe_drivetrain.component_solid import solid_component
-    from fe_drivetrain.results import Section, Table, Text
+    from fe_drivetrain.fidelity import frame_level, pin_motions, solid_component, solid_level
+    from fe_drivetrain.report import Section, Table, Text
+    from fe_drivetrain.scene import change_component
 
     single = change_component(component, {"planet_carrier.walls": 1})
     with run.step("pins on one wall"):
@@ -153,15 +151,14 @@ def _row(found: Any, bands: Any = None) -> list[Any]:
 def _checks(ladder: Any, component: Any) -> list[Any]:
     """Symmetry of n planets, balance, recovered motions, and beams against their closed form."""
     import numpy as np
-    from fe_drivetrain.cases.fidelity.component_page import SOLVED, SOLVED_REASON
 
-    from fe_drivetrain.component import change_component, material_of
-    from fe_drivetrain.component_levels import frame_level, pin_motions, torque_share
-    from fe_drivetrain.facets import MEANS, face_weights
+    from fe_drivetrain.beam import round_section
+    from fe_drivetrain.cases.fidelity.component_page import SOLVED, SOLVED_REASON
+    from fe_drivetrain.fidelity import frame_level, pin_motions, torque_share
     from fe_drivetrain.interfaces import averaged_point
-    from fe_drivetrain.results import judge
-    from fe_drivetrain.spatial_frame import round_section
-    from fe_drivetrain.symmetric_mesh import turns
+    from fe_drivetrain.mesh import MEANS, face_weights, turns
+    from fe_drivetrain.report import judge
+    from fe_drivetrain.scene import change_component, material_of
 
     top, carrier = ladder.top, component.planet_carrier
     rows = [6 * top.points.index(name) + np.arange(6) for name in component.loaded]
@@ -254,6 +251,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fe_drivetrain.beam import Beam, BeamSection, shaft_stiffness
 from fe_drivetrain.geometry import Shaft
-
-from fe_drivetrain.axisymmetric import end_stiffness
-from fe_drivetrain.frame import Beam, shaft_stiffness
-from fe_drivetrain.hexahedra import SAME_LENGTH
-from fe_drivetrain.materials import Material
-from fe_drivetrain.results import Section, Table, Verdict, judge
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.sections import BeamSection
+from fe_drivetrain.mesh import SAME_LENGTH
+from fe_drivetrain.report import Section, Table, Verdict, judge
+from fe_drivetrain.revolution import end_stiffness
+from fe_drivetrain.scene import Material, Scene
 
 
 @dataclass(frozen=True)

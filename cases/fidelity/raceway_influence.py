@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Raceway and outside of the ring, its width, and the rollers' length [m].
 RACEWAY, OUTSIDE, WIDTH, ROLLER = 0.35, 0.40, 0.16, 0.12
@@ -27,6 +27,8 @@ THIN = 40.0
 def run(run: Run) -> Any:
     """Check the influence functions in four ways, then let rollers press."""
     import numpy as np
+    from scipy.optimize import brentq
+
     from fe_drivetrain.cases.verification.plane_rings import Lame, harmonics, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -36,16 +38,18 @@ def run(run: Run) -> Any:
     )
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
-    from scipy.optimize import brentq
-
-    from fe_drivetrain.axisymmetric import freedoms
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.influence import Strip, carried, influence_functions, roller_forces
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.meridian import meridian
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
+    from fe_drivetrain.operator import traction_loads
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import (
+        Strip,
+        carried,
+        freedoms,
+        influence_functions,
+        meridian,
+        roller_forces,
+    )
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.solve import solve_solid
 
     steel = MATERIALS["steel"]
     pitch = 2 * np.pi / ROLLERS
@@ -501,6 +505,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

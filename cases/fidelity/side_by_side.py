@@ -8,14 +8,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_drivetrain.adviser import Quantity
-from fe_drivetrain.charts import rounded
-from fe_drivetrain.condensation import Condensed, keep_points
-from fe_drivetrain.condensed_shafts import beam_shaft, meridian_shaft
-from fe_drivetrain.details import simplified
-from fe_drivetrain.levels import housing_springs, shaft_level
-from fe_drivetrain.results import Chart, Table
+from fe_drivetrain.fidelity import (
+    Quantity,
+    beam_shaft,
+    housing_springs,
+    meridian_shaft,
+    shaft_level,
+    simplified,
+)
+from fe_drivetrain.report import Chart, Table, rounded
 from fe_drivetrain.scene import Scene
+from fe_drivetrain.solve import Condensed, keep_points
 
 #: What is compared, in words; FORCE is that of the first bearing.
 FORCE = "Fz"

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: 10 % of a stiffness is 5 % of a frequency.
 SCENE, QUANTITY, TOLERANCE = "stepped_shaft", "hub.stiffness.uz", 0.1
@@ -23,6 +23,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

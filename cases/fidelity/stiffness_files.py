@@ -9,14 +9,18 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.adviser import Quantity
-from fe_drivetrain.condensation import Condensed
-from fe_drivetrain.levels import shaft_level
-from fe_drivetrain.results import Results, Section, Table, Text, Verdict, judge
+from fe_drivetrain.export import (
+    SEATS,
+    SHAFT,
+    Superelement,
+    difference,
+    superelement_of,
+    symmetry_error,
+)
+from fe_drivetrain.fidelity import Quantity, shaft_level
+from fe_drivetrain.report import Results, Section, Table, Text, Verdict, judge
 from fe_drivetrain.scene import Scene
-from fe_drivetrain.scene_export import SEATS, SHAFT, superelement_of
-from fe_drivetrain.scene_superelements import difference
-from fe_drivetrain.superelement import Superelement, symmetry_error
+from fe_drivetrain.solve import Condensed
 
 #: Level of the shaft that is written: exact elasticity of a body of revolution.
 LEVEL = 2

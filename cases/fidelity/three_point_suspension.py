@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: 5 % of a bearing's force is 17 % of its life (exponent 10/3).
 SCENE, QUANTITY, TOLERANCE = "three_point_suspension", "gearbox.Fz", 0.05
@@ -24,6 +24,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -9,30 +9,45 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-from fe_drivetrain.cases.fidelity.moved_meshes import BORE, FRONT, OUTER, PEDESTAL, WALL, moved
-from fe_drivetrain.geometry import MeshSizes, unit_solids
 
-from fe_drivetrain.adviser import LEAST_ORDER
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.charts import chart, trace
-from fe_drivetrain.elasticity import volume_weights
-from fe_drivetrain.energy_slopes import (
+from fe_drivetrain.cases.fidelity.moved_meshes import BORE, FRONT, OUTER, PEDESTAL, WALL, moved
+from fe_drivetrain.commands import bands, first_order, relative_spread
+from fe_drivetrain.fidelity import (
+    LEAST_ORDER,
     compliance,
     energy_slopes,
     hub_elasticities,
     moment_elasticities,
     total,
+    unit_numbers,
 )
+from fe_drivetrain.geometry import MeshSizes, unit_solids
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import COMPONENTS, LOADS, build_model, mesh_scene
-from fe_drivetrain.reported import unit_numbers
-from fe_drivetrain.response import unit_load_response
-from fe_drivetrain.results import Cell, Chart, Results, Section, Table, Text, Verdict, judge
+from fe_drivetrain.operator import volume_weights
+from fe_drivetrain.report import (
+    Cell,
+    Chart,
+    Results,
+    Section,
+    Table,
+    Text,
+    Verdict,
+    chart,
+    judge,
+    trace,
+)
+from fe_drivetrain.response import (
+    COMPONENTS,
+    LOADS,
+    bearing_unit_stiffness,
+    build_model,
+    mesh_scene,
+    unit_load_response,
+    without_gearbox,
+)
 from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.stiffness import bearing_unit_stiffness, without_gearbox
-from fe_drivetrain.uncertainty import nominal_value, with_values
-from fe_drivetrain.uncertainty_page import bands, first_order, relative_spread
-from fe_drivetrain.uncertainty_study import Study, study
+from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.uncertainty import Study, nominal_value, study, with_values
 
 BEARING, LOAD = "main_bearing", "hub.My"
 FORGED, RING, IRON = (

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 SCENE, QUANTITY, TOLERANCE = "two_bearings", "rear.Fz", 0.1
 
@@ -22,6 +22,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

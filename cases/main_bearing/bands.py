@@ -6,17 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
 from fe_drivetrain.cases.main_bearing import study
 from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt
-
-from fe_drivetrain.case import Jobs, Run, RunJob
-from fe_drivetrain.convergence import GridConvergence, grid_convergence
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.response import Response
-from fe_drivetrain.results import Table, Verdict, judge
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.compare import GridConvergence, grid_convergence
+from fe_drivetrain.report import Table, Verdict, judge
+from fe_drivetrain.response import Response, bearing_unit_stiffness
 from fe_drivetrain.scene import Scene
-from fe_drivetrain.stiffness import bearing_unit_stiffness
+from fe_drivetrain.suite import Jobs, Run, RunJob
 
 #: Factors on the sizes of a case's own mesh, coarse first; a third apart, as Celik et al. ask.
 FACTORS = (1.8, 1.35)

@@ -7,19 +7,18 @@ is named.
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 
 def run(run: Run) -> Any:
     """Solve the bonded scene, and compare its reactions with three beams."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import bands, study
 
-    from fe_drivetrain import beams, frame
-    from fe_drivetrain.export.stiffness_file import stiffness_matrix, write_stiffness_json
-    from fe_drivetrain.model import COMPONENTS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
+    from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
+    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+    from fe_drivetrain.report import Section, Table, Text, judge
+    from fe_drivetrain.response import COMPONENTS
 
     scene = study.scene_of(run, "bonded")
     pinned_beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
@@ -39,17 +38,17 @@ def run(run: Run) -> Any:
 
     spring = main_bearing_beam(scene, *tilt.both("averaged seat"))
     # The gearbox weight is a constant that a beam with a weight has for any load.
-    weightless = beams.torsional_spring_model(np.zeros((1, 6)), spring)[0]
-    torsional = beams.torsional_spring_model(np.eye(6), spring) - weightless
-    pinned = beams.pinned_model(np.eye(6), pinned_beam)
-    on_matrix = frame.unit_load_response(
+    weightless = closed_forms.torsional_spring_model(np.zeros((1, 6)), spring)[0]
+    torsional = closed_forms.torsional_spring_model(np.eye(6), spring) - weightless
+    pinned = closed_forms.pinned_model(np.eye(6), pinned_beam)
+    on_matrix = shaft.unit_load_response(
         beam_of_scene(scene, {name: tilt.matrix}, shear=False), [scene.shaft.front]
     ).reaction_matrix(name)[:, 0, :]
 
     def beam_reaction(both: Any, load: int) -> float:
         """Force on the bearing of the torsional-spring beam per unit of a hub force."""
         other = main_bearing_beam(scene, float(both[0]), float(both[1]))
-        at_rest, loaded = beams.torsional_spring_model(
+        at_rest, loaded = closed_forms.torsional_spring_model(
             np.vstack([np.zeros(6), np.eye(6)[load]]), other
         )
         return float((loaded - at_rest)[load])
@@ -253,6 +252,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Housings sampled by form, and the order of the surface through them.
 SAMPLES, BOLTED_SAMPLES, ORDER = 60, 36, 2
@@ -22,6 +22,7 @@ PROOF = 250e6
 def run(run: Run) -> Any:
     """Sample housings, trace those that give both figures, and verify some on finer meshes."""
     import numpy as np
+
     from fe_drivetrain.cases.main_bearing import bands, study
     from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
     from fe_drivetrain.cases.main_bearing.housing_dimensions import (
@@ -37,10 +38,8 @@ def run(run: Run) -> Any:
         WIDE_RING,
         WIDTH,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.common import InputError
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
 
     pair = (WIDTH, PEDESTAL)  # solved for along a curve, all else given
     scene = study.scene_of(run, "bonded", coarsen=False)
@@ -581,6 +580,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -8,16 +8,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from fe_drivetrain.beam import (
+    MainBearingBeam,
+    beam_of_scene,
+    closed_forms,
+    main_bearing_beam,
+    shaft,
+)
 from fe_drivetrain.cases.main_bearing.loads import HubLoads
 from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt
-
-from fe_drivetrain import beams, compare, frame
-from fe_drivetrain.beams import MainBearingBeam
-from fe_drivetrain.case import Run
-from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import statistics
 from fe_drivetrain.response import GRAVITY
 from fe_drivetrain.scene import Scene
-from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
+from fe_drivetrain.suite import Run
 
 #: Mean error [%] and correlation of the resultant force over all histories (Stirling 2023, lines
 #: on Figures 3.6, 3.8 and 3.15), for other hub loads and another housing than here.
@@ -79,7 +84,7 @@ class Linear:
 
     def radial(self, loads: Floats) -> Floats:
         """(...) resultant radial force [N]."""
-        return compare.resultant(
+        return statistics.resultant(
             loads @ self.matrix[:, 1] + self.constant[1],
             loads @ self.matrix[:, 2] + self.constant[2],
         )
@@ -148,11 +153,11 @@ def compared(
 
     springs = {
         estimator: Linear.of_beam(
-            beams.torsional_spring_model, main_bearing_beam(scene, *tilt.both(estimator))
+            closed_forms.torsional_spring_model, main_bearing_beam(scene, *tilt.both(estimator))
         )
         for estimator in ESTIMATORS
     }
-    unit = frame.unit_load_response(
+    unit = shaft.unit_load_response(
         beam_of_scene(scene, {name: tilt.matrix}, shear=False),
         [scene.shaft.front, scene.shaft.rear],
     )
@@ -163,7 +168,7 @@ def compared(
         unit.solution([np.zeros(6), down]).reaction(name),
     )
     with run.step("beam models"):
-        pinned = Linear.of_beam(beams.pinned_model, pinned_beam).reaction(hub.loads)
+        pinned = Linear.of_beam(closed_forms.pinned_model, pinned_beam).reaction(hub.loads)
         pairs = {
             first: ("spherical", pinned),
             second: ("bonded", pinned),
@@ -178,15 +183,15 @@ def compared(
             label: _mean_error(force[kind], beam_force[label]) for label, (kind, _) in pairs.items()
         }
         correlation = {
-            label: float(compare.correlation(force[kind], beam_force[label]).mean())
+            label: float(statistics.correlation(force[kind], beam_force[label]).mean())
             for label, (kind, _) in pairs.items()
         }
         headline: list[Row] = [
             [
                 label,
                 error[label],
-                100.0 * float(compare.relative_error(force[kind], beam_force[label]).mean()),
-                100.0 * float(compare.excluded_share(force[kind]).mean()),
+                100.0 * float(statistics.relative_error(force[kind], beam_force[label]).mean()),
+                100.0 * float(statistics.excluded_share(force[kind]).mean()),
                 f"{correlation[label]:.6f}",
                 *PUBLISHED.get(label, (None, None)),
             ]
@@ -202,7 +207,7 @@ def compared(
             for estimator, model in springs.items()
         ]
         theirs = Linear.of_beam(
-            beams.torsional_spring_model, main_bearing_beam(scene, 145e6, 392e6)
+            closed_forms.torsional_spring_model, main_bearing_beam(scene, 145e6, 392e6)
         )
         with_their_stiffness = _mean_error(theirs.radial(hub.loads), beam_force[first])
     with run.step("causes of the difference"):
@@ -241,29 +246,29 @@ def of_one_mesh(
     spring = main_bearing_beam(scene, float(stiffness[0]), float(stiffness[1]))
     pinned, sprung = (
         Linear.of_beam(model, spring).radial(hub.loads)
-        for model in (beams.pinned_model, beams.torsional_spring_model)
+        for model in (closed_forms.pinned_model, closed_forms.torsional_spring_model)
     )
     return (
         _mean_error(force, pinned),
         _mean_error(force, sprung),
-        float(compare.correlation(force, sprung).mean()),
+        float(statistics.correlation(force, sprung).mean()),
     )
 
 
 def _radial(reaction: Floats) -> Floats:
     """(m, n) resultant radial force [N] of (m, n, 6) reactions."""
-    return compare.resultant(reaction[..., 1], reaction[..., 2])
+    return statistics.resultant(reaction[..., 1], reaction[..., 2])
 
 
 def _mean_error(reference: Floats, found: Floats) -> float:
     """The thesis's metric, mean over the histories [%]."""
-    return float(compare.mean_percentage_error(reference, found).mean())
+    return float(statistics.mean_percentage_error(reference, found).mean())
 
 
 def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Row]:
     """Usable as a model uncertainty: means over all histories, one row a quantity."""
     columns = [COMPONENT[q] for q in QUANTITIES]
-    result = compare.compare(
+    result = statistics.compare(
         reference[..., columns],
         model[..., columns],
         QUANTITIES,
@@ -296,14 +301,14 @@ def _by_estimator(
 ) -> Row:
     """The torsional-spring beam with K_R of one estimator against bonded FE."""
     fy, fz = (loads @ model.matrix[:, k] + model.constant[k] for k in (1, 2))
-    found = compare.resultant(fy, fz)
+    found = statistics.resultant(fy, fz)
     return [
         estimator,
         *(k / 1e6 for k in tilt.both(estimator)),
         _mean_error(force, found),
-        f"{float(compare.correlation(force, found).mean()):.6f}",
-        float(compare.rmse(reference[..., 1], fy).mean()) / 1e3,
-        float(compare.rmse(reference[..., 2], fz).mean()) / 1e3,
+        f"{float(statistics.correlation(force, found).mean()):.6f}",
+        float(statistics.rmse(reference[..., 1], fy).mean()) / 1e3,
+        float(statistics.rmse(reference[..., 2], fz).mean()) / 1e3,
     ]
 
 
@@ -338,7 +343,7 @@ def _causes(
             label,
             what,
             _mean_error(reference, found),
-            f"{float(compare.correlation(reference, found).mean()):.6f}",
+            f"{float(statistics.correlation(reference, found).mean()):.6f}",
         ]
         for label, what, reference, found in cases
     ]

@@ -7,17 +7,21 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from fe_drivetrain.cases.main_bearing.study import ESTIMATORS
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids
 
-from fe_drivetrain.calibration import Calibrated, Surface, calibrated, fitted, hypercube, nearest
-from fe_drivetrain.case import Run
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.model import build_model, mesh_scene
-from fe_drivetrain.response import unit_load_response
+from fe_drivetrain.cases.main_bearing.study import ESTIMATORS
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.compare import Calibrated, Surface, calibrated, fitted, hypercube, nearest
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids
+from fe_drivetrain.response import (
+    PLANES,
+    build_model,
+    mesh_scene,
+    tilt_stiffness,
+    unit_load_response,
+    without_gearbox,
+)
 from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.stiffness import PLANES, tilt_stiffness, without_gearbox
+from fe_drivetrain.suite import Run
 
 #: K_R of the vertical and of the horizontal plane (Stirling 2023, section 3.3.1) [N m/rad].
 PUBLISHED = np.array([145e6, 392e6])

@@ -7,16 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain import compare
-from fe_drivetrain.cache import user_cache
-from fe_drivetrain.case import Jobs, Run
-from fe_drivetrain.charts import rounded, trace
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.hub_loads import read_hub_loads
-from fe_drivetrain.model import COMPONENTS
-from fe_drivetrain.results import Chart, Table
-from fe_drivetrain.surrogate import Condition, hub_load_set, not_kept, surrogate_grid
+from fe_drivetrain.common import Floats, InputError, user_cache
+from fe_drivetrain.compare import statistics
+from fe_drivetrain.hub_loads import (
+    Condition,
+    hub_load_set,
+    not_kept,
+    read_hub_loads,
+    surrogate_grid,
+)
+from fe_drivetrain.report import Chart, Table, rounded, trace
+from fe_drivetrain.response import COMPONENTS
+from fe_drivetrain.suite import Jobs, Run
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
 QUICK_SEEDS = 2
@@ -66,7 +68,7 @@ def own_hub_loads(run: Run) -> HubLoads | None:
 
 def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
     """Made hub loads; those that were not made before are made side by side."""
-    from fe_drivetrain.rotor import assumptions
+    from fe_drivetrain.hub_loads import assumptions
 
     grid = surrogate_grid()
     if run.quick:
@@ -177,10 +179,10 @@ def rmse_charts(
     groups = [(c.wind_speed, c.turbulence, c.shear) for c in conditions]
     for label, (kind, model) in pairs.items():
         for plane, quantity, component in _PLANES:
-            rmse = compare.rmse(fe[kind][..., component], model[..., component]) / 1e3
-            statistics = compare.by_group(rmse, groups)
+            rmse = statistics.rmse(fe[kind][..., component], model[..., component]) / 1e3
+            by_group = statistics.by_group(rmse, groups)
             traces = []
-            found: list[Any] = list(statistics.groups)
+            found: list[Any] = list(by_group.groups)
             order = ("low", "medium", "high")
             series = sorted({g[1:] for g in found}, key=lambda s: (s[1], order.index(s[0])))
             for k, (turbulence, shear) in enumerate(series):
@@ -191,10 +193,10 @@ def rmse_charts(
                     trace(
                         f"{turbulence} turbulence, shear {shear:g}",
                         wind,
-                        statistics.mean[rows],
+                        by_group.mean[rows],
                         mode="markers",
                         marker={"symbol": "circle" if shear < 0.4 else "diamond", "size": 8},
-                        error_y={"type": "data", "array": rounded(statistics.std[rows])},
+                        error_y={"type": "data", "array": rounded(by_group.std[rows])},
                     )
                 )
             charts.append(

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Factors on the scene's mesh sizes, from coarse to fine.
 FACTORS = (2.0, 1.4, 1.0, 0.75)
@@ -12,11 +12,10 @@ QUICK_FACTORS = (2.0, 1.5, 1.2)
 def run(run: Run) -> Any:
     """Solve one scene on meshes from coarse to fine."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import bands, study
 
-    from fe_drivetrain.charts import trace
-    from fe_drivetrain.convergence import grid_convergence, richardson
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.compare import grid_convergence, richardson
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
 
     scene = study.scene_of(run, "bonded", coarsen=False)
     factors = QUICK_FACTORS if run.quick else FACTORS
@@ -183,6 +182,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

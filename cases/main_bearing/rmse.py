@@ -6,7 +6,7 @@ FE, torsional-spring beam against bonded FE; and a fourth, a beam on the full 6x
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OWN_KEYS = ("scene", "loads", "solver")
 
@@ -14,6 +14,8 @@ OWN_KEYS = ("scene", "loads", "solver")
 def run(run: Run) -> Any:
     """Make or read the hub loads, solve both scenes, compare over all histories."""
     import numpy as np
+
+    from fe_drivetrain.beam import main_bearing_beam
     from fe_drivetrain.cases.main_bearing import bands, loads, study
     from fe_drivetrain.cases.main_bearing.comparison import (
         PUBLISHED,
@@ -21,11 +23,9 @@ def run(run: Run) -> Any:
         compared,
         of_one_mesh,
     )
-
-    from fe_drivetrain.export.stiffness_file import stiffness_matrix, write_stiffness_json
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
-    from fe_drivetrain.scene_beam import main_bearing_beam
-    from fe_drivetrain.stiffness import bearing_unit_stiffness
+    from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, judge
+    from fe_drivetrain.response import bearing_unit_stiffness
 
     spherical_scene = study.scene_of(run, "spherical", OWN_KEYS)
     bonded_scene = study.scene_of(run, "bonded", OWN_KEYS)
@@ -293,9 +293,8 @@ def _deflections(spherical: Any, bonded: Any, tilt: Any, stiffness: Any, series:
     """Deflection at the hub and slope at the bearing, FE and Timoshenko beams."""
     import numpy as np
 
-    from fe_drivetrain import frame
-    from fe_drivetrain.results import Table
-    from fe_drivetrain.scene_beam import beam_of_scene
+    from fe_drivetrain.beam import beam_of_scene, shaft
+    from fe_drivetrain.report import Table
 
     name = bonded.bearing
     rows: list[list[Any]] = []
@@ -306,7 +305,7 @@ def _deflections(spherical: Any, bonded: Any, tilt: Any, stiffness: Any, series:
         scene = solved.scene
         x = scene.bearing_units[0].bearing.x
         motion = [
-            frame.solve(
+            shaft.solve(
                 beam_of_scene(scene, {name: matrix}, rings=rings),
                 scene.shaft.front,
                 1000.0 * np.eye(6)[2],
@@ -350,6 +349,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

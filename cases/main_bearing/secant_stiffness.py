@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Factors on the mesh sizes, coarse first: of the library's housing, and of the tall one.
 FACTORS, TALL_FACTORS = (1.35, 1.0), (1.8, 1.35)
@@ -19,12 +19,10 @@ OWN_KEYS = ("scene", "solver", "loads")
 def run(run: Run) -> Any:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import secants, study
 
-    from fe_drivetrain import secant
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.model import COMPONENTS
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.cases.main_bearing import secants, study
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.response import COMPONENTS, secant_stiffness
 
     bonded = study.scene_of(run, "bonded", OWN_KEYS, coarsen=False)
     spherical = study.scene_of(run, "spherical", OWN_KEYS, coarsen=False)
@@ -48,9 +46,9 @@ def run(run: Run) -> Any:
     for key, meshes in units.items():
         unit = meshes[-1]
         for a in (4, 5):
-            found[key, a] = secant.secant(unit.loads, unit.motions, a)
-            parts[key, a] = secant.parts_of(unit.loads, unit.motions, unit.fit.matrix, a)
-            statements[key, a] = secant.statement(found[key, a], parts[key, a])
+            found[key, a] = secant_stiffness.secant(unit.loads, unit.motions, a)
+            parts[key, a] = secant_stiffness.parts_of(unit.loads, unit.motions, unit.fit.matrix, a)
+            statements[key, a] = secant_stiffness.statement(found[key, a], parts[key, a])
             for j in np.argsort(-np.abs(parts[key, a].shares))[:TERMS]:
                 rows.append(
                     [
@@ -81,10 +79,10 @@ def run(run: Run) -> Any:
             "coupled": secants.on_beam(bonded, coupled, hub),
         }
         made_secants = {
-            form: [secant.secant(loads, motions, a) for a in (3, 4, 5)]
+            form: [secant_stiffness.secant(loads, motions, a) for a in (3, 4, 5)]
             for form, (loads, motions) in made.items()
         }
-        fit = secant.fitted_spring(*made["coupled"])
+        fit = secant_stiffness.fitted_spring(*made["coupled"])
     size = np.sqrt(np.outer(coupled.diagonal(), coupled.diagonal()))
     verdicts += [
         judge(
@@ -134,7 +132,7 @@ def run(run: Run) -> Any:
                 f"{titles[key]}: scatter of K_R about y at the elastic centre",
                 100.0 * at_centre,
                 0.0,
-                tolerance=100.0 * secant.SCATTERS,
+                tolerance=100.0 * secant_stiffness.SCATTERS,
                 relative=False,
                 unit="%",
                 source="at the elastic centre thrust does not tilt: nothing is left to scatter",
@@ -197,7 +195,7 @@ def run(run: Run) -> Any:
         unit = units[key][-1]
         there = secants.at_centre(unit)
         at_axis = found[key, 4].secants
-        at_there = secant.secant(*there, 4).secants
+        at_there = secant_stiffness.secant(*there, 4).secants
         slope = unit.loads[:, 0] / unit.motions[:, 4] / 1e6
         # seen: each case, at most as many as a page shows without weight
         chosen = np.linspace(0, len(slope) - 1, min(len(slope), 600)).astype(int)
@@ -221,7 +219,9 @@ def run(run: Run) -> Any:
         for key, forms in improvement.items()
         for form, by in forms.items()
     ]
-    centre = {key: secant.elastic_centre(meshes[-1].stiffness) for key, meshes in units.items()}
+    centre = {
+        key: secant_stiffness.elastic_centre(meshes[-1].stiffness) for key, meshes in units.items()
+    }
     library = improvement["library"]
     fit_rows: list[list[Any]] = [
         [
@@ -259,9 +259,9 @@ def run(run: Run) -> Any:
                         "K_R about y of each load case against the thrust on the bearing over its "
                         "rotation: level at the elastic centre; at the axis a line whose slope is "
                         "the arm of the thrust. Cases that "
-                        f"turn the bearing by less than {secant.LEAST_ROTATION:g} of the root mean "
-                        f"square ({100 * left_out:.0f} %) have no secant and are not shown; in "
-                        "scatter and stiffness they count",
+                        f"turn the bearing by less than {secant_stiffness.LEAST_ROTATION:g} of the "
+                        f"root mean square ({100 * left_out:.0f} %) have no secant and are not "
+                        "shown; in scatter and stiffness they count",
                         [*secant_traces("library"), *secant_traces("tall")],
                         "Fx over rotation about y [MN/rad]",
                         "My / rotation [MN m/rad]",
@@ -373,6 +373,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -6,17 +6,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.cases.main_bearing import bands, loads, study
 
-from fe_drivetrain import frame, secant
-from fe_drivetrain.case import Run
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.model import COMPONENTS, LOADS
+from fe_drivetrain.beam import beam_of_scene, shaft
+from fe_drivetrain.cases.main_bearing import bands, loads, study
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, hub_load_set
+from fe_drivetrain.response import (
+    COMPONENTS,
+    LOADS,
+    bearing_unit_stiffness,
+    secant_stiffness,
+    without_gearbox,
+)
 from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.scene_beam import beam_of_scene
-from fe_drivetrain.stiffness import bearing_unit_stiffness, without_gearbox
-from fe_drivetrain.surrogate import SHEARS, WIND_SPEEDS, Condition, hub_load_set
+from fe_drivetrain.suite import Run
 
 QUANTITIES = ("Fx", "Fy", "Fz", "My", "Mz")
 
@@ -49,7 +52,7 @@ class Reacted:
     loads: Floats
     motions: Floats
     stiffness: Floats
-    fit: secant.Spring
+    fit: secant_stiffness.Spring
 
 
 def hub_loads(run: Run, every: int) -> tuple[Floats, str]:
@@ -98,7 +101,7 @@ def solved(run: Run, scene: Scene, factor: float, hub: Floats) -> Reacted:
     on_bearing, motions, coarser = reacted(run, scene, factor, hub)
     free = study.solve_scene(run, without_gearbox(coarser), f"without gearbox, sizes x {factor:g}")
     stiffness = bearing_unit_stiffness(free.response, free.bearing)
-    fit = secant.fitted_spring(on_bearing, motions)
+    fit = secant_stiffness.fitted_spring(on_bearing, motions)
     return Reacted(coarser, on_bearing, motions, stiffness, fit)
 
 
@@ -115,18 +118,18 @@ def series(run: Run, scene: Scene, factors: tuple[float, float], hub: Floats) ->
 
 def at_centre(unit: Reacted) -> tuple[Floats, Floats]:
     """Loads and motions at the elastic centre."""
-    arm = np.array([0.0, 0.0, secant.elastic_centre(unit.stiffness)])
-    return secant.moved(unit.loads, unit.motions, arm)
+    arm = np.array([0.0, 0.0, secant_stiffness.elastic_centre(unit.stiffness)])
+    return secant_stiffness.moved(unit.loads, unit.motions, arm)
 
 
 def vertical_scatter(unit: Reacted) -> float:
     """Of the secant about y, at the shaft's axis."""
-    return secant.secant(unit.loads, unit.motions, 4).scatter
+    return secant_stiffness.secant(unit.loads, unit.motions, 4).scatter
 
 
 def scatter_at_centre(unit: Reacted) -> float:
     """Of the secant about y, at the elastic centre."""
-    return secant.secant(*at_centre(unit), 4).scatter
+    return secant_stiffness.secant(*at_centre(unit), 4).scatter
 
 
 def predicted_scatter(unit: Reacted) -> float:
@@ -136,10 +139,10 @@ def predicted_scatter(unit: Reacted) -> float:
     """
     theta, thrust = unit.motions[:, 4], unit.loads[:, 0]
     moment = theta / np.linalg.inv(unit.stiffness)[4, 4]
-    moment = moment + secant.elastic_centre(unit.stiffness) * thrust
+    moment = moment + secant_stiffness.elastic_centre(unit.stiffness) * thrust
     made = np.zeros_like(unit.loads)
     made[:, 4] = moment
-    return secant.secant(made, unit.motions, 4).scatter
+    return secant_stiffness.secant(made, unit.motions, 4).scatter
 
 
 def springs(unit: Reacted) -> dict[str, Floats]:
@@ -148,13 +151,13 @@ def springs(unit: Reacted) -> dict[str, Floats]:
     single = 1.0 / np.linalg.inv(stiffness).diagonal()
     by_secant = single.copy()
     for a in (4, 5):
-        by_secant[a] = secant.secant(unit.loads, unit.motions, a).stiffness
-    arm = np.array([0.0, 0.0, secant.elastic_centre(stiffness)])
-    there = secant.moved_spring(stiffness, -arm)
+        by_secant[a] = secant_stiffness.secant(unit.loads, unit.motions, a).stiffness
+    arm = np.array([0.0, 0.0, secant_stiffness.elastic_centre(stiffness)])
+    there = secant_stiffness.moved_spring(stiffness, -arm)
     return {
         SINGLE: np.diag(single),
         SECANT: np.diag(by_secant),
-        LEAN: secant.moved_spring(np.diag(there.diagonal()), arm),
+        LEAN: secant_stiffness.moved_spring(np.diag(there.diagonal()), arm),
         FULL: stiffness,
     }
 
@@ -163,7 +166,7 @@ def on_beam(scene: Scene, stiffness: Floats, hub: Floats) -> tuple[Floats, Float
     """Loads and motions (m, 6) of the bearing of a beam on a spring."""
     bearing = scene.bearing_units[0].bearing
     beam = beam_of_scene(scene, {bearing.name: stiffness})
-    unit = frame.unit_load_response(beam, [scene.shaft.front, scene.shaft.rear], at=bearing.x)
+    unit = shaft.unit_load_response(beam, [scene.shaft.front, scene.shaft.rear], at=bearing.x)
     cases = np.zeros((len(hub), 2, 6))
     cases[:, 0] = hub
     cases[:, 1, 2] = -scene.gearbox.weight

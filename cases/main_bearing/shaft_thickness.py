@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 WALLS = (100, 75, 50)
 QUICK_WALLS = (100, 50)
@@ -21,15 +21,13 @@ TOLERANCE = {
 def run(run: Run) -> Any:
     """Solve both bearing types with three bores, over ten seconds of hub loads."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import bands, study
 
-    from fe_drivetrain import beams
-    from fe_drivetrain.charts import trace
+    from fe_drivetrain.beam import closed_forms, main_bearing_beam
+    from fe_drivetrain.cases.main_bearing import bands, study
     from fe_drivetrain.compare import resultant
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.hub_loads import Condition, hub_loads
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
     from fe_drivetrain.scene import change_scene
-    from fe_drivetrain.scene_beam import main_bearing_beam
-    from fe_drivetrain.surrogate import Condition, hub_loads
 
     with run.step("hub loads"):
         history = hub_loads(Condition(16.0, "medium", 0.2, 1)).between(100.0, 110.0)
@@ -114,7 +112,7 @@ def run(run: Run) -> Any:
             predicted = 0.0  # a determinate reaction has no stiffness in it
             if kind == "bonded":
                 both = [
-                    beams.torsional_spring_model(
+                    closed_forms.torsional_spring_model(
                         history.loads, main_bearing_beam(s, *tilt.both("averaged seat"))
                     )
                     for s in (whole, scene)
@@ -228,6 +226,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

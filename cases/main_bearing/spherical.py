@@ -6,7 +6,7 @@ the FE model. Deflection, slope and stiffness do; three forms of the joint show 
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 FORMS = ("sliding", "averaged", "rigid")
 
@@ -14,16 +14,12 @@ FORMS = ("sliding", "averaged", "rigid")
 def run(run: Run) -> Any:
     """Solve the three forms of the joint and compare them with statics and with a beam."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import bands, study
 
-    from fe_drivetrain import beams, frame
-    from fe_drivetrain.charts import trace
-    from fe_drivetrain.export.stiffness_file import stiffness_matrix, write_stiffness_json
-    from fe_drivetrain.model import LOADS
-    from fe_drivetrain.response import GRAVITY
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
-    from fe_drivetrain.scene_beam import beam_of_scene, main_bearing_beam
-    from fe_drivetrain.stiffness import bearing_unit_stiffness
+    from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
+    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
+    from fe_drivetrain.response import GRAVITY, LOADS, bearing_unit_stiffness
 
     scene = study.scene_of(run, "spherical")
     beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
@@ -44,11 +40,10 @@ def run(run: Run) -> Any:
         pictures = drawing.result()
         series = coarser.below(bands.of_solved(main))
     name = main.bearing
-    shaft = scene.shaft
     x_bearing = scene.bearing_units[0].bearing.x
 
     # Statics: the pinned closed form for unit hub loads.
-    pinned = beams.pinned_model(np.eye(6), beam).T
+    pinned = closed_forms.pinned_model(np.eye(6), beam).T
     verdicts = []
     for form, s in solved.items():
         reaction = s.response.reactions[name][:, :6]
@@ -82,13 +77,16 @@ def run(run: Run) -> Any:
 
     # What the reactions cannot show: beams on the bearing unit's own stiffness.
     unit = {form: bearing_unit_stiffness(s.response, name) for form, s in solved.items()}
-    stations = np.linspace(shaft.front, shaft.rear, 60)
-    at = np.concatenate([stations, [shaft.front, x_bearing]])
+    stations = np.linspace(scene.shaft.front, scene.shaft.rear, 60)
+    at = np.concatenate([stations, [scene.shaft.front, x_bearing]])
     hub_loads = 1000.0 * np.eye(6)[[2, 4]]
     motion_of_beam = {
         rings: [
-            frame.solve(
-                beam_of_scene(scene, {name: unit["sliding"]}, rings=rings), shaft.front, f, at=at
+            shaft.solve(
+                beam_of_scene(scene, {name: unit["sliding"]}, rings=rings),
+                scene.shaft.front,
+                f,
+                at=at,
             ).displacements
             for f in hub_loads
         ]
@@ -168,7 +166,7 @@ def run(run: Run) -> Any:
     ahead = mean_load.copy()  # the same load, 50 mm in front of the shaft's face
     ahead[4] += 0.05 * mean_load[2]
     with_arm = main.response.history(name, ahead, scene.gearbox.weight)
-    closed = beams.pinned_model(mean_load, beam)
+    closed = closed_forms.pinned_model(mean_load, beam)
     causes = Table(
         caption="Vertical load on the main bearing under a typical mean hub load "
         "(Fx 200 kN, Fz -370 kN, My 660 kN m): what can make FE and statics differ",
@@ -329,6 +327,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -6,29 +6,25 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.case import Run
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
-from fe_drivetrain.model import COMPONENTS, LOADS, Model, build_model, mesh_scene
-from fe_drivetrain.response import Response, unit_load_response
-from fe_drivetrain.results import (
-    AssumptionRow,
-    Image,
-    Section,
-    Table,
-    Text,
-    Verdict,
-    judge,
-)
-from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
-from fe_drivetrain.solvers import METHODS
-from fe_drivetrain.stiffness import (
+from fe_drivetrain.report import AssumptionRow, Image, Section, Table, Text, Verdict, judge
+from fe_drivetrain.response import (
+    COMPONENTS,
+    LOADS,
     PLANES,
+    Model,
+    Response,
     bearing_unit_stiffness,
+    build_model,
+    mesh_scene,
     tilt_stiffness,
+    unit_load_response,
     without_gearbox,
 )
+from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
+from fe_drivetrain.solve import METHODS
+from fe_drivetrain.suite import Run
 
 SOURCE = "Stirling 2023, PhD thesis, chapter 3 (sections 3.1 to 3.3, Table 3.1)"
 
@@ -362,7 +358,7 @@ def picture_section(run: Run, solved: Solved, loads: Floats, what: str) -> Secti
     what
         The loads in words.
     """
-    from fe_drivetrain import pictures
+    from fe_drivetrain.report import pictures
 
     items: list[Any] = []
     with run.step("pictures"):

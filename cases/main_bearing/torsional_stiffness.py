@@ -2,17 +2,16 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 
 def run(run: Run) -> Any:
     """Measure K_R, and show how much it depends on the estimator and on the load."""
     import numpy as np
-    from fe_drivetrain.cases.main_bearing import bands, study
 
-    from fe_drivetrain.charts import rounded
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
-    from fe_drivetrain.stiffness import PLANES
+    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, rounded
+    from fe_drivetrain.response import PLANES
 
     scene = study.scene_of(run, "bonded")
     with run.side_by_side(3) as jobs:
@@ -204,6 +203,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

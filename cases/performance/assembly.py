@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from skfem import (
     Basis,
     ElementHex1,
@@ -24,16 +23,16 @@ from skfem import (
 )
 from skfem.models.elasticity import linear_elasticity
 
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.elasticity import Floats, Ints, assemble, element_kind, is_straight, sparsity
-from fe_drivetrain.environment import environment
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.mesh import generate
-from fe_drivetrain.reduction import reduce
-from fe_drivetrain.results import Results, Table, Text, judge
-from fe_drivetrain.results import Section as PageSection
-from fe_drivetrain.solvers import factorise
+from fe_drivetrain.mesh import element_kind, generate, is_straight
+from fe_drivetrain.operator import assemble, sparsity
+from fe_drivetrain.report import Results, Table, Text, environment, judge
+from fe_drivetrain.report import Section as PageSection
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import factorise, reduce
+from fe_drivetrain.suite import Case, Run
 
 #: Mesh size of the hollow shaft of about 110 000 unknowns [m], and a small one.
 SIZE, QUICK_SIZE = 0.0515, 0.2

@@ -9,16 +9,23 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from fe_drivetrain.geometry import MeshSizes, Shaft
 
-from fe_drivetrain import direct, interfaces, solvers
-from fe_drivetrain.elasticity import Floats, Ints, assemble, element_kind
-from fe_drivetrain.elements import first_order, straightened
-from fe_drivetrain.hexahedra import UNGRADED, Grading, Nodes, shaft_hexahedra
-from fe_drivetrain.interfaces import ReferencePoint
-from fe_drivetrain.materials import Material
-from fe_drivetrain.mesh import generate
-from fe_drivetrain.reduction import System, reduce
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.geometry import MeshSizes, Shaft
+from fe_drivetrain.interfaces import ReferencePoint, constraints
+from fe_drivetrain.mesh import (
+    UNGRADED,
+    Grading,
+    Nodes,
+    element_kind,
+    first_order,
+    generate,
+    shaft_hexahedra,
+    straightened,
+)
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.scene import Material
+from fe_drivetrain.solve import System, direct_solvers, reduce, solvers
 
 STEPS = ("mesh", "assembly", "set-up", "solve")
 
@@ -180,11 +187,11 @@ def assemble_shaft(shaft: Shaft, material: Material, mesh: SolidShaft) -> Assemb
     n_freedoms = 3 * n + 6
     K = assemble(mesh.points, mesh.cells, material.lame, n_freedoms)
     centre = np.array([shaft.front, 0.0, 0.0])
-    point = interfaces.rigid_point("front", centre, 3 * n, n_freedoms)
-    elimination = interfaces.eliminate(
+    point = constraints.rigid_point("front", centre, 3 * n, n_freedoms)
+    elimination = constraints.eliminate(
         [
-            interfaces.fixed("rear", mesh.rear, n_freedoms),
-            interfaces.rigid_face("front", mesh.front, mesh.points, point),
+            constraints.fixed("rear", mesh.rear, n_freedoms),
+            constraints.rigid_face("front", mesh.front, mesh.points, point),
         ],
         n_freedoms,
     )
@@ -316,7 +323,7 @@ def timed(work: Callable[[], _Made], repeats: int = REPEATS) -> tuple[_Made, flo
 
 def available() -> list[str]:
     """The solvers that are installed here, multigrid last."""
-    return [*(m for m in direct.PACKAGES if direct.is_installed(m)), "multigrid"]
+    return [*(m for m in direct_solvers.PACKAGES if direct_solvers.is_installed(m)), "multigrid"]
 
 
 def every_solve(tolerances: Iterable[float]) -> list[Solve]:

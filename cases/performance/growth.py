@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 from fe_drivetrain.cases.performance import choices
 from fe_drivetrain.geometry import Section, Shaft
-
-from fe_drivetrain.materials import MATERIALS
+from fe_drivetrain.scene import MATERIALS
 
 STEPPED = Shaft(
     front=-2.0,
@@ -64,7 +63,7 @@ def grown(size: float, turn: int, method: str = "auto") -> Grown | None:
     size, turn
         Element size [m], elements round any cylinder.
     method
-        Of `fe_drivetrain.solvers`.
+        Of `fe_drivetrain.solve.solvers`.
 
     Returns
     -------

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 if TYPE_CHECKING:
-    from fe_drivetrain.elasticity import Floats
+    from fe_drivetrain.common import Floats
 
 #: Error of the 12 x 12 stiffness, scaled to 1 on its diagonal, and the wall time it may take [s].
 ERROR, GOAL = 1e-5, 0.030
@@ -31,17 +31,15 @@ def run(run: Run) -> Any:
     import time
 
     import numpy as np
-    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
-    from fe_drivetrain.geometry import Section as Length
-    from fe_drivetrain.geometry import Shaft
     from threadpoolctl import threadpool_limits
 
-    from fe_drivetrain.axisymmetric import end_stiffness
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.condensed_shafts import beam_shaft, meridian_shaft
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.scene import library_scene
+    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
+    from fe_drivetrain.fidelity import beam_shaft, meridian_shaft
+    from fe_drivetrain.geometry import Section as Length
+    from fe_drivetrain.geometry import Shaft
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import end_stiffness
+    from fe_drivetrain.scene import MATERIALS, library_scene
 
     steel = MATERIALS["steel"]
 
@@ -266,8 +264,13 @@ def _by_general_factor(shaft: Any, material: Any, median: Any) -> dict[str, floa
     from scipy import sparse
     from scipy.sparse.linalg import splu
 
-    from fe_drivetrain.axisymmetric import element_matrices, freedoms, harmonic_solver
-    from fe_drivetrain.meridian import Meridian, meridian
+    from fe_drivetrain.revolution import (
+        Meridian,
+        element_matrices,
+        freedoms,
+        harmonic_solver,
+        meridian,
+    )
 
     mesh = meridian(shaft)
     size = 3 * len(mesh.nodes)
@@ -319,6 +322,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -117,8 +117,7 @@ def settings_of(run: Run) -> dict[str, Any]:
     """
     from fe_drivetrain.cases.performance.problems import BENCHMARKS
     from fe_drivetrain.cases.performance.tools.launch import TOOLS, parse
-
-    from fe_drivetrain.errors import InputError
+    from fe_drivetrain.common import InputError
 
     quick = QUICK if run.quick else {}
     unknown = sorted(set(run.settings) - set(DEFAULTS))
@@ -216,7 +215,7 @@ def results_of(
     first: dict[Variant, tuple[Outcome, str]],
 ) -> Any:
     """The page."""
-    from fe_drivetrain.results import Section, Text
+    from fe_drivetrain.report import Section, Text
 
     verdicts = [
         verdict for key, b in benchmarks.items() for verdict in verdicts_of(b, rows[key], plan)
@@ -270,8 +269,7 @@ def results_of(
 def verdicts_of(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> list[Any]:
     """Faster than any other, with less memory than any direct one; the same answer."""
     from fe_drivetrain.cases.performance import rounds
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     found = []
     for n in meshes_of(rows):
@@ -318,8 +316,7 @@ def verdicts_of(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> list[A
 
 def _time_verdict(label: str, ours: Row, here: Sequence[Row], plan: Plan) -> Any:
     from fe_drivetrain.cases.performance import rounds
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     peer = rounds.fastest_peer(here)
     if peer is not None and peer.seconds:
@@ -340,8 +337,7 @@ def _time_verdict(label: str, ours: Row, here: Sequence[Row], plan: Plan) -> Any
 
 def _exact_verdict(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
     from fe_drivetrain.cases.performance import rounds
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     done = [r for r in rows if r.variant.tool == OURS and r.variant.key == "auto" and r.found]
     if benchmark.exact is None or not done:
@@ -386,8 +382,7 @@ def summary_of(
 def ratio_table(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> Any:
     """How many times this project's time each tool takes, where it reaches the same error."""
     from fe_drivetrain.cases.performance import rounds
-
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     meshes = meshes_of(rows)
     ours = {n: rounds.of_tool(of_mesh(rows, n), OURS, "auto") for n in meshes}
@@ -425,7 +420,7 @@ def mesh_table(
 ) -> Any:
     """All that was measured on one mesh."""
 
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     exact = benchmark.exact
     table: list[list[Any]] = []
@@ -504,8 +499,7 @@ def _small(value: float) -> str:
 def memory_table(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
     """Peak memory of every tool by mesh."""
     from fe_drivetrain.cases.performance import rounds
-
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     meshes = meshes_of(rows)
     table: list[list[Any]] = []
@@ -547,7 +541,7 @@ def memory_chart(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
 
 
 def _chart(caption: str, axis: str, rows: Sequence[Row], value: Any) -> Any:
-    from fe_drivetrain.results import Chart
+    from fe_drivetrain.report import Chart
 
     traces = []
     counts: dict[str, int] = {}
@@ -593,7 +587,7 @@ def _chart(caption: str, axis: str, rows: Sequence[Row], value: Any) -> Any:
 
 def tool_table(first: dict[Variant, tuple[Outcome, str]], plan: Plan) -> Any:
     """What is installed, and what it takes to start it."""
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     table: list[list[Any]] = []
     for variant, (outcome, _) in first.items():
@@ -635,8 +629,7 @@ def tool_table(first: dict[Variant, tuple[Outcome, str]], plan: Plan) -> Any:
 def missing_tables(first: dict[Variant, tuple[Outcome, str]]) -> list[Any]:
     """How to install what is not there."""
     from fe_drivetrain.cases.performance.tools.launch import how_to_install
-
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     rows: list[list[Any]] = [
         [variant.name, outcome.reason, how_to_install(variant.tool)]
@@ -699,6 +692,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -4,16 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.cases.performance.tools.runner import Floats, Ints, Problem
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
-from fe_drivetrain.materials import MATERIALS, Material
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.mesh_cache import cached_mesh
-from fe_drivetrain.model import mesh_scene
-from fe_drivetrain.scene import library_scene
+from fe_drivetrain.cases.performance.tools.runner import Floats, Ints, Problem
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
+from fe_drivetrain.mesh import Mesh, cached_mesh
+from fe_drivetrain.response import mesh_scene
+from fe_drivetrain.scene import MATERIALS, Material, library_scene
 
 OUTER, INNER, LENGTH = 0.7, 0.3, 2.0
 """Diameters and length of the hollow shaft [m]."""

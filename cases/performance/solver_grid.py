@@ -6,22 +6,27 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 
-from fe_drivetrain import cost, direct, multigrid
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.elasticity import Floats, assemble
-from fe_drivetrain.environment import environment
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.materials import MATERIALS
 from fe_drivetrain.mesh import generate
-from fe_drivetrain.model import build_model, mesh_scene
-from fe_drivetrain.multigrid import Options
-from fe_drivetrain.reduction import System, reduce
-from fe_drivetrain.results import Chart, Results, Table, Text, Verdict, judge
-from fe_drivetrain.results import Section as PageSection
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.solvers import METHODS, factorise
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.report import Chart, Results, Table, Text, Verdict, environment, judge
+from fe_drivetrain.report import Section as PageSection
+from fe_drivetrain.response import build_model, mesh_scene
+from fe_drivetrain.scene import MATERIALS, library_scene
+from fe_drivetrain.solve import (
+    METHODS,
+    Options,
+    System,
+    cost_model,
+    direct_solvers,
+    factorise,
+    multigrid,
+    reduce,
+)
+from fe_drivetrain.suite import Case, Run
 
 MANY = 12  # right-hand sides
 
@@ -134,7 +139,9 @@ def study(run: Run, case: Case) -> Results:
         grid += [lambda: bearing_problem("spherical", 1.0)]
         # These two had no part in fitting the constants of `cost`.
         grid += [lambda: shaft_problem(6.0, 0.1), lambda: bearing_problem("bonded", 1.6)]
-    installed = [m for m in METHODS if m == "multigrid" or (m != "auto" and direct.is_installed(m))]
+    installed = [
+        m for m in METHODS if m == "multigrid" or (m != "auto" and direct_solvers.is_installed(m))
+    ]
     with run.step("compile"):
         timed(shaft_problem(1.0, 0.5), "multigrid", 1)
 
@@ -142,7 +149,7 @@ def study(run: Run, case: Case) -> Results:
     for number, make in enumerate(grid, start=1):
         problem = make()
         with run.step(f"grid of solvers ({number} of {len(grid)})"):
-            costs = {c.method: c for c in cost.predict(problem.system, MANY)}
+            costs = {c.method: c for c in cost_model.predict(problem.system, MANY)}
             methods = [m for m in installed if costs[m].seconds < TIME_LIMIT]
             repetitions = 2 if problem.system.n_free < 30_000 else 1
             timings.append({m: timed(problem, m, repetitions) for m in methods})
@@ -204,7 +211,7 @@ def study(run: Run, case: Case) -> Results:
                     "problem": problem.name,
                     "unknowns": problem.system.n_free,
                     "nonzeros": problem.system.K.nnz,
-                    "width": cost.width(problem.system.K),
+                    "width": cost_model.width(problem.system.K),
                     **{m: vars(t) for m, t in timing.items()},
                 }
                 for problem, timing in zip(problems, timings, strict=True)
@@ -231,7 +238,7 @@ def _grid_results(
             memory = t.bytes / 2**20
             rows.append([*label, t.setup, t.one, t.many, memory, t.iterations or None])
         for n_rhs in (1, MANY):
-            predicted = next(c for c in cost.predict(system, n_rhs) if c.method in timing)
+            predicted = next(c for c in cost_model.predict(system, n_rhs) if c.method in timing)
             times = {m: t.total(n_rhs) for m, t in timing.items()}
             best = min(times, key=times.__getitem__)
             slower = times[predicted.method] / times[best]
@@ -375,7 +382,7 @@ def _stopping(quick: bool) -> tuple[list[Any], list[Verdict]]:
         problem = make()
         system, F = problem.system, np.ascontiguousarray(problem.loads[:, :6])
         K = system.K
-        factor = direct.factorise(K, "superlu")
+        factor = direct_solvers.factorise(K, "superlu")
         exact = factor.apply(F)
         direct_residual = _residual(K, exact, F)
         exact = exact + factor.apply(F - K @ exact)

@@ -10,6 +10,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+
+from fe_drivetrain.beam import BeamSection, shaft
 from fe_drivetrain.cases.performance import tilt
 from fe_drivetrain.cases.performance.choices import (
     CURVED,
@@ -29,18 +31,15 @@ from fe_drivetrain.cases.performance.choices import (
 )
 from fe_drivetrain.cases.performance.growth import MATERIAL, STEPPED, Grown, grown
 from fe_drivetrain.cases.performance.precision import cheapest_within
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import GridConvergence, grid_convergence, richardson
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-
-from fe_drivetrain import frame, solvers
-from fe_drivetrain.axisymmetric import end_stiffness
-from fe_drivetrain.case import Run
-from fe_drivetrain.convergence import GridConvergence, grid_convergence, richardson
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.hexahedra import Grading
-from fe_drivetrain.materials import Material
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.sections import BeamSection
-from fe_drivetrain.stiffness import without_gearbox
+from fe_drivetrain.mesh import Grading
+from fe_drivetrain.response import without_gearbox
+from fe_drivetrain.revolution import end_stiffness
+from fe_drivetrain.scene import Material, Scene, library_scene
+from fe_drivetrain.solve import solvers
+from fe_drivetrain.suite import Run
 
 SHAFT_QUANTITIES = ("torsional", "bending", "axial")
 TILT_QUANTITIES = tuple(f"K_R {plane}, {estimator}" for plane, estimator in tilt.QUANTITIES)
@@ -253,9 +252,9 @@ def beam_stiffness(repeats: int = 9) -> tuple[Floats, float]:
         sections = [
             BeamSection(p.length, p.outer_diameter, p.inner_diameter) for p in STEPPED.pieces
         ]
-        rear = frame.Support("rear", STEPPED.rear, [np.inf] * 6)
-        beam = frame.Beam(sections, [rear], STEPPED.front, MATERIAL)
-        response = frame.unit_load_response(beam, STEPPED.front, STEPPED.front)
+        rear = shaft.Support("rear", STEPPED.rear, [np.inf] * 6)
+        beam = shaft.Beam(sections, [rear], STEPPED.front, MATERIAL)
+        response = shaft.unit_load_response(beam, STEPPED.front, STEPPED.front)
         compliance = response.displacement.reshape(6, 6)
         seconds.append(time.perf_counter() - start)
     return 1.0 / compliance.diagonal()[[3, 4, 0]], statistics.median(seconds)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+
 from fe_drivetrain.cases.performance.choices import (
     CURVED,
     P1,
@@ -24,18 +25,20 @@ from fe_drivetrain.cases.performance.choices import (
     solved,
     timed,
 )
+from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import MeshSizes
-
-from fe_drivetrain import interfaces
-from fe_drivetrain.elasticity import Floats, Ints, assemble
-from fe_drivetrain.elements import first_order, straightened
-from fe_drivetrain.facets import MEANS, face_weights
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import build_model, mesh_scene
-from fe_drivetrain.reduction import reduce
-from fe_drivetrain.response import unit_load_response
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.mesh import MEANS, Mesh, face_weights, first_order, straightened
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.response import (
+    PLANES,
+    build_model,
+    mesh_scene,
+    tilt_stiffness,
+    unit_load_response,
+)
 from fe_drivetrain.scene import Scene
-from fe_drivetrain.stiffness import PLANES, tilt_stiffness
+from fe_drivetrain.solve import reduce
 
 #: What is compared: K_R by plane and by estimator of `stiffness.tilt_stiffness`.
 QUANTITIES = tuple((plane.name, kind) for kind in ("energy", "averaged seat") for plane in PLANES)
@@ -124,14 +127,14 @@ def assemble_tilt(scene: Scene, mesh: TiltMesh) -> Assembled:
         for part, cells in mesh.cells_of.items()
     }
     hub, seat = (
-        interfaces.averaged_point(name, *face, mesh.points, np.array([x, 0.0, 0.0]), n_freedoms)
+        constraints.averaged_point(name, *face, mesh.points, np.array([x, 0.0, 0.0]), n_freedoms)
         for name, face, x in (
             ("hub", mesh.hub, scene.shaft.front),
             ("seat", mesh.seat, bearing.x),
         )
     )
-    elimination = interfaces.eliminate(
-        [interfaces.fixed("base", mesh.base, n_freedoms)], n_freedoms
+    elimination = constraints.eliminate(
+        [constraints.fixed("base", mesh.base, n_freedoms)], n_freedoms
     )
     T = elimination.T
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -12,8 +12,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.cases.performance.choices import Outcome
     from fe_drivetrain.cases.performance.growth import Grown
     from fe_drivetrain.cases.performance.studies import Setting, Study
-
-    from fe_drivetrain.results import Chart, Section, Table, Verdict
+    from fe_drivetrain.report import Chart, Section, Table, Verdict
 
 PARTS = ("shaft", "housing", "growth")
 
@@ -92,7 +91,7 @@ def parts_of(run: Run) -> list[str]:
     InputError
         A setting or a part is unknown.
     """
-    from fe_drivetrain.errors import InputError
+    from fe_drivetrain.common import InputError
 
     unknown = sorted(set(run.settings) - {"parts"})
     if unknown:
@@ -116,8 +115,7 @@ def torsion_verdicts(run: Run, study: Study, uniform: Study) -> list[Verdict]:
     """Torsional stiffness to 1e-4 in under half a second, of a uniform and of a stepped shaft."""
     from fe_drivetrain.cases.performance import studies
     from fe_drivetrain.cases.performance.growth import STEPPED
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     found = []
     for what, levels, shaft in (
@@ -147,8 +145,7 @@ def torsion_verdicts(run: Run, study: Study, uniform: Study) -> list[Verdict]:
 def limit_verdicts(study: Study) -> list[Verdict]:
     """Whether series of meshes of different elements tend to one value."""
     from fe_drivetrain.cases.performance.choices import P1
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     found = []
     for element, limits in study.limits.items():
@@ -176,8 +173,7 @@ def limit_verdicts(study: Study) -> list[Verdict]:
 def assembly_verdict(run: Run, study: Study, settings: Sequence[Setting]) -> tuple[Verdict, str]:
     """The assembly's ten unit loads with K_R within 1 % in under 10 s."""
     from fe_drivetrain.cases.performance import studies
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     good = [s for s in settings if energy_error(study, s) <= 1e-2]
     seconds, sentence = float("nan"), "No setting gave K_R within 1 % of its limit."
@@ -238,7 +234,7 @@ def shaft_summary(study: Study) -> list[str]:
 
 def study_sections(study: Study, charted: Sequence[int] | None = None) -> list[Section]:
     """Charts, fronts and tables of one study."""
-    from fe_drivetrain.results import Section, Text
+    from fe_drivetrain.report import Section, Text
 
     quantities = range(len(study.quantities)) if charted is None else charted
     charts = [error_chart(study, q) for q in quantities]
@@ -275,7 +271,7 @@ REMARKS = (
 
 def take_table(study: Study, quantities: Sequence[int]) -> Table:
     """For each error the quickest choice that is within it."""
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     rows: list[list[Any]] = []
     for q in quantities:
@@ -300,7 +296,7 @@ _STEPS = ("mesh [ms]", "assembly [ms]", "set-up [ms]", "solve [ms]", "in all [ms
 
 def choice_cells(outcome: Outcome, error: float) -> list[Any]:
     """A choice, its error and its times, for a row."""
-    from fe_drivetrain.charts import rounded
+    from fe_drivetrain.report import rounded
 
     choice = [outcome.element, outcome.mesh, outcome.solver, outcome.unknowns]
     seconds = [*outcome.seconds.values(), outcome.total]
@@ -310,6 +306,7 @@ def choice_cells(outcome: Outcome, error: float) -> list[Any]:
 def front_of(study: Study, quantity: int) -> list[int]:
     """Outcomes on the Pareto front, as far as the reference can rank them."""
     import numpy as np
+
     from fe_drivetrain.cases.performance.precision import pareto_front
 
     error = study.error(quantity)
@@ -319,7 +316,7 @@ def front_of(study: Study, quantity: int) -> list[int]:
 
 def front_table(study: Study, quantities: Sequence[int]) -> Table:
     """The choices that no other one beats in both time and error."""
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     rows: list[list[Any]] = []
     for q in quantities:
@@ -345,10 +342,9 @@ def symbol_of(outcome: Outcome) -> str:
 def error_chart(study: Study, quantity: int) -> Chart:
     """Error against time of every choice, the front drawn."""
     import numpy as np
-    from fe_drivetrain.cases.performance.choices import ELEMENTS
 
-    from fe_drivetrain.charts import rounded
-    from fe_drivetrain.results import Chart
+    from fe_drivetrain.cases.performance.choices import ELEMENTS
+    from fe_drivetrain.report import Chart, rounded
 
     error, seconds = study.error(quantity), study.seconds()
     floor = study.floor(quantity)
@@ -423,9 +419,7 @@ def error_chart(study: Study, quantity: int) -> Chart:
 def split_chart(study: Study, quantity: int) -> Chart:
     """Where the time goes, along the front."""
     from fe_drivetrain.cases.performance.choices import STEPS
-
-    from fe_drivetrain.charts import rounded
-    from fe_drivetrain.results import Chart
+    from fe_drivetrain.report import Chart, rounded
 
     error = study.error(quantity)
     front = front_of(study, quantity)
@@ -457,7 +451,7 @@ def split_chart(study: Study, quantity: int) -> Chart:
 
 def reference_table(study: Study) -> Table:
     """Where the reference comes from, and what series of meshes tend to."""
-    from fe_drivetrain.results import Table
+    from fe_drivetrain.report import Table
 
     rows: list[list[Any]] = []
     for q, name in enumerate(study.quantities):
@@ -491,8 +485,7 @@ def tolerance_chart(study: Study) -> Chart:
     """What a looser tolerance costs in accuracy: against the direct solution of the same mesh."""
     import numpy as np
 
-    from fe_drivetrain.charts import rounded
-    from fe_drivetrain.results import Chart
+    from fe_drivetrain.report import Chart, rounded
 
     traces = []
     exact = {(o.element, o.mesh): o.values for o in study.outcomes if o.solve.method == "auto"}
@@ -541,8 +534,7 @@ def tolerance_chart(study: Study) -> Chart:
 def settings_section(study: Study, settings: Sequence[Setting]) -> Section:
     """Mesh sizes that users can take for K_R."""
     from fe_drivetrain.cases.performance.tilt import BALANCED, sizes_in_words
-
-    from fe_drivetrain.results import Section, Table, Text
+    from fe_drivetrain.report import Section, Table, Text
 
     rows: list[list[Any]] = []
     for s in settings:
@@ -594,8 +586,7 @@ def settings_section(study: Study, settings: Sequence[Setting]) -> Section:
 def growth_verdicts(grown: Sequence[Grown]) -> list[Verdict]:
     """Growth of time with unknowns, and the memory of the largest."""
     from fe_drivetrain.cases.performance.precision import growth_exponent
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     largest = max((g.unknowns for g in grown), default=0)
     peak = max((g.peak_bytes for g in grown), default=0) or float("nan")
@@ -627,9 +618,7 @@ def growth_section(grown: Sequence[Grown], outcomes: Sequence[Outcome]) -> Secti
     """Time and memory against the number of unknowns, and their exponents."""
     from fe_drivetrain.cases.performance.choices import CURVED, STEPS
     from fe_drivetrain.cases.performance.precision import growth_exponent
-
-    from fe_drivetrain.charts import rounded
-    from fe_drivetrain.results import Chart, Section, Table
+    from fe_drivetrain.report import Chart, Section, Table, rounded
 
     unknowns = [g.unknowns for g in grown]
     series = {step: [g.seconds[step] for g in grown] for step in STEPS}
@@ -768,6 +757,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

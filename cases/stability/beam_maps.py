@@ -9,14 +9,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.geometry import Section, Shaft
 from scipy.interpolate import RectBivariateSpline
 
-from fe_drivetrain.axisymmetric import end_stiffness
-from fe_drivetrain.charts import rounded, trace
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.sections import BeamSection, element_integrals, transport
+from fe_drivetrain.beam import BeamSection, element_integrals, transport
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.report import rounded, trace
+from fe_drivetrain.revolution import end_stiffness
+from fe_drivetrain.scene import MATERIALS
 
 STEEL = MATERIALS["steel"]
 

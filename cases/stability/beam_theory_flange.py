@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Flange over shaft diameter.
 RATIOS = (1.4, 1.7, 2.0, 2.5, 3.0)
@@ -24,10 +24,9 @@ PLATE = 0.4
 def run(run: Run) -> Any:
     """Map the error over thickness and diameter; add the flange as a plate; check both."""
     import numpy as np
-    from fe_drivetrain.cases.stability import beam_maps as maps
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     thick = np.geomspace(0.02, 1.0, 4 if run.quick else 9)
     ratios = np.array(QUICK_RATIOS if run.quick else RATIOS)
@@ -268,9 +267,9 @@ def _shaft(thickness: float, ratio: float) -> Any:
 def _by_elements(thickness: float, ratio: float, finer: bool = False) -> float:
     """Rotation of the rear by a moment, the rim held."""
     import numpy as np
-    from fe_drivetrain.cases.stability import beam_maps as maps
 
-    from fe_drivetrain.axisymmetric import seat_stiffness
+    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.revolution import seat_stiffness
 
     shaft = _shaft(thickness, ratio)
     # what is bent at the root is as small as the flange is thick
@@ -293,14 +292,13 @@ def _by_beam(thickness: float, ratio: float) -> float:
 def _solid_verdict(run: Run) -> Any:
     """One point against curved tetrahedra."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import beam_maps as maps
     from fe_drivetrain.geometry import MeshSizes
-
-    from fe_drivetrain.error_estimate import recovery_estimate
     from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
     from fe_drivetrain.mesh import generate
-    from fe_drivetrain.results import judge
-    from fe_drivetrain.statics import solve_solid
+    from fe_drivetrain.report import judge
+    from fe_drivetrain.solve import recovery_estimate, solve_solid
 
     t = 0.25
     shaft = _shaft(t, SHOWN)
@@ -343,6 +341,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

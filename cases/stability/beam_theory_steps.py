@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Large over small diameter.
 RATIOS = (1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 2.5, 3.0)
@@ -24,11 +24,10 @@ OF = {"torsion": 3, "bending": 4, "tension": 0}
 def run(run: Run) -> Any:
     """Map the errors of sharp steps, then of fillets; correct the beam; check both."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import beam_maps as maps
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     lengths = np.append(np.geomspace(0.5, 30.0, 4 if run.quick else 7), AT)
     lengths.sort()
@@ -325,6 +324,7 @@ def _without_ends(
 ) -> Any:
     """Flexibilities (6,) of the elements, less the ends'; of rotations and along x alone."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import beam_maps as maps
 
     shaft = _shaft(length, ratio, fillet)
@@ -338,11 +338,10 @@ def _without_ends(
 def _bent_by_tractions(length: float, ratio: float) -> float:
     """Rotation by a moment [rad/(N m)]: twice the energy of unit moments by linear tractions."""
     import numpy as np
-    from fe_drivetrain.cases.stability import beam_maps as maps
 
-    from fe_drivetrain.axisymmetric import freedoms, harmonic_response, surface_loads
-    from fe_drivetrain.hexahedra import SAME_LENGTH
-    from fe_drivetrain.meridian import meridian
+    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.mesh import SAME_LENGTH
+    from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
 
     mesh = meridian(_shaft(length, ratio), ratio / 3)
 
@@ -366,6 +365,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Bore over outer diameter.
 BORES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9)
@@ -20,11 +20,10 @@ OF = {"deflection by a force": 2, "rotation by a moment": 4, "tension": 0}
 def run(run: Run) -> Any:
     """Map the errors, correct the beam by its ends, and check against solids."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import beam_maps as maps
     from fe_drivetrain.cases.verification.shaft_theory import Tube
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     lengths = np.append(np.geomspace(0.5, 30.0, 5 if run.quick else 8), SHORTEST)
     lengths.sort()
@@ -317,6 +316,7 @@ def _ends(measured: Any, bore: float) -> Any:
     from types import SimpleNamespace
 
     import numpy as np
+
     from fe_drivetrain.cases.stability import beam_maps as maps
     from fe_drivetrain.cases.verification.shaft_theory import Tube
 
@@ -356,12 +356,17 @@ def _flexure_tip(tube: Any, order: int) -> float:
     from functools import partial
 
     import numpy as np
+
     from fe_drivetrain.cases.stability import beam_maps as maps
     from fe_drivetrain.cases.verification.shaft_theory import flexure_stress
-
-    from fe_drivetrain.axisymmetric import along_sides, freedoms, harmonic_response, surface_loads
-    from fe_drivetrain.hexahedra import SAME_LENGTH
-    from fe_drivetrain.meridian import meridian
+    from fe_drivetrain.mesh import SAME_LENGTH
+    from fe_drivetrain.revolution import (
+        along_sides,
+        freedoms,
+        harmonic_response,
+        meridian,
+        surface_loads,
+    )
 
     mesh = meridian(maps.uniform(tube.length, tube.inner, tube.outer), order=order, layers=0)
 
@@ -402,8 +407,7 @@ def _solid_verdicts(run: Run) -> list[Any]:
     """Points of the map against curved tetrahedra."""
     from fe_drivetrain.cases.stability import beam_maps as maps
     from fe_drivetrain.cases.verification import rigid_ended_shafts
-
-    from fe_drivetrain.results import judge
+    from fe_drivetrain.report import judge
 
     verdicts = []
     for length, bore in () if run.quick else ((1.0, 0.0), (2.0, 0.5)):
@@ -440,6 +444,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -7,25 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain import multigrid
-from fe_drivetrain.blocks import Block, brick
-from fe_drivetrain.elasticity import Floats, assemble
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.facets import MEANS, face_weights
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.interfaces import (
     Constraint,
     averaged_point,
     eliminate,
     fixed,
     held,
+    mortar_tie,
     rigid_face,
     rigid_point,
 )
-from fe_drivetrain.loads import body_loads
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.mortar import mortar_tie
-from fe_drivetrain.reduction import System, in_blocks, reduce
-from fe_drivetrain.solvers import TOLERANCE, factorise
+from fe_drivetrain.mesh import MEANS, Block, brick, face_weights
+from fe_drivetrain.operator import assemble, body_loads
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import TOLERANCE, System, factorise, in_blocks, multigrid, reduce
 
 LENGTH, SIDE = 1.0, 0.25
 MATERIAL = MATERIALS["steel"]

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.charts import trace
-from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.common import Floats
+from fe_drivetrain.report import trace
 
 #: Relative error of a stiffness that counts as safe: four digits.
 FOUR_DIGITS = 1e-4

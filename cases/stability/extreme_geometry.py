@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: By name: what it is, its values, and for a quick run.
 SWEEPS: dict[str, tuple[str, tuple[float, ...], tuple[float, ...]]] = {
@@ -64,10 +64,9 @@ def run(run: Run) -> Any:
     from functools import partial
 
     import numpy as np
-    from fe_drivetrain.cases.stability import extremes
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.cases.stability import extremes
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     cross = {"symbol": "x", "size": 11, "color": "#c62828"}
     verdicts, sections, limits, bounds = [], [], [], []
@@ -107,7 +106,7 @@ def run(run: Run) -> Any:
                 0.0,
                 tolerance=0.0,
                 relative=False,
-                source="fe_drivetrain.mesh_checks",
+                source="fe_drivetrain.mesh.checks",
                 reason="what is meshed is sound",
                 measure="identity",
             ),
@@ -241,6 +240,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -7,12 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
 
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.mesh import area, generate, inverted_cells, volume
-from fe_drivetrain.mesh_checks import find_faults
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
+from fe_drivetrain.mesh import area, find_faults, generate, inverted_cells, volume
 
 TURN = 8
 SIZES = MeshSizes(shaft=0.3, bearing=0.12, housing=0.15, bearing_edge=0.06, elements_per_turn=TURN)

@@ -22,20 +22,19 @@ from xml.etree.ElementTree import ParseError
 import gmsh
 import meshio
 import numpy as np
+
+from fe_drivetrain.commands import app
+from fe_drivetrain.common import CACHE_VARIABLE, Cache
 from fe_drivetrain.geometry import MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
-
-from fe_drivetrain import cli, report
-from fe_drivetrain.cache import VARIABLE, Cache
-from fe_drivetrain.case import Case, Run, run_case, run_into
-from fe_drivetrain.elasticity import rigid_motions, sparsity
 from fe_drivetrain.interfaces import freedoms
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.mesh import write
-from fe_drivetrain.mesh_cache import _content, cached_mesh
-from fe_drivetrain.results import Environment, Results, read_results
-from fe_drivetrain.statics import solve_solid
-from fe_drivetrain.suite import run_cases
+from fe_drivetrain.mesh import cached_mesh, write
+from fe_drivetrain.mesh.cached import _content
+from fe_drivetrain.operator import rigid_motions, sparsity
+from fe_drivetrain.report import Environment, Results, page, read_results
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.suite import Case, Run, run_case, run_cases, run_into
 
 OLD, NEW, BROKEN = "old", "new", "broken"
 FILES = ("report.html", "results.json", "shaft.vtu")
@@ -187,22 +186,22 @@ def ended(pid: int, read: int) -> tuple[int, str]:
 
 def run_new(out: Path) -> int:
     """As the command line does it."""
-    return cli._run(lambda: [CASE_KILLED], out, [f"mark={NEW}"], quick=False)
+    return app._run(lambda: [CASE_KILLED], out, [f"mark={NEW}"], quick=False)
 
 
 def run_in_place(out: Path) -> int:
     """As a program does it that knows no better: it empties the folder and writes into it."""
     shutil.rmtree(out)
     out.mkdir()
-    with cli._progress() as report:
-        run_into(CASE_KILLED, out, {"mark": NEW}, False, report)
+    with app._progress() as page:
+        run_into(CASE_KILLED, out, {"mark": NEW}, False, page)
     return 0
 
 
 def experiment(folder: Path, moments: int) -> Found:
     """Make every fault happen in a folder of its own."""
     caches, out = folder / "cache", folder / "reports" / "small"
-    os.environ[VARIABLE] = str(caches)
+    os.environ[CACHE_VARIABLE] = str(caches)
 
     def afresh() -> None:
         """Old results, and no mesh in the cache."""
@@ -318,7 +317,7 @@ def _starved(size: int, out: Path) -> int:
 
 
 def _without_cache(file: Path, out: Path) -> int:
-    os.environ[VARIABLE] = str(file)
+    os.environ[CACHE_VARIABLE] = str(file)
     return run_new(out)
 
 
@@ -327,7 +326,7 @@ def _one_of_three(out: Path) -> int:
         def refuse(dimension: int) -> None:
             raise Exception("PLC Error: A segment and a facet intersect at point")
 
-        shutil.rmtree(os.environ[VARIABLE], ignore_errors=True)
+        shutil.rmtree(os.environ[CACHE_VARIABLE], ignore_errors=True)
         generate, gmsh.model.mesh.generate = gmsh.model.mesh.generate, refuse
         try:
             return small(run)
@@ -384,7 +383,7 @@ def main() -> None:
     # what a run loads first, once for all children: a compiled kernel (one that starts no threads,
     # for these do not survive a fork) and the template of the page
     sparsity(np.arange(8).reshape(1, 8), 8)
-    report.render(results(OLD, 0.0), Path())
+    page.render(results(OLD, 0.0), Path())
     found = experiment(Path(sys.argv[1]), int(sys.argv[2]))
     print(json.dumps(asdict(found)))
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Kills over the duration of a run that nothing disturbs.
 MOMENTS, QUICK_MOMENTS = 40, 10
@@ -18,10 +18,8 @@ def run(run: Run) -> Any:
     import sys
     import tempfile
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.errors import MissingToolError
-    from fe_drivetrain.parallel import VARIABLE
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.common import CORES_VARIABLE, MissingToolError
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     if not hasattr(os, "fork"):
         raise MissingToolError(
@@ -36,7 +34,7 @@ def run(run: Run) -> Any:
         program = "fe_drivetrain.cases.stability.fault_moments"
         done = subprocess.run(
             [sys.executable, "-P", "-m", program, folder, str(moments)],
-            env={**os.environ, **dict.fromkeys(threads, "1"), VARIABLE: "1"},
+            env={**os.environ, **dict.fromkeys(threads, "1"), CORES_VARIABLE: "1"},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -260,6 +258,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

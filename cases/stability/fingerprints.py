@@ -34,8 +34,7 @@ STIFFNESS = "stiffness"
 def scene_arrays() -> dict[str, NDArray[np.float64]]:
     """ "mesh" and "operator" of a main bearing, made anew where the cache is off."""
     from fe_drivetrain.cases.stability import soft_springs
-
-    from fe_drivetrain.model import build_model, mesh_scene
+    from fe_drivetrain.response import build_model, mesh_scene
 
     scene = soft_springs.scene_of("bonded")
     mesh = mesh_scene(scene)
@@ -60,15 +59,13 @@ def tube_answers(
         "METHOD at L/D" (n,) in the order of the numbers, and "stiffness, METHOD at L/D" (1,); NaN
         where the method refuses, or leaves it to another one.
     """
+    from fe_drivetrain.common import InputError
     from fe_drivetrain.geometry import Section, Shaft
-
-    from fe_drivetrain.elasticity import assemble
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.hexahedra import shaft_hexahedra
     from fe_drivetrain.interfaces import eliminate, fixed
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.reduction import reduce
-    from fe_drivetrain.solvers import factorise
+    from fe_drivetrain.mesh import shaft_hexahedra
+    from fe_drivetrain.operator import assemble
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.solve import factorise, reduce
 
     lame = MATERIALS["steel"].lame
     found: dict[str, NDArray[np.float64]] = {}
@@ -103,9 +100,9 @@ def tube_answers(
 
 def methods() -> list[str]:
     """Solvers that are installed."""
-    from fe_drivetrain import direct
+    from fe_drivetrain.solve import direct_solvers
 
-    return [m for m in direct.PACKAGES if direct.is_installed(m)] + ["multigrid"]
+    return [m for m in direct_solvers.PACKAGES if direct_solvers.is_installed(m)] + ["multigrid"]
 
 
 def elsewhere(

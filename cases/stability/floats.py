@@ -6,17 +6,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.geometry import Section, Shaft
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from fe_drivetrain.elasticity import Ints, element_kind
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.hexahedra import shaft_hexahedra
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.reduction import System, in_blocks
-from fe_drivetrain.solvers import factorise
+from fe_drivetrain.common import InputError, Ints
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.mesh import element_kind, shaft_hexahedra
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import System, factorise, in_blocks
 
 Real = NDArray[Any]
 

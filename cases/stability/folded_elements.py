@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Elements to a full turn of the fillet's radius; a fillet is a quarter of a turn.
 PER_TURN = (6.0, 5.0, 4.0, 3.5, 3.0, 2.5, 2.0, 1.5, 1.0)
@@ -22,14 +22,12 @@ COARSE = 0.05
 def run(run: Run) -> Any:
     """Mesh the fillet ever coarser, count, solve and mend."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import folds
     from fe_drivetrain.cases.verification import fillets, rigid_ended_shafts
     from fe_drivetrain.geometry import MeshSizes
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.mesh import generate, inverted_cells, relax_flat_cells, volume
-    from fe_drivetrain.mesh_checks import find_faults
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.mesh import find_faults, generate, inverted_cells, relax_flat_cells, volume
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     sweep = QUICK_PER_TURN if run.quick else PER_TURN
     with run.step("reference"):
@@ -257,6 +255,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -8,17 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fe_drivetrain.elasticity import Floats, element_kind, shape_functions
-from fe_drivetrain.model import Model, build_model, mesh_scene
-from fe_drivetrain.response import Response, unit_load_response
-from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.stiffness import (
+from fe_drivetrain.common import Floats
+from fe_drivetrain.mesh import element_kind, shape_functions
+from fe_drivetrain.response import (
     PLANES,
+    Model,
     Plane,
+    Response,
     bearing_unit_stiffness,
+    build_model,
+    mesh_scene,
     tilt_stiffness,
+    unit_load_response,
     without_gearbox,
 )
+from fe_drivetrain.scene import Scene, change_scene, library_scene
 
 BEARING = "main_bearing"
 

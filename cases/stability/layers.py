@@ -8,13 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain import multigrid
-from fe_drivetrain.blocks import Block, brick, joined
-from fe_drivetrain.elasticity import Floats, Ints, assemble
-from fe_drivetrain.errors import InputError
+from fe_drivetrain.common import Floats, InputError, Ints
 from fe_drivetrain.interfaces import Constraint, eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.reduction import System, reduce
-from fe_drivetrain.solvers import TOLERANCE, factorise
+from fe_drivetrain.mesh import Block, brick, joined
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.solve import TOLERANCE, System, factorise, multigrid, reduce
 
 OPTIONS = multigrid.Options(coarsest=50)
 """Few nodes are left to the dense factor, so that small meshes have the levels of large ones."""

@@ -6,19 +6,24 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from scipy import sparse
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.blocks import Block, brick
-from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian
-from fe_drivetrain.elements import first_order
-from fe_drivetrain.hexahedra import shaft_hexahedra
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import held_nodes
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.materials import Material
-from fe_drivetrain.mesh import generate
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.mesh import (
+    Block,
+    brick,
+    element_kind,
+    first_order,
+    generate,
+    jacobian,
+    shaft_hexahedra,
+)
+from fe_drivetrain.operator import traction_loads
+from fe_drivetrain.scene import Material
+from fe_drivetrain.solve import solve_solid
 
 Assembly = Callable[..., sparse.bsr_array]
 

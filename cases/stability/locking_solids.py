@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
+
 from fe_drivetrain.cases.verification.plane_rings import Lame, plane_strain
 from fe_drivetrain.cases.verification.ring_solids import (
     plane_strain_hold,
@@ -15,22 +17,14 @@ from fe_drivetrain.cases.verification.ring_solids import (
     ring_sector,
     sector_symmetry,
 )
+from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from scipy import sparse
-
-from fe_drivetrain import incompressible, multigrid
-from fe_drivetrain.axisymmetric import freedoms, harmonic_response
-from fe_drivetrain.elasticity import Floats, Ints, element_kind
-from fe_drivetrain.elements import first_order, straightened
 from fe_drivetrain.interfaces import Constraint, eliminate, held_freedoms
-from fe_drivetrain.loads import pressure, traction_loads
-from fe_drivetrain.materials import Material
-from fe_drivetrain.meridian import meridian
-from fe_drivetrain.mesh import Mesh, generate
-from fe_drivetrain.reduction import reduce
-from fe_drivetrain.solvers import TOLERANCE, Solution
-from fe_drivetrain.statics import solve_solid
-from fe_drivetrain.stress import stresses
+from fe_drivetrain.mesh import Mesh, element_kind, first_order, generate, straightened
+from fe_drivetrain.operator import incompressible, pressure, stresses, traction_loads
+from fe_drivetrain.revolution import freedoms, harmonic_response, meridian
+from fe_drivetrain.scene import Material
+from fe_drivetrain.solve import TOLERANCE, Solution, multigrid, reduce, solve_solid
 
 Assembly = Callable[..., sparse.bsr_array]
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Rows of cubes over the height of the cracked bar, and crack depths in rows.
 ROWS, DEPTHS = 8, (0, 1, 2, 4, 6, 8)
@@ -21,18 +21,16 @@ def run(run: Run) -> Any:
     import time
 
     import numpy as np
+
     from fe_drivetrain.cases.stability import faulty_meshes, slivers
     from fe_drivetrain.cases.verification import rigid_ended_shafts
     from fe_drivetrain.cases.verification.exact_blocks import LENGTH, SIDE
+    from fe_drivetrain.common import InputError
     from fe_drivetrain.geometry import WIDEST, MeshSizes, Section, Shaft
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.mesh import generate
-    from fe_drivetrain.mesh_checks import find_faults
-    from fe_drivetrain.model import build_model, mesh_scene, needed_faces
-    from fe_drivetrain.results import Limit, Table, Text, judge
-    from fe_drivetrain.results import Section as Part
+    from fe_drivetrain.mesh import find_faults, generate
+    from fe_drivetrain.report import Limit, Table, Text, chart, judge, trace
+    from fe_drivetrain.report import Section as Part
+    from fe_drivetrain.response import build_model, mesh_scene, needed_faces
     from fe_drivetrain.scene import library_scene
 
     verdicts = []
@@ -319,6 +317,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

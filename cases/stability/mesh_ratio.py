@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Elements across the coarser side, and how many times as many across the finer.
 COARSE = 2
@@ -18,11 +18,10 @@ ROUND_OFF = 10 * 2.2e-16 * (40 * 20) ** 2
 def run(run: Run) -> Any:
     """Each tie at each ratio, either side the slave."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import tied_strips
     from fe_drivetrain.cases.stability.tied_strips import TIES, Strip
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     ratios = np.array(QUICK_RATIOS if run.quick else RATIOS, dtype=float)
     sides = ("finer", "coarser")
@@ -361,6 +360,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

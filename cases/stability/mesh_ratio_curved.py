@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Elements round the coarser ring, and how many times as many round the finer.
 COARSE, QUICK_COARSE = 5, 4
@@ -22,11 +22,10 @@ FACTOR = 2.0  # on the error of rings that share their nodes, that is let pass
 def run(run: Run) -> Any:
     """Twist tied rings at each ratio, either side the slave, as meshed and settled."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import tied_rings
     from fe_drivetrain.cases.stability.tied_rings import TIES, Tie, Twisted
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     coarse = QUICK_COARSE if run.quick else COARSE
     ratios = QUICK_RATIOS if run.quick else RATIOS
@@ -443,6 +442,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

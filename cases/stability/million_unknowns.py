@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Unknowns, about.
 SIZES = (10_000, 100_000, 1_000_000)
@@ -26,12 +26,10 @@ def run(run: Run) -> Any:
     import time
 
     import numpy as np
-    from fe_drivetrain.cases.stability import thin_and_slender as shared
 
-    from fe_drivetrain import multigrid, schwarz, solvers
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
-    from fe_drivetrain.round_off import round_off
+    from fe_drivetrain.cases.stability import thin_and_slender as shared
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.solve import multigrid, round_off, schwarz, solvers
 
     diameter, length, thinness = TUBE
     tube = shared.uniform(diameter, diameter / 2.0 / thinness, length)
@@ -313,6 +311,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Of the gearbox's axial spring, which hardly matters [N/m].
 AXIAL = 1e8
@@ -13,6 +13,7 @@ JOINTS = ("sliding", "averaged", "rigid")
 def run(run: Run) -> Any:
     """Soften the springs that hold a shaft on a spherical bearing against turning."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import soft_springs
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
@@ -22,11 +23,9 @@ def run(run: Run) -> Any:
         shown,
         slope,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.mechanisms import WEAK
-    from fe_drivetrain.model import mesh_scene
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.interfaces import WEAK
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.response import mesh_scene
 
     epsilon = float(np.finfo(float).eps)
     ratios = {
@@ -286,6 +285,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 NAMES = {
     "tie": "tie of two halves that do not match",
@@ -18,6 +18,7 @@ ONE_PERCENT = 1e-2
 def run(run: Run) -> Any:
     """Sweep the penalty of three couplings, with direct and iterative solvers."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import couplings
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
@@ -27,12 +28,10 @@ def run(run: Run) -> Any:
         shown,
         slope,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.common import InputError
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import change_scene, library_scene
-    from fe_drivetrain.solvers import solve
+    from fe_drivetrain.solve import solve
 
     penalties = decades(-3, 14, 1 if run.quick else 3)
     iterated_penalties = decades(-2, 10, 0.25 if run.quick else 0.5)
@@ -289,6 +288,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

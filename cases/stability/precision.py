@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 LOADS = ("bending", "torsion")
 
@@ -14,11 +14,10 @@ EXPONENTS = {"bending": 4.0, "torsion": 2.0}
 def run(run: Run) -> Any:
     """Assemble and solve tubes in 32, 64 and 80 bits."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import floats
     from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, safe_range, shown, slope
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     turn, along = (4, 10) if run.quick else (8, 10)
     per_decade = 1.5 if run.quick else 3.0
@@ -296,6 +295,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
 LENGTHS = (5.0, 200.0)
@@ -15,11 +15,10 @@ def run(run: Run) -> Any:
     from pathlib import Path
 
     import numpy as np
+
     from fe_drivetrain.cases.stability import fingerprints
     from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, safe_range, shown, slope
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     lengths = QUICK_LENGTHS if run.quick else LENGTHS
     runs: dict[str, Any] = {}
@@ -257,6 +256,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Widths of the loaded band [m]; the ring is as long as the last.
 WIDTHS = (0.015, 0.03, 0.06, 0.09, 0.12, 0.18, 0.24, 0.3)
@@ -26,11 +26,10 @@ MESH_ERROR = 0.01
 def run(run: Run) -> Any:
     """Sweep the width of the band, then the mesh."""
     import numpy as np
-    from fe_drivetrain.cases.stability import seat_couplings as seat
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.cases.stability import seat_couplings as seat
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     widths = QUICK_WIDTHS if run.quick else WIDTHS
     rough = QUICK_ROUGH_SIZES if run.quick else ROUGH_SIZES
@@ -438,6 +437,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -14,17 +14,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.geometry import Section, Shaft
 from scipy import sparse
 
-from fe_drivetrain import interfaces
-from fe_drivetrain.axisymmetric import freedoms, harmonic_response, surface_loads, turn
-from fe_drivetrain.elasticity import Floats, Ints
-from fe_drivetrain.facets import MEANS, face_weights, local_facets
-from fe_drivetrain.hexahedra import Hexahedra, shaft_hexahedra
-from fe_drivetrain.materials import Material
-from fe_drivetrain.meridian import meridian
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.mesh import MEANS, Hexahedra, face_weights, local_facets, shaft_hexahedra
+from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads, turn
+from fe_drivetrain.scene import Material
+from fe_drivetrain.solve import solve_solid
 
 BORE, OUTSIDE, LENGTH = 0.3, 0.45, 0.3  # m: radii, and length along the axis
 IRON = Material(youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0)
@@ -141,20 +139,20 @@ def tilted_solid(width: float, size: float, turn_elements: int) -> dict[str, Til
     found = {}
     for name in COUPLINGS:
         total = 3 * n + 6 * (name != "averaged")
-        held = [interfaces.fixed("outside", outer, total)]
+        held = [constraints.fixed("outside", outer, total)]
         weights = face_weights(mesh.points, facets, n, MEANS)[nodes]
-        mean = interfaces.averaged_point("mean", nodes, weights, mesh.points, centre, total)
+        mean = constraints.averaged_point("mean", nodes, weights, mesh.points, centre, total)
         if name == "averaged":
             point = mean
         else:
-            point = interfaces.rigid_point("band", centre, 3 * n, total)
+            point = constraints.rigid_point("band", centre, 3 * n, total)
             held.append(
-                interfaces.rigid_face("band", nodes, mesh.points, point)
+                constraints.rigid_face("band", nodes, mesh.points, point)
                 if name == "rigid"
                 else sliding_face("band", nodes, mesh.points, point)
             )
             # tilt alone: what else the point can do is held
-            held.append(interfaces.held("other motions", point, (0, 1, 2, 3, 4)))
+            held.append(constraints.held("other motions", point, (0, 1, 2, 3, 4)))
         load = np.asarray(point.motion[[5]].toarray())[0]
         static = solve_solid(mesh.points, mesh.cells, IRON.lame, held, load)
         energy = float(static.energy[0])
@@ -163,12 +161,12 @@ def tilted_solid(width: float, size: float, turn_elements: int) -> dict[str, Til
 
 
 def sliding_face(
-    name: str, nodes: Ints, points: Floats, point: interfaces.ReferencePoint
-) -> interfaces.Constraint:
+    name: str, nodes: Ints, points: Floats, point: constraints.ReferencePoint
+) -> constraints.Constraint:
     """The nodes of a cylinder about x move along its normal as a rigid body does."""
     normal = points[nodes] * [0.0, 1.0, 1.0]
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    rigid = interfaces.rigid_face(name, nodes, points, point)
+    rigid = constraints.rigid_face(name, nodes, points, point)
     along = sparse.csr_array(
         (
             normal.ravel(),
@@ -176,7 +174,7 @@ def sliding_face(
         )
     )
     largest = np.argmax(np.abs(normal), axis=1)
-    return interfaces.Constraint(name, (along @ rigid.rows).tocsr(), 3 * nodes + largest)
+    return constraints.Constraint(name, (along @ rigid.rows).tocsr(), 3 * nodes + largest)
 
 
 def _band(mesh: Hexahedra, width: float) -> tuple[Ints, Ints, Ints]:

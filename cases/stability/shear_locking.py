@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 CRITERION = 0.01  # error of a stiffness
 
@@ -47,12 +47,11 @@ ROUND_OFF_REASON = (
 def run(run: Run) -> Any:
     """Bend a bar, load a cantilever, bend shafts, all in longer and longer elements."""
     import numpy as np
-    from fe_drivetrain.cases.stability import locking_bars as bars
 
-    from fe_drivetrain import elasticity, incompatible, incompressible
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.error_estimate import recovery_estimate
-    from fe_drivetrain.results import Cell, Limit, Section, Table, Text, judge
+    from fe_drivetrain.cases.stability import locking_bars as bars
+    from fe_drivetrain.operator import elasticity, incompatible, incompressible
+    from fe_drivetrain.report import Cell, Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.solve import recovery_estimate
 
     plain, modes, averaged = elasticity.assemble, incompatible.assemble, incompressible.assemble
     lengths = QUICK_LENGTHS if run.quick else LENGTHS
@@ -557,6 +556,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 DIAMETER, WALL = 0.7, 0.175
 #: Elements along a shaft, at most, and round it.
@@ -18,9 +18,9 @@ BOUNDED = 2.0
 def run(run: Run) -> Any:
     """Sweep the slenderness of a cantilever under torsion and under a moment."""
     import numpy as np
-    from fe_drivetrain.cases.stability import thin_and_slender as shared
 
-    from fe_drivetrain.results import Limit, Section, Text, judge
+    from fe_drivetrain.cases.stability import thin_and_slender as shared
+    from fe_drivetrain.report import Limit, Section, Text, judge
 
     points = []
     for slenderness in QUICK if run.quick else SLENDERNESS:
@@ -216,6 +216,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Heights of the slivers, in cubes.
 HEIGHTS = (0.5, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14)
@@ -18,12 +18,11 @@ CRITERION = 1e-6
 def run(run: Run) -> Any:
     """Bend a bar with a layer of slivers."""
     import numpy as np
-    from fe_drivetrain.cases.stability import slivers
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.mesh_checks import FLATTEST, find_faults, flatness
-    from fe_drivetrain.multigrid import MAX_ITERATIONS
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.cases.stability import slivers
+    from fe_drivetrain.mesh import FLATTEST, find_faults, flatness
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.solve import MAX_ITERATIONS
 
     across = QUICK_ACROSS if run.quick else ACROSS
     heights = QUICK_HEIGHTS if run.quick else HEIGHTS
@@ -120,7 +119,7 @@ def run(run: Run) -> Any:
             0.0,
             tolerance=0.0,
             relative=False,
-            source="fe_drivetrain.mesh_checks",
+            source="fe_drivetrain.mesh.checks",
             reason="none may get through",
             measure="identity",
         ),
@@ -130,7 +129,7 @@ def run(run: Run) -> Any:
             0.0,
             tolerance=0.0,
             relative=False,
-            source="fe_drivetrain.mesh_checks",
+            source="fe_drivetrain.mesh.checks",
             reason="what is solved right must not be refused",
             measure="identity",
         ),
@@ -329,6 +328,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -8,20 +8,19 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.interfaces import Elimination, eliminate
-from fe_drivetrain.mechanisms import (
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.interfaces import (
+    Elimination,
     WeakMotion,
+    eliminate,
     refuse_mechanisms,
     warn_of_weak_restraints,
     weak_restraints,
 )
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import LOADS, Model, build_model
-from fe_drivetrain.reduction import reduce
+from fe_drivetrain.response import LOADS, Model, build_model
 from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.solvers import solve
+from fe_drivetrain.solve import reduce, solve
 
 #: A short shaft in a coarse mesh: what is judged holds on any mesh.
 CHANGES = {

@@ -6,18 +6,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.cases.stability import soft_springs
-from fe_drivetrain.geometry import Section, Shaft
 
-from fe_drivetrain import multigrid
-from fe_drivetrain.elasticity import Floats, assemble
-from fe_drivetrain.hexahedra import shaft_hexahedra
+from fe_drivetrain.cases.stability import soft_springs
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.model import LOADS, mesh_scene
-from fe_drivetrain.reduction import System, reduce
-from fe_drivetrain.solvers import TOLERANCE, factorise
-from fe_drivetrain.stiffness import VERTICAL, without_gearbox
+from fe_drivetrain.mesh import shaft_hexahedra
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.response import LOADS, VERTICAL, mesh_scene, without_gearbox
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import TOLERANCE, System, factorise, multigrid, reduce
 
 OPTIONS = multigrid.Options(coarsest=50)
 """Few nodes are left to the dense factor, so that small meshes have the levels of large ones."""

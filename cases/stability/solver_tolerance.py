@@ -2,18 +2,17 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 
 def run(run: Run) -> Any:
     """Follow conjugate gradients step by step, and the stiffnesses that each step would give."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import solver_steps
     from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, decades, safe_range, shown, slope
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
-    from fe_drivetrain.solvers import TOLERANCE
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.solve import TOLERANCE
 
     tolerances = decades(-12, -1, 2)
     verdicts, limits, sections = [], [], []
@@ -207,6 +206,7 @@ def run(run: Run) -> Any:
 def _first_safe(errors: Any) -> int:
     """The first step from which on every error stays below four digits."""
     import numpy as np
+
     from fe_drivetrain.cases.stability.decades import FOUR_DIGITS
 
     bad = np.max(np.array(list(errors)), axis=0) >= FOUR_DIGITS
@@ -222,6 +222,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Of the other gearbox springs [N/m].
 OTHER = 1e8
@@ -13,6 +13,8 @@ def run(run: Run) -> Any:
     from dataclasses import replace
 
     import numpy as np
+
+    from fe_drivetrain.beam import Support, beam_of_scene, unit_load_response
     from fe_drivetrain.cases.stability import soft_springs
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
@@ -22,13 +24,9 @@ def run(run: Run) -> Any:
         shown,
         slope,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.frame import Support, unit_load_response
-    from fe_drivetrain.model import mesh_scene
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
-    from fe_drivetrain.scene_beam import beam_of_scene
+    from fe_drivetrain.common import InputError
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.response import mesh_scene
 
     step = 2.0 if run.quick else 1.0
     tolerance = 0.4 if run.quick else 0.2
@@ -381,6 +379,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Bodies of the chain.
 COUNT = 12
@@ -13,6 +13,7 @@ SAMPLES = 4
 def run(run: Run) -> Any:
     """Sweep the stiffness of some bodies over what others have."""
     import numpy as np
+
     from fe_drivetrain.cases.stability import layers
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
@@ -22,10 +23,8 @@ def run(run: Run) -> Any:
         shown,
         slope,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
 
     per_decade = 1.0 if run.quick else 3.0
     tolerance = 0.3 if run.quick else 0.15
@@ -386,6 +385,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

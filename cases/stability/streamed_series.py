@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.compare import Array, Comparison, compare
-from fe_drivetrain.streaming import compare_streamed
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import Comparison, compare, compare_streamed
 
 CHUNK = 1 << 18
 MEAN, FACTOR, NOISE = 5.0, 1.02, 0.1
@@ -35,7 +35,7 @@ STATISTICS = (
 )
 
 
-def chunks(samples: int) -> Iterator[tuple[Array, Array]]:
+def chunks(samples: int) -> Iterator[tuple[Floats, Floats]]:
     """Reference and model (n, 1): r = 5 + u, m = 1.02 r + 0.1 v, u and v even between 0 and 1."""
     for number, start in enumerate(range(0, samples, CHUNK)):
         n = min(CHUNK, samples - start)

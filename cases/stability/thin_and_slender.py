@@ -7,21 +7,25 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.geometry import Section, Shaft
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, onenormest
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain import direct, multigrid, schwarz, solvers
-from fe_drivetrain.charts import chart, trace
-from fe_drivetrain.elasticity import Floats, assemble, element_kind, jacobian
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.facets import facet_points, local_facets
-from fe_drivetrain.hexahedra import Hexahedra, shaft_hexahedra
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.reduction import System, reduce
-from fe_drivetrain.results import Chart, Table
+from fe_drivetrain.mesh import (
+    Hexahedra,
+    element_kind,
+    facet_points,
+    jacobian,
+    local_facets,
+    shaft_hexahedra,
+)
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.report import Chart, Table, chart, trace
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import System, direct_solvers, multigrid, reduce, schwarz, solvers
 
 STEEL = MATERIALS["steel"]
 
@@ -178,8 +182,7 @@ def _oval(mesh: Hexahedra, shaft: Shaft) -> Floats:
 
 def oval_work(shaft: Shaft, elements: int = 8) -> float:
     """Work of that pressure on the same tube, from its meridian in the harmonic cos 2t [J]."""
-    from fe_drivetrain.axisymmetric import freedoms, harmonic_response, surface_loads
-    from fe_drivetrain.meridian import meridian
+    from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
 
     radius = shaft.sections[0].outer_diameter / 2.0
     mesh = meridian(shaft, shaft.length / elements, order=8, layers=4)
@@ -264,7 +267,7 @@ class Factored:
 def factored(problem: Problem, method: str) -> Factored:
     """One direct solver, refined and not."""
     K, F = problem.system.K, problem.F
-    factor = direct.factorise(K, method)
+    factor = direct_solvers.factorise(K, method)
     x = factor.apply(F)
     left = F - K @ x
     residual = float((np.linalg.norm(left, axis=0) / np.linalg.norm(F, axis=0)).max())
@@ -410,7 +413,7 @@ def measured(value: float, problem: Problem, reference: Floats) -> Point:
 
 def installed() -> list[str]:
     """Direct solvers that can be used here, fastest first."""
-    return [method for method in direct.PACKAGES if direct.is_installed(method)]
+    return [method for method in direct_solvers.PACKAGES if direct_solvers.is_installed(method)]
 
 
 def factor_memory(K: sparse.bsr_array) -> float | None:
@@ -418,7 +421,7 @@ def factor_memory(K: sparse.bsr_array) -> float | None:
 
     None where PARDISO is not installed.
     """
-    if not direct.is_installed("pardiso"):
+    if not direct_solvers.is_installed("pardiso"):
         return None
     from pypardiso import PyPardisoSolver
 

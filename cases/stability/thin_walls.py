@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 DIAMETER, LENGTH = 3.0, 3.0
 #: Radius over wall.
@@ -20,10 +20,10 @@ OPTIONS = ((100, 0.03), (100, 0.1), (100, 0.3), (60, 0.1), (200, 0.1))
 def run(run: Run) -> Any:
     """Sweep the wall of a tube under torsion and under a pressure that makes it oval."""
     import numpy as np
-    from fe_drivetrain.cases.stability import thin_and_slender as shared
 
-    from fe_drivetrain import multigrid, schwarz, solvers
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.cases.stability import thin_and_slender as shared
+    from fe_drivetrain.report import Limit, Section, Table, Text, judge
+    from fe_drivetrain.solve import multigrid, schwarz, solvers
 
     turn, along = QUICK_MESH if run.quick else MESH
     points = []
@@ -235,6 +235,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -6,17 +6,22 @@ import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
-from fe_drivetrain.cases.verification import two_bodies
 from scipy import sparse
 from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.blocks import Block, brick, joined
-from fe_drivetrain.elasticity import Floats, element_kind, rigid_motions, shape_functions
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.interfaces import Constraint, freedoms, held_freedoms
-from fe_drivetrain.mortar import mortar_tie, node_tie, settled
-from fe_drivetrain.stress import stresses, tensor
+from fe_drivetrain.cases.verification import two_bodies
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.interfaces import (
+    Constraint,
+    freedoms,
+    held_freedoms,
+    mortar_tie,
+    node_tie,
+    settled,
+)
+from fe_drivetrain.mesh import Block, brick, element_kind, joined, shape_functions
+from fe_drivetrain.operator import rigid_motions, stresses, tensor
 
 BORE, TIED, OUTSIDE = 0.5, 1.0, 1.5  # m: radii
 WIDTH = 0.2  # m

@@ -6,15 +6,13 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.cases.verification import two_bodies
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import Floats, element_kind, rigid_motions, shape_functions
-from fe_drivetrain.interfaces import Constraint
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.mortar import mortar_tie, node_tie
-from fe_drivetrain.stress import stresses, tensor
+from fe_drivetrain.cases.verification import two_bodies
+from fe_drivetrain.common import Floats
+from fe_drivetrain.interfaces import Constraint, mortar_tie, node_tie
+from fe_drivetrain.mesh import brick, element_kind, shape_functions
+from fe_drivetrain.operator import rigid_motions, stresses, tensor, traction_loads
 
 LENGTH, HEIGHT, DEPTH = 0.5, 1.0, 0.2  # m: of each half along x, across (y), and along z
 LAME = (1.2, 0.8)  # Poisson's ratio 0.3

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Factors on the sizes of the mesh, coarse first.
 FACTORS = (1.4, 1.0, 0.75)
@@ -21,11 +21,10 @@ def run(run: Run) -> Any:
     import warnings
 
     import numpy as np
-    from fe_drivetrain.cases.stability import housing_nodes as housing
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
-    from fe_drivetrain.stiffness import PLANES, VERTICAL
+    from fe_drivetrain.cases.stability import housing_nodes as housing
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.response import PLANES, VERTICAL
 
     factors = QUICK_FACTORS if run.quick else FACTORS
     with run.step("mesh and solve"), warnings.catch_warnings(record=True) as said:
@@ -437,6 +436,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Samples of a history: ten minutes at 20 Hz.
 SAMPLES = 12_000
@@ -20,10 +20,9 @@ def run(run: Run) -> Any:
     """Sweep the mean of the reference, what is left out, and one outlier; then what is refused."""
     import numpy as np
 
-    from fe_drivetrain import compare as cp
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
+    from fe_drivetrain.common import InputError
+    from fe_drivetrain.compare import statistics as cp
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     histories = 20 if run.quick else 80
     rng = np.random.default_rng(SEED)
@@ -147,7 +146,7 @@ def run(run: Run) -> Any:
             1.0,
             tolerance=0.0,
             relative=False,
-            source="fe_drivetrain.compare",
+            source="fe_drivetrain.compare.statistics",
             reason="yes or no: NaN, and never a ratio of rounding errors",
             measure="identity",
         ),
@@ -157,7 +156,7 @@ def run(run: Run) -> Any:
             1.0,
             tolerance=0.0,
             relative=False,
-            source="fe_drivetrain.compare and fe_drivetrain.hub_loads",
+            source="fe_drivetrain.compare.statistics and fe_drivetrain.hub_loads.histories",
             reason="all of them",
             measure="identity",
         ),
@@ -398,6 +397,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

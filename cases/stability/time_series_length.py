@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Samples of the histories whose variance is taken, and how many of these.
 SAMPLES, HISTORIES = 20_000, 8
@@ -25,11 +25,10 @@ MIB = 1024**2
 def run(run: Run) -> Any:
     """Variances against their mean, then memory against length."""
     import numpy as np
-    from fe_drivetrain.cases.stability import streamed_series as series
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Limit, Section, Table, Text, judge
-    from fe_drivetrain.streaming import moments
+    from fe_drivetrain.cases.stability import streamed_series as series
+    from fe_drivetrain.compare import moments
+    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     ratios = 10.0 ** np.arange(0, 10)
     naive, plain, merged = (np.empty((len(ratios), HISTORIES)) for _ in range(3))
@@ -113,7 +112,7 @@ def run(run: Run) -> Any:
                 0.0,
                 tolerance=1e-12,
                 relative=False,
-                source="fe_drivetrain.compare of the whole history",
+                source="fe_drivetrain.compare.statistics of the whole history",
                 reason="sums of a million rounded numbers: a thousand times eps and less",
                 measure="identity",
             )
@@ -304,6 +303,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Poisson's ratios of the pressed cylinder and of the bonded disc.
 NUS = (0.3, 0.35, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4995, 0.4999)
@@ -43,18 +43,16 @@ BULK = "Poisson's ratio [-]"
 def run(run: Run) -> Any:
     """Raise Poisson's ratio towards 1/2 in plain elements and in remedied ones."""
     import numpy as np
+    from pydantic import ValidationError
+
     from fe_drivetrain.cases.stability import locking_bars as bars
     from fe_drivetrain.cases.stability import locking_solids as solids
     from fe_drivetrain.cases.verification.ring_solids import band_of
-    from pydantic import ValidationError
-
-    from fe_drivetrain import direct, elasticity, incompatible, incompressible
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.errors import InputError
-    from fe_drivetrain.materials import HIGHEST_POISSON_RATIO
-    from fe_drivetrain.multigrid import MAX_ITERATIONS
-    from fe_drivetrain.results import Cell, Limit, Section, Table, Text, judge
-    from fe_drivetrain.solvers import TOLERANCE
+    from fe_drivetrain.common import InputError
+    from fe_drivetrain.operator import elasticity, incompatible, incompressible
+    from fe_drivetrain.report import Cell, Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import HIGHEST_POISSON_RATIO
+    from fe_drivetrain.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
 
     plain, averaged = elasticity.assemble, incompressible.assemble
     nus = QUICK_NUS if run.quick else NUS
@@ -285,7 +283,7 @@ def run(run: Run) -> Any:
         judge(
             f"disc, multigrid asked for at nu = {disc_nus[-1]:g}: a direct solver stepped in, 1, "
             "or not, 0",
-            float(used.method in direct.PACKAGES),
+            float(used.method in direct_solvers.PACKAGES),
             1.0,
             tolerance=0.0,
             relative=False,
@@ -674,6 +672,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

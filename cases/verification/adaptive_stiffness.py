@@ -4,7 +4,7 @@ ones.
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 SHAFT = "stepped, sharp"
 LOAD = "bending"
@@ -23,11 +23,10 @@ MOST = 60_000
 def run(run: Run) -> Any:
     """Refine step by step, and compare with uniform meshes."""
     import numpy as np
-    from fe_drivetrain.cases.verification import rigid_ended_shafts
 
-    from fe_drivetrain.adaptivity import marked, refined_sizes
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.cases.verification import rigid_ended_shafts
+    from fe_drivetrain.mesh import marked, refined_sizes
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
 
     shaft = rigid_ended_shafts.SHAFTS[SHAFT]
     with run.step("reference"):
@@ -183,6 +182,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

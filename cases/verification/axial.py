@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER, BORES = 0.4, (0.0, 0.28)
 #: Lengths over the outer diameter: free ends, held ends in three dimensions, held ends.
@@ -14,19 +14,16 @@ QUICK_RATIOS = (1.0, 4.0, 8.0)
 def run(run: Run) -> Any:
     """Uniform traction on the ends, then ends that are held flat and round."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import Tube, parabola_shortfall
-
-    from fe_drivetrain.axisymmetric import end_stiffness
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.facets import face_weights
-    from fe_drivetrain.hexahedra import Grading
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.mesh import Grading, face_weights
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import end_stiffness
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.solve import solve_solid
 
     steel = MATERIALS["steel"]
     E, nu = steel.youngs_modulus, steel.poisson_ratio
@@ -158,7 +155,7 @@ def run(run: Run) -> Any:
                 by_mesh[-1],
                 1 + stiffer[ratios.index(HELD)],
                 tolerance=0.1 * edge**1.4,
-                source="Fourier harmonics in the meridian (fe_drivetrain.axisymmetric)",
+                source="Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)",
                 reason="stress is singular along held edges, of exponent 0.71 in steel; elements "
                 f"there are {edge:.2g} radii long, what they miss goes as that to the power 1.4, "
                 "and a tenth of the energy is at the ends at most",
@@ -238,6 +235,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

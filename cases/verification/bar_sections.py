@@ -9,15 +9,14 @@ against the root's own motion.
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.cases.verification.ring_solids import facets_where
-from fe_drivetrain.geometry import Section, Shaft
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.elasticity import Floats, Ints, element_kind
-from fe_drivetrain.hexahedra import shaft_hexahedra
+from fe_drivetrain.cases.verification.ring_solids import facets_where
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import averaged_point
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.stress import stresses
+from fe_drivetrain.mesh import element_kind, shaft_hexahedra
+from fe_drivetrain.operator import stresses, traction_loads
 
 BEHIND = 2.0
 """Diameters between root and clamp: self-equilibrated stress of a round bar decays at least as

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 FILLET, HEIGHT, ARM, LEG = 0.05, 0.1, 0.3, 0.2  # m
 FORCE = 1e6  # N/m, per width
@@ -18,17 +18,15 @@ REFERENCE = (4, 6)
 def run(run: Run) -> Any:
     """Solve the bracket as a solid on three meshes, and as a plane problem."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.bracket_plane import Bracket, plane_answer
     from fe_drivetrain.cases.verification.ring_solids import band_of, node_at, plane_strain_hold
-
-    from fe_drivetrain.blocks import brick
-    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_freedoms
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import AssumptionRow, Cell, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses, principal
+    from fe_drivetrain.mesh import brick
+    from fe_drivetrain.operator import nodal_stresses, principal, traction_loads
+    from fe_drivetrain.report import AssumptionRow, Cell, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     bracket = Bracket(FILLET, HEIGHT, ARM, LEG)
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
@@ -219,6 +217,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

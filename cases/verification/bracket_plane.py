@@ -20,7 +20,7 @@ from skfem import (
 )
 from skfem.models.elasticity import linear_elasticity
 
-from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.common import Floats
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Coarsening of the library's mesh: both programs solve the same equations on any mesh.
 FACTOR, QUICK_FACTOR = 2.0, 4.0
@@ -11,9 +11,8 @@ FACTOR, QUICK_FACTOR = 2.0, 4.0
 def run(run: Run) -> Any:
     """Write the deck, solve it twice, compare."""
     from fe_drivetrain.cases.verification import calculix_decks as decks
-
-    from fe_drivetrain.calculix import find_calculix
-    from fe_drivetrain.model import mesh_scene
+    from fe_drivetrain.export import find_calculix
+    from fe_drivetrain.response import mesh_scene
 
     find_calculix()
     scene = decks.scene_of("bonded", QUICK_FACTOR if run.quick else FACTOR)
@@ -46,6 +45,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.calculix import (
+from fe_drivetrain.common import Floats
+from fe_drivetrain.export import (
     ROUNDING,
     DeckResponse,
     find_calculix,
@@ -22,15 +23,12 @@ from fe_drivetrain.calculix import (
     run_calculix,
     write_inp,
 )
-from fe_drivetrain.case import Run
-from fe_drivetrain.charts import trace
-from fe_drivetrain.elasticity import Floats
 from fe_drivetrain.interfaces import freedoms
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import LOADS, Model, build_model
-from fe_drivetrain.response import Response, unit_load_response
-from fe_drivetrain.results import Chart, Section, Table, Text, Verdict, judge
+from fe_drivetrain.report import Chart, Section, Table, Text, Verdict, judge, trace
+from fe_drivetrain.response import LOADS, Model, Response, build_model, unit_load_response
 from fe_drivetrain.scene import Scene, library_scene
+from fe_drivetrain.suite import Run
 
 TOLERANCE = 1e-6
 

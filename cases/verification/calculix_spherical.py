@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 FORMS = ("sliding", "averaged", "rigid")
 
@@ -13,9 +13,8 @@ FACTOR, QUICK_FACTOR = 4.0, 4.0
 def run(run: Run) -> Any:
     """Write the decks, solve each twice, compare."""
     from fe_drivetrain.cases.verification import calculix_decks as decks
-
-    from fe_drivetrain.calculix import find_calculix
-    from fe_drivetrain.model import mesh_scene
+    from fe_drivetrain.export import find_calculix
+    from fe_drivetrain.response import mesh_scene
     from fe_drivetrain.scene import change_scene
 
     find_calculix()
@@ -50,6 +49,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

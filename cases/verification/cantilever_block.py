@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 LENGTH, HEIGHT, WIDTH = 0.6, 0.2, 0.15  # m
 E, NU = 169e9, 0.275
@@ -25,17 +25,16 @@ DIVISIONS = {4: (8, 16, 32), 8: (8, 16, 32), 10: (2, 4, 8), 20: (2, 4, 8), 27: (
 def run(run: Run) -> Any:
     """Energy of three fields with every element."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.plane_rings import plane_strain
     from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
-
-    from fe_drivetrain.blocks import FACES, Block, brick
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import observed_order
+    from fe_drivetrain.compare import observed_order
     from fe_drivetrain.interfaces import held_freedoms, held_nodes
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
+    from fe_drivetrain.mesh import FACES, Block, brick
+    from fe_drivetrain.operator import traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     iron = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
     plane = plane_strain(E, NU)
@@ -250,6 +249,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER, LENGTH = 0.4, 0.8
 #: Bore over outer diameter.
@@ -15,6 +15,8 @@ QUICK_RATIOS = (1.0, 5.0, 10.0, 20.0)
 def run(run: Run) -> Any:
     """Exact tractions on both ends; then a clamped end and a rigid tip."""
     import numpy as np
+
+    from fe_drivetrain.beam import cowper_shear_coefficient
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
@@ -23,17 +25,12 @@ def run(run: Run) -> Any:
         parabola_shortfall,
         recovery_error,
     )
-
-    from fe_drivetrain.axisymmetric import end_stiffness
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.facets import face_weights
-    from fe_drivetrain.hexahedra import Grading
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.sections import cowper_shear_coefficient
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.mesh import Grading, face_weights
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import end_stiffness
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.solve import solve_solid
 
     steel = MATERIALS["steel"]
     nu = steel.poisson_ratio
@@ -181,7 +178,7 @@ def run(run: Run) -> Any:
                     float(np.linalg.inv(K)[0, 0]),
                     tolerance=2 * 4 * parabola_shortfall(turn) + 0.2 * edge**1.4 / ratio,
                     unit="m/N",
-                    source="Fourier harmonics in the meridian (fe_drivetrain.axisymmetric)",
+                    source="Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)",
                     reason=f"{turn} parabolic arcs, as above; and stress is singular along the "
                     "clamped edge, of exponent 0.71: what elements there miss goes as their size "
                     f"of {edge:.2g} radii to the power 1.4, in a part of the shaft as long as it "
@@ -287,10 +284,10 @@ def run(run: Run) -> Any:
 def _unbalanced(points: Any, F: Any, facets: Any) -> Any:
     """Forces on a face, uniform and linear, with the resultant of F."""
     import numpy as np
-    from fe_drivetrain.cases.verification import solid_shafts
 
-    from fe_drivetrain.facets import face_weights
+    from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.interfaces import averaged_point
+    from fe_drivetrain.mesh import face_weights
 
     weights = face_weights(points, facets, len(points))
     nodes = np.flatnonzero(weights != 0.0)
@@ -302,8 +299,8 @@ def _between_rigid_ends(mesh: Any, material: Any) -> Any:
     """(2, 2) stiffness of the rear face against u_z and rotation about y, the front held."""
     import numpy as np
 
-    from fe_drivetrain.elasticity import rigid_motions
-    from fe_drivetrain.statics import solve_solid
+    from fe_drivetrain.operator import rigid_motions
+    from fe_drivetrain.solve import solve_solid
 
     rear = mesh.section_nodes(mesh.rear)
     ends = np.concatenate([mesh.section_nodes(mesh.front), rear])
@@ -332,6 +329,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

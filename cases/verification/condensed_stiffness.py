@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Bored shaft: outer and inner diameter, length [m].
 OUTER, BORE, LENGTH = 0.7, 0.3, 2.0
@@ -11,16 +11,14 @@ OUTER, BORE, LENGTH = 0.7, 0.3, 2.0
 def run(run: Run) -> Any:
     """Condense bodies to the twelve motions of two end points, and look at the eigenvalues."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import condensed
     from fe_drivetrain.cases.verification import manufactured as m
     from fe_drivetrain.geometry import Section as ShaftSection
     from fe_drivetrain.geometry import Shaft
-
-    from fe_drivetrain.blocks import brick
-    from fe_drivetrain.charts import trace
-    from fe_drivetrain.elasticity import rigid_motions
-    from fe_drivetrain.hexahedra import shaft_hexahedra
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.mesh import brick, shaft_hexahedra
+    from fe_drivetrain.operator import rigid_motions
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
 
     shaft = Shaft(
         front=0.0,
@@ -215,6 +213,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 INNER, OUTER = 0.1, 0.3  # m
 MOMENT = 1e5  # N, per width
@@ -17,6 +17,7 @@ QUICK_DIVISIONS = (3, 6, 12)
 def run(run: Run) -> Any:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.plane_rings import CurvedBar, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -27,14 +28,11 @@ def run(run: Run) -> Any:
         polar_traction,
         ring_sector,
     )
-
-    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_freedoms
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Measure, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Measure, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     bar = CurvedBar(INNER, OUTER)
     plane = plane_strain(E, NU)
@@ -210,6 +208,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.cases.verification.manufactured import LAME
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.blocks import FACES, Block, brick
-from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian
-from fe_drivetrain.elements import straightened
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.loads import Traction
-from fe_drivetrain.stress import strains, stresses, tensor
+from fe_drivetrain.cases.verification.manufactured import LAME
+from fe_drivetrain.common import Floats, InputError, Ints
+from fe_drivetrain.mesh import FACES, Block, brick, element_kind, jacobian, straightened
+from fe_drivetrain.operator import Traction, strains, stresses, tensor
 
 DIVISIONS = 3  # two layers of corners are inside
 SIZE = 1.0 / DIVISIONS  # of an element [m]

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 SHEAR_MODULUS = 80e9
 #: Power [W] and rated speed [rpm], Table 4.1.
@@ -13,12 +13,11 @@ LENGTHS = 0.5, 1.0, 2.0
 def run(run: Run) -> Any:
     """Implied diameters, and one shaft meshed."""
     import numpy as np
+
     from fe_drivetrain.cases.drivetrain import low_speed_shaft, published
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import solid_diameter
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Section, Table, Text
+    from fe_drivetrain.report import Section, Table, Text, chart, trace
 
     tables = {
         "D": published.table("nrel_750kw"),
@@ -141,6 +140,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

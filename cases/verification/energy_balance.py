@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: A typical mean load: hub forces [N] and moments [N m] (Fx 200 kN, Fz -370 kN, My 660 kN m), then
 #: accelerations, and the weight of the gearbox.
@@ -12,11 +12,10 @@ HUB = (200e3, 0.0, -370e3, 0.0, 660e3, 0.0)
 def run(run: Run) -> Any:
     """Clapeyron's theorem for ten unit loads and for a working load with gravity, both scenes."""
     import numpy as np
-    from fe_drivetrain.cases.verification import scenes
 
-    from fe_drivetrain.model import LOADS
-    from fe_drivetrain.response import GRAVITY
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.cases.verification import scenes
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge
+    from fe_drivetrain.response import GRAVITY, LOADS
 
     verdicts, charts = [], []
     rows: list[list[Any]] = []
@@ -128,6 +127,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: D/d, r/d.
 WIDE, RADIUS = 1.6, 0.25
@@ -19,10 +19,10 @@ DEGREE = 6
 def run(run: Run) -> Any:
     """Tension, bending and torsion on one mesh, three meshes."""
     import numpy as np
-    from fe_drivetrain.cases.verification import fillets, solid_fillet
 
-    from fe_drivetrain.convergence import DOUBTFUL, richardson
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.cases.verification import fillets, solid_fillet
+    from fe_drivetrain.compare import DOUBTFUL, richardson
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge
 
     with run.step("meridian"):
         flat = {
@@ -152,6 +152,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: D/d and r/d of the sweep.
 WIDES = (1.1, 1.3, 1.6, 2.0)
@@ -14,6 +14,7 @@ JUDGED = ((1.1, 0.05), (1.6, 0.12), (2.0, 0.2))
 def run(run: Run) -> Any:
     """Sweep the step and the fillet."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import fillets
 
     pairs = [(wide, radius) for wide in WIDES for radius in RADII]
@@ -52,6 +53,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

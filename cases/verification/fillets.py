@@ -11,22 +11,24 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.geometry import Section, Shaft
 
-from fe_drivetrain.axisymmetric import (
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.report import Chart, Results, Table, Text, Verdict, judge
+from fe_drivetrain.report import Section as Part
+from fe_drivetrain.revolution import (
+    Meridian,
     Traction,
+    Where,
     along_sides,
     freedoms,
     harmonic_response,
+    meridian,
     stresses,
     surface_loads,
 )
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.meridian import Meridian, Where, meridian
-from fe_drivetrain.results import Chart, Results, Table, Text, Verdict, judge
-from fe_drivetrain.results import Section as Part
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import Case, Run
 
 STEEL = MATERIALS["steel"]
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Distances of the origin that are tried [m].
 DISTANCES = (1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
@@ -17,13 +17,11 @@ ROUND_OFF = (
 def run(run: Run) -> Any:
     """Solve solids, and the main bearing, again after a random rotation and a translation."""
     import numpy as np
-    from fe_drivetrain.cases.verification import frames, scenes
     from scipy.spatial.transform import Rotation
 
-    from fe_drivetrain.charts import trace
-    from fe_drivetrain.model import build_model
-    from fe_drivetrain.response import unit_load_response
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.cases.verification import frames, scenes
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
+    from fe_drivetrain.response import build_model, unit_load_response
 
     rng = np.random.default_rng(SEED)
     Q = Rotation.random(random_state=rng).as_matrix()
@@ -145,6 +143,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

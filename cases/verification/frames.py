@@ -5,18 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from fe_drivetrain.cases.verification.manufactured import HEIGHT, INNER, LAME, OUTER, quarter_ring
 from scipy import sparse
 
-from fe_drivetrain import interfaces
-from fe_drivetrain.blocks import brick
-from fe_drivetrain.elasticity import Floats, assemble
-from fe_drivetrain.facets import MEANS, face_weights
-from fe_drivetrain.interfaces import Constraint, ReferencePoint
-from fe_drivetrain.loads import body_loads, pressure, traction_loads
-from fe_drivetrain.model import Model, joint_pairs
-from fe_drivetrain.response import Response
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.cases.verification.manufactured import HEIGHT, INNER, LAME, OUTER, quarter_ring
+from fe_drivetrain.common import Floats
+from fe_drivetrain.interfaces import Constraint, ReferencePoint, constraints
+from fe_drivetrain.mesh import MEANS, brick, face_weights
+from fe_drivetrain.operator import assemble, body_loads, pressure, traction_loads
+from fe_drivetrain.response import Model, Response, joint_pairs
+from fe_drivetrain.solve import solve_solid
 
 #: Divisions of the quarter ring.
 DIVISIONS = (2, 4, 2)
@@ -54,16 +51,16 @@ def solve_ring(nodes: int, turn: Floats, shift: Floats) -> Ring:
     block = brick(DIVISIONS, nodes, lambda p: quarter_ring(p) @ turn.T + shift)
     points, n = block.points, 3 * len(block.points)
     middle = np.array([0.0, 0.5 * (INNER + OUTER), 0.5 * HEIGHT])
-    end = interfaces.rigid_point("end", turn @ middle + shift, n, n + 6)
-    constraints = [
-        interfaces.fixed("fixed", block.face_nodes("y0"), n + 6),
-        interfaces.rigid_face("end", block.face_nodes("y1"), points, end),
+    end = constraints.rigid_point("end", turn @ middle + shift, n, n + 6)
+    conditions = [
+        constraints.fixed("fixed", block.face_nodes("y0"), n + 6),
+        constraints.rigid_face("end", block.face_nodes("y1"), points, end),
     ]
     F = np.zeros((n + 6, 8))
     F[n:, :6] = twice(turn)  # unit loads along the body's axes, as they are in the frame
     F[:, 6] = traction_loads(points, block.faces["x0"], pressure(1e6), n + 6)
     F[:, 7] = body_loads(points, block.cells, turn @ np.array([3e4, -5e4, 7e4]), n + 6)
-    static = solve_solid(points, block.cells, LAME, constraints, F, method="superlu")
+    static = solve_solid(points, block.cells, LAME, conditions, F, method="superlu")
     return Ring(
         static.u[:n].reshape(-1, 3, 8),
         static.reactions["fixed"][:n].reshape(-1, 3, 8),
@@ -129,23 +126,23 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
         nodes = mesh.face_nodes(face)
         weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
         position = turn @ model.points[key].position + shift
-        point = interfaces.averaged_point(key, nodes, weights, mesh.points, position, n_freedoms)
+        point = constraints.averaged_point(key, nodes, weights, mesh.points, position, n_freedoms)
         own_axes = (sparse.csr_array(twice(turn).T) @ point.motion).tocsr()
         points[key] = ReferencePoint(key, position, own_axes)
 
-    constraints: list[Constraint] = []
+    conditions: list[Constraint] = []
     if unit.interface == "sliding":
         inner, outer = joint_pairs(mesh, name)
         centre = turn @ np.array([unit.bearing.x, 0.0, 0.0]) + shift
-        constraints.append(
-            interfaces.sliding_sphere(
+        conditions.append(
+            constraints.sliding_sphere(
                 f"{name} joint", inner, outer, mesh.points, centre, n_freedoms
             )
         )
     base = f"{name}.housing.base"
-    constraints.append(interfaces.fixed(base, mesh.face_nodes(base), n_freedoms))
+    conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_freedoms))
     held = model.scene.gearbox.held
-    constraints.append(interfaces.held("gearbox reaction", points["gearbox"], held))
+    conditions.append(constraints.held("gearbox reaction", points["gearbox"], held))
     stiffness = {
         part: assemble(
             mesh.points,
@@ -160,7 +157,7 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
         mesh=mesh,
         part_stiffness=stiffness,
         points=points,
-        constraints=tuple(constraints),
+        constraints=tuple(conditions),
         springs=tuple((points[point.name], k) for point, k in model.springs),
     )
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: The worked set: cells in two dimensions, and solutions, coarse first.
 CELLS, SOLUTIONS = (4500, 8000, 18000), (5.863, 5.972, 6.063)
@@ -20,9 +20,8 @@ def run(run: Run) -> Any:
     """Judge series of known order, the published set, and series without order."""
     import numpy as np
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
 
     exact = "the series' own definition, f0 + c h^p"
     rows: list[list[Any]] = []
@@ -239,6 +238,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

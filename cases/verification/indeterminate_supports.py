@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER = 0.4
 #: Hub, main bearing, second bearing, gearbox [m] from the hub.
@@ -14,6 +14,8 @@ RADIAL, GEARBOX, TILT = 2e9, 8e7, 145e6
 def run(run: Run) -> Any:
     """Several sets of supports under a hub force and a hub moment."""
     import numpy as np
+
+    from fe_drivetrain.beam import Beam, BeamSection, Support, solve, torsional_spring_reaction
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         Spring,
@@ -22,13 +24,8 @@ def run(run: Run) -> Any:
         macaulay,
         parabola_shortfall,
     )
-
-    from fe_drivetrain.beams import torsional_spring_reaction
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.frame import Beam, Support, solve
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.sections import BeamSection
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     length = STATIONS[-1]
@@ -252,6 +249,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

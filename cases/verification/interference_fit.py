@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 BORE, SEAT, OUTER = 0.15, 0.3175, 0.348  # m
 MISFIT = 100e-6  # m, on the radius
@@ -18,6 +18,9 @@ LEVELS = (1, 2, 4)
 def run(run: Run) -> Any:
     """Close the misfit between a quarter of the shaft and of the ring, free to slide axially."""
     import numpy as np
+    from scipy import sparse
+    from scipy.spatial import cKDTree
+
     from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, interference_pressure
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -25,16 +28,21 @@ def run(run: Run) -> Any:
         ring_sector,
         sector_symmetry,
     )
-    from scipy import sparse
-    from scipy.spatial import cKDTree
-
-    from fe_drivetrain.blocks import Block
-    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import Constraint, held_nodes
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import AssumptionRow, Measure, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.mesh import Block
+    from fe_drivetrain.operator import nodal_stresses
+    from fe_drivetrain.report import (
+        AssumptionRow,
+        Measure,
+        Section,
+        Table,
+        Text,
+        chart,
+        judge,
+        trace,
+    )
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     constants = [
         Material(youngs_modulus=e, poisson_ratio=nu, density=0.0).lame for e, nu in (SHAFT, RING)
@@ -248,6 +256,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Bending and torsion [N m/rad] of the three shafts of Park et al. 2021, Table 2.
 TABLE = {
@@ -16,16 +16,15 @@ SPLIT = 0.5
 def run(run: Run) -> Any:
     """The solid's compliance, and what one joint makes of each load, over the split d."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
         evenly_loaded_shear,
         parabola_shortfall,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     nu, G = steel.poisson_ratio, steel.shear_modulus
@@ -293,6 +292,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

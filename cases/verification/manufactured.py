@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.blocks import Block, brick
-from fe_drivetrain.charts import trace
-from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian
-from fe_drivetrain.loads import body_loads, traction_loads
-from fe_drivetrain.materials import MATERIALS
-from fe_drivetrain.results import Chart, Table
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.mesh import Block, brick, element_kind, jacobian
+from fe_drivetrain.operator import body_loads, traction_loads
+from fe_drivetrain.report import Chart, Table, trace
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import solve_solid
 
 LAME = MATERIALS["steel"].lame
 

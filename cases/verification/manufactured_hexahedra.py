@@ -2,15 +2,14 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 
 def run(run: Run) -> Any:
     """Errors of hexahedra on a curved body, and of quadratic ones on trapezoids."""
     from fe_drivetrain.cases.verification import manufactured as m
     from fe_drivetrain.cases.verification import orders
-
-    from fe_drivetrain.results import Section, Text, judge
+    from fe_drivetrain.report import Section, Text, judge
 
     linear = (4, 6, 9) if run.quick else (4, 8, 12, 16)
     quadratic = (2, 3, 4) if run.quick else (2, 4, 6, 8)
@@ -109,6 +108,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

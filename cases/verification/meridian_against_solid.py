@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Elements per coarsest element, in all three directions.
 CUTS = (1, 2, 3)
@@ -25,13 +25,12 @@ def run(run: Run) -> Any:
     import time
 
     import numpy as np
+
     from fe_drivetrain.cases.verification import shaft_ends
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
-
-    from fe_drivetrain.axisymmetric import end_stiffness
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence, richardson
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.compare import grid_convergence, richardson
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import end_stiffness
 
     steel = shaft_ends.STEEL
     verdicts, traces, milliseconds = [], [], []
@@ -193,6 +192,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

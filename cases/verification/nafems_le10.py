@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 PRESSURE = 1e6  # Pa
 E, NU = 210e9, 0.3
@@ -28,16 +28,14 @@ NAMES = {
 def run(run: Run) -> Any:
     """Solve the quarter plate with several elements, on ever finer meshes."""
     import numpy as np
-    from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
 
-    from fe_drivetrain.blocks import brick
-    from fe_drivetrain.charts import chart, trace
+    from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
     from fe_drivetrain.interfaces import held_freedoms
-    from fe_drivetrain.loads import pressure, traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.mesh import brick
+    from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
 
@@ -213,6 +211,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

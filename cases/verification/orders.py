@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.cases.verification import manufactured as m
 
-from fe_drivetrain.case import Case, Run
-from fe_drivetrain.results import Results, Section, Text, Verdict, judge
+from fe_drivetrain.cases.verification import manufactured as m
+from fe_drivetrain.report import Results, Section, Text, Verdict, judge
+from fe_drivetrain.suite import Case, Run
 
 SIZE = "element size relative to the body [-]"
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER, OVERHANG, SPAN = 0.4, 2.145, 2.615
 
@@ -10,6 +10,8 @@ OUTER, OVERHANG, SPAN = 0.4, 2.145, 2.615
 def run(run: Run) -> Any:
     """A force and a moment at the hub."""
     import numpy as np
+
+    from fe_drivetrain.beam import Beam, BeamSection, Support, pinned_reaction, solve
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         Spring,
@@ -18,13 +20,8 @@ def run(run: Run) -> Any:
         macaulay,
         parabola_shortfall,
     )
-
-    from fe_drivetrain.beams import pinned_reaction
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.frame import Beam, Support, solve
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.sections import BeamSection
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     a, L = OVERHANG, SPAN
@@ -194,6 +191,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

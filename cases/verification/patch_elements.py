@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Degrees of quadrature that are tried for the forces on nodes inside.
 DEGREES = (1, 2, 3, 4, 5, 6)
@@ -11,16 +11,14 @@ DEGREES = (1, 2, 3, 4, 5, 6)
 def run(run: Run) -> Any:
     """Six strain states on distorted blocks: displacements given all round, then tractions."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import distorted
     from fe_drivetrain.cases.verification.manufactured import LAME
-
-    from fe_drivetrain.charts import trace
-    from fe_drivetrain.elasticity import element_kind
     from fe_drivetrain.interfaces import freedoms
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import COMPONENTS, tensor
+    from fe_drivetrain.mesh import element_kind
+    from fe_drivetrain.operator import COMPONENTS, tensor, traction_loads
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
+    from fe_drivetrain.solve import solve_solid
 
     lam, mu = LAME
     strains = tensor(np.eye(6))  # one component of the tensor each, shear ones both ways
@@ -208,6 +206,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

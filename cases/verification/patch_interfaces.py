@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: (nodes of the slave's elements, of the master's, divisions of the slave, of the master)
 MORTAR = (
@@ -33,8 +33,7 @@ def run(run: Run) -> Any:
     """Every interface under constant stress."""
     import numpy as np
 
-    from fe_drivetrain.charts import chart
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.report import Section, Table, Text, chart, judge
 
     with run.step("ties"):
         ties, by_nodes = tied_blocks(QUICK_MORTAR if run.quick else MORTAR)
@@ -190,10 +189,10 @@ def outer(tied: str, bodies: int) -> list[tuple[int, str]]:
 def tied_blocks(mortar: Any) -> tuple[dict[str, float], dict[str, float]]:
     """Stress errors of ties that pass, and of those node by node that do not."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
 
-    from fe_drivetrain.blocks import brick
-    from fe_drivetrain.mortar import mortar_tie, node_tie
+    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.interfaces import mortar_tie, node_tie
+    from fe_drivetrain.mesh import brick
 
     def blocks(nodes: tuple[int, int], divisions: tuple[int, int], power: float) -> Any:
         made = []
@@ -245,8 +244,7 @@ def tied_blocks(mortar: Any) -> tuple[dict[str, float], dict[str, float]]:
 
 def one_block() -> Any:
     from fe_drivetrain.cases.verification import two_bodies
-
-    from fe_drivetrain.blocks import brick
+    from fe_drivetrain.mesh import brick
 
     return two_bodies.together(brick((3, 2, 2), 10, oblique))
 
@@ -255,9 +253,9 @@ def face_point(bodies: Any, name: str, n_freedoms: int) -> tuple[Any, Any]:
     """The averaged point at the centre of a plane face, and the face's area times normal."""
     import numpy as np
 
-    from fe_drivetrain.facets import facet_points
     from fe_drivetrain.interfaces import averaged_point
-    from fe_drivetrain.loads import traction_loads
+    from fe_drivetrain.mesh import facet_points
+    from fe_drivetrain.operator import traction_loads
 
     facets = bodies.faces[0][name]
     nodes = np.unique(facets)
@@ -271,6 +269,7 @@ def face_point(bodies: Any, name: str, n_freedoms: int) -> tuple[Any, Any]:
 def averaged_block() -> dict[str, float]:
     """A face loaded through its averaged point, and the point's motion in a linear field."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import two_bodies
 
     bodies = one_block()
@@ -313,8 +312,9 @@ def averaged_block() -> dict[str, float]:
 def sprung_block() -> dict[str, float]:
     """A block on springs at the averaged point of a face: the springs add what they carry only."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
     from scipy import sparse
+
+    from fe_drivetrain.cases.verification import two_bodies
 
     bodies = one_block()
     n = bodies.points.size
@@ -339,8 +339,8 @@ def sprung_block() -> dict[str, float]:
 def rigid_block() -> dict[str, float]:
     """A rigid face: its rigid motions, and the tension that leaves it undeformed."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
 
+    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import held_freedoms, rigid_face, rigid_point
 
     bodies = one_block()
@@ -376,10 +376,10 @@ def rigid_block() -> dict[str, float]:
 def spheres(divisions: int) -> Any:
     """Two sectors of shells on one another, their faces at radius 1, and twin nodes there."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
     from scipy.spatial import cKDTree
 
-    from fe_drivetrain.blocks import brick
+    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.mesh import brick
 
     def sector(bottom: float) -> Any:
         def shape(x: Any) -> Any:
@@ -402,7 +402,7 @@ def sphere_kinematics() -> dict[str, float]:
     import numpy as np
 
     from fe_drivetrain.interfaces import averaged_sphere, centred_weights, sliding_sphere
-    from fe_drivetrain.loads import traction_loads
+    from fe_drivetrain.operator import traction_loads
 
     bodies, inner, outside = spheres(2)
     centre = np.zeros(3)
@@ -432,8 +432,8 @@ def sphere_kinematics() -> dict[str, float]:
 def sphere_error(divisions: int) -> float:
     """Stress error of a uniform pressure that passes the sliding sphere, of the pressure."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
 
+    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import held_freedoms, sliding_sphere
 
     bodies, inner, outside = spheres(divisions)
@@ -465,6 +465,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from fe_drivetrain.elasticity import Floats, Ints
+from fe_drivetrain.common import Floats, Ints
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 STIFFNESS, RATIO = 2_317_025_352.0, 50.0
 ROTOR, GENERATOR = 156.7374e6, 1500.5
@@ -14,6 +14,7 @@ POLAR, SHEAR_MODULUS, LENGTH, DIAMETER = 0.2036, 8.08e10, 7.1, 1.2
 def run(run: Run) -> Any:
     """Two masses in closed form, by eigenvalues, and with the shaft's own inertia."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         chain_frequencies,
@@ -21,9 +22,7 @@ def run(run: Run) -> Any:
         rod_frequency,
         two_mass_frequencies,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
 
     generator = GENERATOR * RATIO**2
     free, fixed = two_mass_frequencies(STIFFNESS, ROTOR, generator)
@@ -175,6 +174,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

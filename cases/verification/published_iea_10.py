@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER, WALL, LENGTHS, SHEAR_MODULUS = 3.0, 0.1, (1.5, 1.5), 80e9
 #: DTTorSpr of the OpenFAST model [N m/rad].
@@ -17,11 +17,10 @@ HAWC2_K = (1.891, 1.891, 0.494, 0.494, 1.071, 5.712, 5.712, 1.074, 1.419, 10.091
 def run(run: Run) -> Any:
     """The tube by finite elements, and what other descriptions of it would give."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import polar_moment
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
 
     length = sum(LENGTHS)
     inner = OUTER - 2 * WALL
@@ -136,6 +135,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

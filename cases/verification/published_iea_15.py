@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER, WALL, LENGTHS, SHEAR_MODULUS = 3.0, 0.1, (1.0, 1.2), 80e9
 #: DTTorSpr of the OpenFAST model [N m/rad], and what an earlier release of it had.
@@ -15,9 +15,7 @@ def run(run: Run) -> Any:
     """Closed form, finite elements, and the arithmetic behind the HAWC2 shaft."""
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import polar_moment
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
 
     length = sum(LENGTHS)
     J = polar_moment(OUTER, OUTER - 2 * WALL)
@@ -167,6 +165,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER, WALL, SHEAR_MODULUS = 3.1, 0.02, 80e9
 #: Hub to bearing and bearing to bearing [m].
@@ -14,12 +14,11 @@ PLACEHOLDER, EARLIER = 1e12, 13_578_609_660.159725
 def run(run: Run) -> Any:
     """The thin tube by finite elements and by its closed forms."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import polar_moment
-
-    from fe_drivetrain.axisymmetric import end_stiffness
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.revolution import end_stiffness
 
     length = sum(LENGTHS)
     inner = OUTER - 2 * WALL
@@ -152,6 +151,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 STIFFNESS, DAMPING, RATIO = 867_637_000.0, 6_215_000.0, 97.0
 ROTOR, GENERATOR = 38_759_228.0, 534.116
@@ -14,6 +14,7 @@ WISDEM_RATIO, SHEAR_MODULUS = 96.0, 80e9
 def run(run: Run) -> Any:
     """The shaft by finite elements beside the published stiffness."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import published_shafts, solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         chain_frequencies,
@@ -21,9 +22,7 @@ def run(run: Run) -> Any:
         solid_diameter,
         two_mass_frequencies,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
 
     length = sum(LOW_LENGTHS)
     closed = SHEAR_MODULUS * polar_moment(LOW) / length
@@ -164,6 +163,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER, BORES, LENGTH = 0.4, (0.0, 0.28), 0.8
 CURVATURE = 1e-3
@@ -11,6 +11,7 @@ CURVATURE = 1e-3
 def run(run: Run) -> Any:
     """Linear tractions on both ends, on three meshes each."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
@@ -19,14 +20,11 @@ def run(run: Run) -> Any:
         pure_bending_field,
         recovery_error,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.facets import face_weights
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.mesh import face_weights
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.solve import solve_solid
 
     steel = MATERIALS["steel"]
     E, nu = steel.youngs_modulus, steel.poisson_ratio
@@ -219,6 +217,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,16 +2,16 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 
 def run(run: Run) -> Any:
     """Work of each of ten unit loads on the displacements under each other one, both scenes."""
     import numpy as np
-    from fe_drivetrain.cases.verification import scenes
 
-    from fe_drivetrain.model import LOADS
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.cases.verification import scenes
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge
+    from fe_drivetrain.response import LOADS
 
     verdicts, charts = [], []
     rows: list[list[Any]] = []
@@ -133,6 +133,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

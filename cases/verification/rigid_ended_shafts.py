@@ -7,15 +7,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from fe_drivetrain.geometry import LocalSizes, MeshSizes, Section, Shaft
 
-from fe_drivetrain.axisymmetric import end_stiffness
-from fe_drivetrain.error_estimate import ErrorEstimate, recovery_estimate
+from fe_drivetrain.geometry import LocalSizes, MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
-from fe_drivetrain.materials import MATERIALS
 from fe_drivetrain.mesh import Mesh, generate
-from fe_drivetrain.results import Verdict, judge
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.report import Verdict, judge
+from fe_drivetrain.revolution import end_stiffness
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import ErrorEstimate, recovery_estimate, solve_solid
 
 MATERIAL = MATERIALS["steel"]
 
@@ -115,7 +114,7 @@ def balance_verdict(imbalances: list[float]) -> Verdict:
 
 
 def exact(shaft: Shaft, size: float, layers: int) -> dict[str, float]:
-    """The same stiffnesses from the meridian, see `fe_drivetrain.axisymmetric`."""
+    """The same stiffnesses from the meridian, see `fe_drivetrain.revolution.harmonics`."""
     K = end_stiffness(shaft, MATERIAL, size, layers=layers)
     compliance = np.linalg.inv(K[:6, :6])
     return {load: float(1.0 / compliance[row, row]) for load, row in LOADS.items()}

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 MOTIONS = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -13,17 +13,14 @@ DIVISIONS = (3, 6, 3)
 def run(run: Run) -> Any:
     """Move one face of a body as a rigid body: the rest must follow, and no force may be needed."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import distorted, scenes
     from fe_drivetrain.cases.verification import manufactured as m
-
-    from fe_drivetrain.blocks import brick
-    from fe_drivetrain.charts import trace
-    from fe_drivetrain.elasticity import rigid_motions
-    from fe_drivetrain.elements import renumbered
     from fe_drivetrain.interfaces import freedoms
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import stresses
+    from fe_drivetrain.mesh import brick, renumbered
+    from fe_drivetrain.operator import rigid_motions, stresses
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
+    from fe_drivetrain.solve import solve_solid
 
     # label, points, cells, nodes of the face that is moved, Lame's constants
     bodies: list[tuple[str, Any, Any, Any, tuple[float, float]]] = []
@@ -166,6 +163,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 RADIUS = 0.33  # m, of the wall's middle
 E, NU = 206e9, 0.3
@@ -25,6 +25,7 @@ _LONGEST = 0.25  # rad: stress turns with the angle, and its recovery is linear 
 def run(run: Run) -> Any:
     """Squeeze rings of several thicknesses, by finite elements and by four formulas."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.plane_rings import (
         Lame,
         even_amplitudes,
@@ -39,13 +40,10 @@ def run(run: Run) -> Any:
         ring_sector,
         sector_symmetry,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Measure, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Measure, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     plane = plane_strain(E, NU)
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
@@ -332,6 +330,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

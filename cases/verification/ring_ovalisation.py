@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 INNER, OUTER = 0.3175, 0.348  # m
 PRESSURE = 1e6  # Pa, amplitude
@@ -15,6 +15,7 @@ LEVELS = (1, 2, 4)
 def run(run: Run) -> Any:
     """Solve one half wave of the ring for each order."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.plane_rings import harmonics, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -24,13 +25,19 @@ def run(run: Run) -> Any:
         ring_sector,
         sector_symmetry,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import AssumptionRow, Measure, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import (
+        AssumptionRow,
+        Measure,
+        Section,
+        Table,
+        Text,
+        chart,
+        judge,
+        trace,
+    )
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
     plane = plane_strain(E, NU)
@@ -227,6 +234,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

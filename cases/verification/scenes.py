@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.case import Run
-from fe_drivetrain.elasticity import Floats
+from fe_drivetrain.common import Floats
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.model import Model, build_model, mesh_scene
-from fe_drivetrain.response import Response, unit_load_response
+from fe_drivetrain.response import Model, Response, build_model, mesh_scene, unit_load_response
 from fe_drivetrain.scene import Scene, library_scene
+from fe_drivetrain.suite import Run
 
 KINDS = ("spherical", "bonded")
 

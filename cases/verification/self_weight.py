@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 OUTER = 0.4
 RATIO = 6.0
@@ -13,18 +13,16 @@ RATIOS = (1.5, 2.0, 3.0, 4.0)
 def run(run: Run) -> Any:
     """Gravity on the solid, its root held by its mean motion."""
     import numpy as np
+
+    from fe_drivetrain.beam import Beam, BeamSection, Support, solve
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
         evenly_loaded_shear,
         parabola_shortfall,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.frame import Beam, Support, solve
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.sections import BeamSection
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     gravity = -9.80665
@@ -199,6 +197,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.materials import Material
-from fe_drivetrain.sections import cowper_shear_coefficient
+from fe_drivetrain.beam import cowper_shear_coefficient
+from fe_drivetrain.common import Floats
+from fe_drivetrain.scene import Material
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Radii of core, joint and outside [m]: those of a main bearing's ring and housing.
 CORE, JOINT, OUTSIDE = 0.2, 0.3, 0.41
@@ -18,6 +18,7 @@ QUICK_LEVELS = ((1, 1), (2, 1), (3, 2))
 def run(run: Run) -> Any:
     """Move, turn and press the joint on several meshes."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.spherical_shells import (
         AXIS,
         JOINTS,
@@ -32,11 +33,9 @@ def run(run: Run) -> Any:
         squeezed,
         turning_stiffness,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import AssumptionRow, Section, Table, Text, judge
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
 
     inner, outer = (
         Shell(a, b, Material(youngs_modulus=e, poisson_ratio=nu, density=0.0).lame)
@@ -283,6 +282,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from fe_drivetrain.cases.verification import fillets
-from fe_drivetrain.geometry import LocalSizes, MeshSizes, Shaft
 from numpy.polynomial import chebyshev
 
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.loads import Traction, traction_loads
+from fe_drivetrain.cases.verification import fillets
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import LocalSizes, MeshSizes, Shaft
 from fe_drivetrain.mesh import Mesh, generate
-from fe_drivetrain.statics import solve_solid
-from fe_drivetrain.stress import nodal_stresses, tensor
+from fe_drivetrain.operator import Traction, nodal_stresses, tensor, traction_loads
+from fe_drivetrain.solve import solve_solid
 
 SIZES = MeshSizes(shaft=0.4, elements_per_turn=12)
 """Away from the fillet, in the thinner diameter."""

@@ -13,21 +13,28 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from fe_drivetrain.cases.verification.shaft_theory import Tube
-from fe_drivetrain.geometry import Section, Shaft
 from numpy.typing import ArrayLike
 from scipy import sparse
 
-from fe_drivetrain.convergence import DOUBTFUL, grid_convergence
-from fe_drivetrain.elasticity import Floats, Ints, element_kind, jacobian
-from fe_drivetrain.errors import InputError
-from fe_drivetrain.facets import face_weights, local_facets
-from fe_drivetrain.hexahedra import SAME_LENGTH, UNGRADED, Grading, shaft_hexahedra
+from fe_drivetrain.cases.verification.shaft_theory import Tube
+from fe_drivetrain.common import Floats, InputError, Ints
+from fe_drivetrain.compare import DOUBTFUL, grid_convergence
+from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import averaged_point
-from fe_drivetrain.loads import body_loads
-from fe_drivetrain.materials import Material
-from fe_drivetrain.results import Table
-from fe_drivetrain.statics import Static, solve_solid
+from fe_drivetrain.mesh import (
+    SAME_LENGTH,
+    UNGRADED,
+    Grading,
+    element_kind,
+    face_weights,
+    jacobian,
+    local_facets,
+    shaft_hexahedra,
+)
+from fe_drivetrain.operator import body_loads
+from fe_drivetrain.report import Table
+from fe_drivetrain.scene import Material
+from fe_drivetrain.solve import Static, solve_solid
 
 SLICE = 3.0
 """Length along x of the elements of the coarsest mesh, per radius."""

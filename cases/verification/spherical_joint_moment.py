@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 FORMS = ("sliding", "averaged", "rigid")
 
@@ -16,13 +16,10 @@ def run(run: Run) -> Any:
     """Solve the three forms, and a bonded bearing beside them."""
     import numpy as np
 
-    from fe_drivetrain.beams import pinned_model
-    from fe_drivetrain.charts import trace
-    from fe_drivetrain.model import LOADS, build_model, mesh_scene
-    from fe_drivetrain.response import unit_load_response
-    from fe_drivetrain.results import Chart, Section, Table, Text, judge
+    from fe_drivetrain.beam import main_bearing_beam, pinned_model
+    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
+    from fe_drivetrain.response import LOADS, build_model, mesh_scene, unit_load_response
     from fe_drivetrain.scene import change_scene, library_scene
-    from fe_drivetrain.scene_beam import main_bearing_beam
 
     factor = QUICK_FACTOR if run.quick else FACTOR
     scenes, meshes, responses, models = {}, {}, {}, {}
@@ -196,7 +193,7 @@ def _statics(model: Any, beam: Any, pinned_model: Any) -> Any:
     """
     import numpy as np
 
-    from fe_drivetrain.model import LOADS
+    from fe_drivetrain.response import LOADS
 
     exact = np.zeros((6, len(LOADS)))
     exact[:, :6] = pinned_model(np.eye(6), beam).T
@@ -218,7 +215,7 @@ def _difference(reaction: Any, exact: Any) -> float:
     """Largest difference of Fy and Fz, relative to the largest of a load, or to 1 N."""
     import numpy as np
 
-    from fe_drivetrain.model import LOADS
+    from fe_drivetrain.response import LOADS
 
     # gravity along x is no load of a drivetrain, and its lever arm is the mesh's asymmetry
     loads = [k for k, load in enumerate(LOADS) if load != "gravity.x"]
@@ -235,6 +232,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -16,14 +16,12 @@ from typing import Literal
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fe_drivetrain import direct, interfaces
-from fe_drivetrain.blocks import Block, brick, joined
-from fe_drivetrain.elasticity import Floats, Ints
-from fe_drivetrain.facets import facet_points
-from fe_drivetrain.interfaces import Constraint
-from fe_drivetrain.loads import pressure as pressure_of
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.statics import solve_solid
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.interfaces import Constraint, constraints
+from fe_drivetrain.mesh import Block, brick, facet_points, joined
+from fe_drivetrain.operator import pressure as pressure_of
+from fe_drivetrain.operator import traction_loads
+from fe_drivetrain.solve import direct_solvers, solve_solid
 
 Joint = Literal["sliding", "averaged", "rigid", "bonded"]
 JOINTS: tuple[Joint, ...] = ("sliding", "averaged", "rigid", "bonded")
@@ -295,16 +293,16 @@ def _joint(mesh: Mesh, joint: Joint, first: int, n: int) -> list[Constraint]:
         return []
     inner, outer = mesh.pairs()
     if joint == "sliding":
-        return [interfaces.sliding_sphere("joint", inner, outer, mesh.points, _CENTRE, n)]
+        return [constraints.sliding_sphere("joint", inner, outer, mesh.points, _CENTRE, n)]
     if joint == "rigid":
-        ends = [interfaces.rigid_point(f"face {k}", _CENTRE, first + 6 * k, n) for k in (0, 1)]
+        ends = [constraints.rigid_point(f"face {k}", _CENTRE, first + 6 * k, n) for k in (0, 1)]
         faces = [
-            interfaces.rigid_face(point.name, nodes, mesh.points, point)
+            constraints.rigid_face(point.name, nodes, mesh.points, point)
             for point, nodes in zip(ends, (inner, outer), strict=True)
         ]
-        return [*faces, interfaces.equal_translations("joint", *ends)]
+        return [*faces, constraints.equal_translations("joint", *ends)]
     first_weights, second_weights = [
-        interfaces.centred_weights(mesh.weights(facets)[nodes], mesh.points[nodes], _CENTRE)
+        constraints.centred_weights(mesh.weights(facets)[nodes], mesh.points[nodes], _CENTRE)
         for facets, nodes in ((mesh.inner, inner), (mesh.outer, outer))
     ]
     both = mesh.points[np.concatenate([inner, outer])]
@@ -313,7 +311,7 @@ def _joint(mesh: Mesh, joint: Joint, first: int, n: int) -> list[Constraint]:
     groups = np.empty(len(both), dtype=np.int64)
     groups[order] = np.arange(len(both)) * _n_groups(mesh) // len(both)
     return [
-        interfaces.averaged_sphere(
+        constraints.averaged_sphere(
             "joint", inner, outer, first_weights, second_weights, groups, first, n
         )
     ]
@@ -351,7 +349,9 @@ class Moved:
 
 def _direct() -> str:
     """The fastest direct solver that is installed."""
-    return next((name for name in ("pardiso", "cholmod") if direct.is_installed(name)), "superlu")
+    return next(
+        (name for name in ("pardiso", "cholmod") if direct_solvers.is_installed(name)), "superlu"
+    )
 
 
 #: The core turns about this axis, which is none of the mesh's.
@@ -373,10 +373,10 @@ def move_core(mesh: Mesh, shells: Sequence[Shell], joint: Joint) -> Moved:
     nodes = mesh.points.size
     own = {"rigid": 12, "averaged": 3 * _n_groups(mesh)}.get(joint, 0)
     n = nodes + own + 6
-    core = interfaces.rigid_point("core", _CENTRE, nodes + own, n)
-    constraints = [
-        interfaces.rigid_face("face on the core", np.unique(mesh.core), mesh.points, core),
-        interfaces.fixed("outside", np.unique(mesh.outside), n),
+    core = constraints.rigid_point("core", _CENTRE, nodes + own, n)
+    conditions = [
+        constraints.rigid_face("face on the core", np.unique(mesh.core), mesh.points, core),
+        constraints.fixed("outside", np.unique(mesh.outside), n),
         *_joint(mesh, joint, nodes, n),
     ]
     motions = np.zeros((6, 2))
@@ -386,7 +386,7 @@ def move_core(mesh: Mesh, shells: Sequence[Shell], joint: Joint) -> Moved:
         mesh.points,
         [(cells, shell.lame) for cells, shell in zip(mesh.cells, shells, strict=True)],
         None,
-        constraints,
+        conditions,
         np.zeros((n, 2)),
         prescribed=(nodes + own + np.arange(6), motions),
         # multigrid stalls on the means of whole spheres, and would hand over to a direct solver
@@ -398,7 +398,7 @@ def move_core(mesh: Mesh, shells: Sequence[Shell], joint: Joint) -> Moved:
         across=float(np.abs(onto_core[1:3, 0]).max() / abs(onto_core[0, 0])),
         moments=np.asarray(onto_core[3:, 1]),
         displacements=static.u[:nodes, 0].reshape(-1, 3),
-        unknowns=n - sum(len(c.pivots) for c in constraints) - 6,
+        unknowns=n - sum(len(c.pivots) for c in conditions) - 6,
     )
 
 
@@ -442,10 +442,10 @@ def press(mesh: Mesh, shells: Sequence[Shell], pressure: float) -> Pressed:
         [(cells, shell.lame) for cells, shell in zip(mesh.cells, shells, strict=True)],
         None,
         [
-            interfaces.fixed("core", np.unique(mesh.core), n),
+            constraints.fixed("core", np.unique(mesh.core), n),
             *_joint(mesh, "sliding", n, n),
-            interfaces.held_nodes("no turning about y and z", ends[0], (1, 2), n),
-            interfaces.held_nodes("no turning about x", ends[1], (2,), n),
+            constraints.held_nodes("no turning about y and z", ends[0], (1, 2), n),
+            constraints.held_nodes("no turning about x", ends[1], (2,), n),
         ],
         traction_loads(mesh.points, mesh.outside, pressure_of(pressure), n),
     )

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 NAMES = {
     4: "tetrahedra of 4 nodes",
@@ -30,11 +30,10 @@ REASON = (
 def run(run: Run) -> Any:
     """Estimate the errors of bars and shafts, and compare."""
     import numpy as np
-    from fe_drivetrain.cases.verification import exact_blocks, rigid_ended_shafts
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.error_estimate import recovery_estimate
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.cases.verification import exact_blocks, rigid_ended_shafts
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.solve import recovery_estimate
 
     rows: list[list[Any]] = []
     verdicts, traces = [], []
@@ -215,7 +214,7 @@ def _shape_error(mesh: Any, shaft: Any) -> float:
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefTet
 
-    from fe_drivetrain.elasticity import element_kind, jacobian, shape_functions
+    from fe_drivetrain.mesh import element_kind, jacobian, shape_functions
 
     at, weights = get_quadrature(RefTet, 7)
     values, gradients = shape_functions(element_kind(10).element, at)
@@ -237,6 +236,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

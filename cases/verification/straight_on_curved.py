@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Elements through the wall; eight times as many round it.
 WALLS, QUICK_WALLS = (3, 6, 9, 12), (2, 3, 4)
@@ -16,12 +16,12 @@ BUSH_ORDERS = {"straight": {L2: 2.0, ENERGY: 1.5}, "curved": {L2: 3.0, ENERGY: 2
 def run(run: Run) -> Any:
     """Mesh a shaft and a bush with straight and with curved elements on the same corners."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import manufactured as m
     from fe_drivetrain.cases.verification import orders
     from fe_drivetrain.cases.verification.round_shafts import Bush, Torsion, slice_of_tube
-
-    from fe_drivetrain.elements import straightened
-    from fe_drivetrain.results import Section, Text, judge
+    from fe_drivetrain.mesh import straightened
+    from fe_drivetrain.report import Section, Text, judge
 
     def both(block: Any) -> dict[str, Any]:
         return {"straight": straightened(block.points, block.cells), "curved": block.points}
@@ -158,6 +158,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

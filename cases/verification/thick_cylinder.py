@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 INNER, OUTER = 0.3, 0.6  # m
 PRESSURE = 100e6  # Pa
@@ -25,6 +25,7 @@ NAMES = {
 def run(run: Run) -> Any:
     """Solve an eighth of the ring on ever finer meshes."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -34,15 +35,12 @@ def run(run: Run) -> Any:
         ring_sector,
         sector_symmetry,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import observed_order
+    from fe_drivetrain.compare import observed_order
     from fe_drivetrain.interfaces import held_nodes
-    from fe_drivetrain.loads import pressure, traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Cell, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
+    from fe_drivetrain.report import Cell, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
     exact = Lame(INNER, OUTER, inside=PRESSURE)
@@ -250,6 +248,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 LENGTH = 3.0  # m, of a bar of section 1 m x 1 m, cut in its middle
 E, NU = 210e9, 0.3
@@ -19,9 +19,8 @@ def run(run: Run) -> Any:
     """Stiffness of the tied bar beside that of the whole one."""
     import numpy as np
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
 
     ratios = QUICK_RATIOS if run.quick else RATIOS
     with run.step("uncut bar"):
@@ -222,7 +221,7 @@ def torsion_stiffness() -> float:
 
 def part(n: int, start: float, stop: float) -> Any:
     """The bar between two stations, its axis on x, n divisions across."""
-    from fe_drivetrain.blocks import brick
+    from fe_drivetrain.mesh import brick
 
     def shape(x: Any) -> Any:
         return x * [stop - start, 1.0, 1.0] + [start, -0.5, -0.5]
@@ -239,8 +238,7 @@ def bar(n: int) -> Any:
 def tied_bar(own: int, other: int, kind: Any) -> tuple[Any, Any]:
     """Both halves, and the tie between them; the slave is the first."""
     from fe_drivetrain.cases.verification import two_bodies
-
-    from fe_drivetrain.mortar import mortar_tie, node_tie
+    from fe_drivetrain.interfaces import mortar_tie, node_tie
 
     # The slave's inner nodes are moved: the same number of divisions does not match either.
     half = 0.5 * LENGTH
@@ -256,7 +254,7 @@ def moved(block: Any) -> Any:
     """The half with the inner nodes of its section moved along y and z."""
     from dataclasses import replace
 
-    from fe_drivetrain.elements import straightened
+    from fe_drivetrain.mesh import straightened
 
     points = block.points.copy()
     points[:, 1:] += 0.2 * (0.25 - points[:, 1:] ** 2)
@@ -266,11 +264,10 @@ def moved(block: Any) -> Any:
 def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     """Stiffness in torsion, pure bending and across; what is out of balance between the halves."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
 
-    from fe_drivetrain.elasticity import rigid_motions
+    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import held_freedoms, held_nodes
-    from fe_drivetrain.loads import traction_loads
+    from fe_drivetrain.operator import rigid_motions, traction_loads
 
     points, n = bodies.points, bodies.points.size
     K = bodies.stiffness(lame())
@@ -321,11 +318,10 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
 def fill_in(largest: int) -> list[list[Any]]:
     """Rows of ties and entries of stiffnesses on ever finer faces."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
 
-    from fe_drivetrain.blocks import brick
-    from fe_drivetrain.interfaces import eliminate
-    from fe_drivetrain.mortar import mortar_tie
+    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.interfaces import eliminate, mortar_tie
+    from fe_drivetrain.mesh import brick
 
     rows = []
     n = 4
@@ -355,6 +351,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

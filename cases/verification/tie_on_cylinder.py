@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 RADII = 0.5, 1.0, 1.5  # m: bore, tied cylinder, outer surface
 WIDTH = 1.0  # m
@@ -24,9 +24,8 @@ def run(run: Run) -> Any:
     """Torsion and radial stiffness of tied rings, and stress through the curved tie."""
     import numpy as np
 
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
 
     pairs = QUICK_PAIRS if run.quick else PAIRS
     ratios = QUICK_RATIOS if run.quick else RATIOS
@@ -244,7 +243,7 @@ def ring(inner: float, outer: float, turn: int, across: int, twist: float = 0.0)
     """A closed ring of curved tetrahedra, its axis on x."""
     import numpy as np
 
-    from fe_drivetrain.blocks import brick, joined
+    from fe_drivetrain.mesh import brick, joined
 
     def shape(x: Any) -> Any:
         r = inner + x[:, 0] * (outer - inner)
@@ -270,7 +269,7 @@ def tied_rings(own: int, other: int, multipliers: Any = "standard") -> tuple[Any
     """The inner ring as the slave of the outer, settled, and the tie."""
     from dataclasses import replace
 
-    from fe_drivetrain.mortar import settled
+    from fe_drivetrain.interfaces import settled
 
     bodies, tie = as_meshed(own, other, multipliers)
     return replace(bodies, points=settled(bodies.points, tie)), tie
@@ -278,8 +277,7 @@ def tied_rings(own: int, other: int, multipliers: Any = "standard") -> tuple[Any
 
 def as_meshed(own: int, other: int, multipliers: Any = "standard") -> tuple[Any, Any]:
     from fe_drivetrain.cases.verification import two_bodies
-
-    from fe_drivetrain.mortar import mortar_tie
+    from fe_drivetrain.interfaces import mortar_tie
 
     bodies = two_bodies.together(
         ring(RADII[0], RADII[1], own, layers(own)),
@@ -292,10 +290,10 @@ def as_meshed(own: int, other: int, multipliers: Any = "standard") -> tuple[Any,
 def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     """Stiffness in torsion and radially; energy of rigid motions beside that of unit strain."""
     import numpy as np
-    from fe_drivetrain.cases.verification import two_bodies
 
-    from fe_drivetrain.elasticity import rigid_motions
+    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import freedoms, held_freedoms
+    from fe_drivetrain.operator import rigid_motions
 
     points, n = bodies.points, bodies.points.size
     K = bodies.stiffness(lame())
@@ -321,7 +319,7 @@ def rigid_energy(bodies: Any, tie: Any) -> float:
     """
     import numpy as np
 
-    from fe_drivetrain.elasticity import rigid_motions
+    from fe_drivetrain.operator import rigid_motions
 
     K = bodies.stiffness(lame())
     motions = rigid_motions(bodies.points)
@@ -337,6 +335,7 @@ def traction_error(turn: int, multipliers: Any, settle: bool) -> float:
     The worst of all states of stress that load the cylinder: all but tension along its axis.
     """
     import numpy as np
+
     from fe_drivetrain.cases.verification import two_bodies
 
     bodies, tie = (tied_rings if settle else as_meshed)(turn, round(0.8 * turn), multipliers)
@@ -357,6 +356,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

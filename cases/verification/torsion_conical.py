@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Radii at the ends [m] and half angle of the cone [degrees].
 RADII, HALF_ANGLE = (0.15, 0.3), 10.0
@@ -13,16 +13,15 @@ QUICK_ANGLES = (5.0, 10.0, 20.0, 30.0)
 def run(run: Run) -> Any:
     """A cone between flat ends: Michell's displacements prescribed there, then rigid ends."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import michell_torque, parabola_shortfall
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.solve import solve_solid
 
     steel = MATERIALS["steel"]
     G = steel.shear_modulus
@@ -211,6 +210,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -18,11 +18,11 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from fe_drivetrain.geometry import Shaft
 from skfem import Basis, BilinearForm, ElementTriP4, MeshQuad, condense, solve
 
-from fe_drivetrain.elasticity import Floats
-from fe_drivetrain.hexahedra import SAME_LENGTH, shaft_quadrilaterals
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.mesh import SAME_LENGTH, shaft_quadrilaterals
 
 
 @dataclass(frozen=True)

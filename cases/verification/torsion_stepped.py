@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 LARGE, LENGTH = 0.6, 0.6
 SMALL = 0.4
@@ -15,16 +15,15 @@ QUICK_RATIOS = (0.3, 0.6, 0.9)
 def run(run: Run) -> Any:
     """Two bounds from the meridian, the solid in three dimensions, and the series sum."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import parabola_shortfall, polar_moment
     from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.hexahedra import Grading
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
+    from fe_drivetrain.mesh import Grading
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     G = steel.shear_modulus
@@ -194,6 +193,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

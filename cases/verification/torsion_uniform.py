@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 #: Outer diameter, bores and length [m].
 OUTER, BORES, LENGTH = 0.4, (0.0, 0.28), 0.8
@@ -13,6 +13,7 @@ QUICK_REFINEMENTS = (1, 2, 3)
 def run(run: Run) -> Any:
     """Turn the ends by an exact rotation, on three meshes each."""
     import numpy as np
+
     from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.cases.verification.shaft_theory import (
         Tube,
@@ -20,12 +21,10 @@ def run(run: Run) -> Any:
         parabola_slope,
         recovery_error,
     )
-
-    from fe_drivetrain.charts import chart, trace
-    from fe_drivetrain.convergence import grid_convergence
-    from fe_drivetrain.materials import MATERIALS
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.operator import nodal_stresses
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     refinements = QUICK_REFINEMENTS if run.quick else REFINEMENTS
@@ -181,6 +180,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -8,11 +8,10 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.blocks import Block
-from fe_drivetrain.elasticity import Floats, Ints, assemble, element_kind
+from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.interfaces import Constraint, Elimination, eliminate, held_freedoms
-from fe_drivetrain.loads import traction_loads
-from fe_drivetrain.stress import stresses, tensor
+from fe_drivetrain.mesh import Block, element_kind
+from fe_drivetrain.operator import assemble, stresses, tensor, traction_loads
 
 Lame = tuple[float, float]
 

@@ -3,8 +3,7 @@
 from typing import Any
 
 from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
-
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 LENGTH, DIAMETER = 300.0 * INCH, 4.67017 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -23,20 +22,18 @@ FAR = 14
 def run(run: Run) -> Any:
     """Solve the bar on three meshes and look at its root and its end."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.bar_sections import (
         round_bar,
         section_motion,
         section_stresses,
     )
     from fe_drivetrain.cases.verification.ring_solids import band_of, facets_where
-
-    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import fixed
-    from fe_drivetrain.loads import traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Measure, Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses, principal
+    from fe_drivetrain.operator import nodal_stresses, principal, traction_loads
+    from fe_drivetrain.report import Measure, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     steel = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
     radius, area = 0.5 * DIAMETER, 0.25 * np.pi * DIAMETER**2
@@ -194,6 +191,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

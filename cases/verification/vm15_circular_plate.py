@@ -3,8 +3,7 @@
 from typing import Any
 
 from fe_drivetrain.cases.verification.units import INCH, PSI
-
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 RADIUS, THICKNESS = 40.0 * INCH, 1.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -25,16 +24,14 @@ LAYERS = 2
 def run(run: Run) -> Any:
     """Solve both plates as solids, their edges carried by the shear that plate theory has there."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.quarter_disc import quarter_disc
     from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
-
-    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_freedoms
-    from fe_drivetrain.loads import pressure, traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     steel = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
     middle = 0.5 * THICKNESS
@@ -231,6 +228,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -3,8 +3,7 @@
 from typing import Any
 
 from fe_drivetrain.cases.verification.units import INCH, PSI
-
-from fe_drivetrain.case import Case, Run
+from fe_drivetrain.suite import Case, Run
 
 INNER, INSIDE, OUTER = 4.0 * INCH, 5.43 * INCH, 8.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -34,6 +33,7 @@ LEVELS = ((4, 1, 3), (8, 2, 6), (16, 4, 12))
 def run(run: Run) -> Any:
     """Solve a sector of the cylinder, and of a thin disc."""
     import numpy as np
+
     from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, Rotating, plane_strain
     from fe_drivetrain.cases.verification.ring_solids import (
         band_of,
@@ -43,14 +43,11 @@ def run(run: Run) -> Any:
         ring_sector,
         sector_symmetry,
     )
-
-    from fe_drivetrain.charts import chart, trace
     from fe_drivetrain.interfaces import held_nodes
-    from fe_drivetrain.loads import body_loads, pressure, traction_loads
-    from fe_drivetrain.materials import Material
-    from fe_drivetrain.results import Section, Table, Text, judge
-    from fe_drivetrain.statics import solve_solid
-    from fe_drivetrain.stress import nodal_stresses
+    from fe_drivetrain.operator import body_loads, nodal_stresses, pressure, traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
 
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
     middle = 0.5 * (INNER + OUTER)
@@ -238,6 +235,6 @@ CASE = Case(
 )
 
 if __name__ == "__main__":
-    from fe_drivetrain.cli import main_of_case
+    from fe_drivetrain.commands import main_of_case
 
     main_of_case(CASE)

@@ -27,9 +27,7 @@ def version() -> str:
     """The project's version."""
     from importlib.metadata import version
 
-    import fe_drivetrain.solvers
-
-    return version(fe_drivetrain.solvers.__name__.partition(".")[0].replace("_", "-"))
+    return version("fe-drivetrain")
 
 
 def load(problem: Problem) -> Problem:
@@ -39,10 +37,10 @@ def load(problem: Problem) -> Problem:
 
 def solve(problem: Problem, variant: str, clock: Clock) -> float:
     """The stiffness."""
-    from fe_drivetrain.elasticity import assemble, sparsity
     from fe_drivetrain.interfaces import eliminate, fixed
-    from fe_drivetrain.reduction import reduce
-    from fe_drivetrain.solvers import solve as solve_system
+    from fe_drivetrain.operator import assemble, sparsity
+    from fe_drivetrain.solve import reduce
+    from fe_drivetrain.solve import solve as solve_system
 
     with clock.step("assembly"):
         n = len(problem.points)

@@ -1,0 +1,277 @@
+"""Frames in space: straight Timoshenko beams between rigid bodies, condensed to reference points.
+
+A node is a rigid body with six freedoms at its position. A beam may end off its nodes' positions:
+so a cheek that many beams stand on is one node, and a beam's end moves with it as a rigid body
+does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy import sparse
+
+from fe_drivetrain.beam.sections import cowper_shear_coefficient
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.solve.condensation import Condensed, condense, wrench_transport
+
+
+@dataclass(frozen=True)
+class CrossSection:
+    """What a beam's section does, in its principal axes.
+
+    Attributes
+    ----------
+    area
+        [m^2].
+    shear_areas
+        Effective in forces along the section's first and second axis [m^2].
+    torsion
+        Torsion constant [m^4].
+    inertias
+        Second moments about the first and about the second axis [m^4].
+    """
+
+    area: float
+    shear_areas: tuple[float, float]
+    torsion: float
+    inertias: tuple[float, float]
+
+
+def round_section(outer: float, poisson_ratio: float, inner: float = 0.0) -> CrossSection:
+    """Of a solid or hollow round bar.
+
+    Parameters
+    ----------
+    outer, inner
+        Diameters [m].
+    poisson_ratio
+        For Cowper's shear coefficient (Cowper 1966).
+    """
+    area = np.pi / 4 * (outer**2 - inner**2)
+    inertia = np.pi / 64 * (outer**4 - inner**4)
+    shear = area * float(cowper_shear_coefficient(poisson_ratio, inner / outer))
+    return CrossSection(area, (shear, shear), 2 * inertia, (inertia, inertia))
+
+
+def rectangle(first: float, second: float, poisson_ratio: float) -> CrossSection:
+    """Of a rectangular bar, its sides along the first and the second axis [m].
+
+    Shear coefficient 10 (1 + nu) / (12 + 11 nu) (Cowper 1966); torsion constant by Saint-Venant's
+    series (Timoshenko and Goodier 1970, art. 109).
+    """
+    k = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
+    area = first * second
+    short, long = sorted((first, second))
+    odd = np.arange(1, 200, 2)
+    series = (np.tanh(odd * np.pi * long / (2 * short)) / odd**5).sum()
+    torsion = short**3 * long / 3 * (1 - 192 / np.pi**5 * short / long * float(series))
+    inertias = first * second**3 / 12, second * first**3 / 12
+    return CrossSection(area, (k * area, k * area), torsion, inertias)
+
+
+def annular_sector(inner: float, outer: float, angle: float, poisson_ratio: float) -> CrossSection:
+    """Of a bar whose section is a sector of an annulus; the first axis is radial in its middle.
+
+    Shear areas and torsion constant are those of the rectangle that is as high, and as wide along
+    the mean circle: for angles of up to a right one, some per cent.
+
+    Parameters
+    ----------
+    inner, outer
+        Radii [m].
+    angle
+        Of the sector [rad].
+    """
+    area = angle / 2 * (outer**2 - inner**2)
+    square = (outer**4 - inner**4) / 8
+    centroid = sector_centroid(inner, outer, angle)
+    across = square * (angle - np.sin(angle))
+    along = square * (angle + np.sin(angle)) - area * centroid**2
+    like = rectangle(outer - inner, angle * (outer + inner) / 2, poisson_ratio)
+    return CrossSection(area, like.shear_areas, like.torsion, (across, along))
+
+
+def sector_centroid(inner: float, outer: float, angle: float) -> float:
+    """Radius of the centroid of an annular sector [m]; radii [m], angle [rad]."""
+    moment = 2 / 3 * (outer**3 - inner**3) * np.sin(angle / 2)
+    return float(moment / (angle / 2 * (outer**2 - inner**2)))
+
+
+def beam_stiffness(section: CrossSection, length: float, material: Material) -> Floats:
+    """(12, 12) of a uniform Timoshenko beam along its own x, ends at 0 and ``length``.
+
+    The first axis of the section is its y, the second its z (Przemieniecki 1968, Theory of Matrix
+    Structural Analysis, section 5.6).
+    """
+    E, G = material.youngs_modulus, material.shear_modulus
+    L = length
+    # motion of the end for forces there, clamped at the start; then all from statics
+    F = np.zeros((6, 6))
+    F[0, 0] = L / (E * section.area)
+    F[3, 3] = L / (G * section.torsion)
+    about_y, about_z = E * section.inertias[0], E * section.inertias[1]
+    F[1, 1] = L**3 / (3 * about_z) + L / (G * section.shear_areas[0])
+    F[2, 2] = L**3 / (3 * about_y) + L / (G * section.shear_areas[1])
+    F[5, 5], F[4, 4] = L / about_z, L / about_y
+    F[1, 5] = F[5, 1] = L**2 / (2 * about_z)
+    F[2, 4] = F[4, 2] = -(L**2) / (2 * about_y)
+    end = np.linalg.inv(F)
+    balance = np.vstack([-wrench_transport(np.array([L, 0.0, 0.0])), np.eye(6)])
+    K = balance @ end @ balance.T
+    return np.asarray(0.5 * (K + K.T))
+
+
+@dataclass(frozen=True)
+class Member:
+    """A beam between two nodes.
+
+    Attributes
+    ----------
+    nodes
+        Their numbers.
+    ends
+        Where the beam begins and ends, (3,) each [m].
+    section
+        Its section.
+    first_axis
+        (3,) direction of the section's first axis, made square to the beam.
+    """
+
+    nodes: tuple[int, int]
+    ends: tuple[Floats, Floats]
+    section: CrossSection
+    first_axis: Floats
+
+
+@dataclass(frozen=True)
+class Follower:
+    """A reference point that moves as the mean of places on nodes does (RBE3).
+
+    Attributes
+    ----------
+    name, position
+        Of the point; (3,) [m].
+    nodes
+        (k,) that the places belong to.
+    places
+        (k, 3) [m].
+    weights
+        (k,) of each.
+    """
+
+    name: str
+    position: Floats
+    nodes: Sequence[int]
+    places: Floats
+    weights: Floats
+
+
+@dataclass(frozen=True)
+class SpatialFrame:
+    """Members between nodes.
+
+    Attributes
+    ----------
+    positions
+        (n, 3) of the nodes [m].
+    members
+        The beams.
+    material
+        Of all.
+    inertias
+        (6, 6) mass matrix about the node, of nodes that are bodies of their own [kg, kg m,
+        kg m^2].
+    """
+
+    positions: Floats
+    members: Sequence[Member]
+    material: Material
+    inertias: dict[int, Floats] = field(default_factory=dict)
+
+    @property
+    def stiffness(self) -> Floats:
+        """(6 n, 6 n), free."""
+        K = np.zeros((6 * len(self.positions),) * 2)
+        for member in self.members:
+            start, end = member.ends
+            length = float(np.linalg.norm(end - start))
+            along = (end - start) / length
+            first = member.first_axis - along * (along @ member.first_axis)
+            first /= np.linalg.norm(first)
+            turn = np.vstack([along, first, np.cross(along, first)])
+            own = np.kron(np.eye(4), turn)
+            local = own.T @ beam_stiffness(member.section, length, self.material) @ own
+            carry = np.zeros((12, 12))
+            for k, (node, at) in enumerate(zip(member.nodes, member.ends, strict=True)):
+                part = slice(6 * k, 6 * k + 6)
+                carry[part, part] = wrench_transport(at - self.positions[node]).T
+            rows = np.concatenate([6 * node + np.arange(6) for node in member.nodes])
+            K[np.ix_(rows, rows)] += carry.T @ local @ carry
+        return K
+
+    @property
+    def mass(self) -> Floats:
+        """(6 n, 6 n): half of each beam at either end, and the nodes' own."""
+        M = np.zeros((6 * len(self.positions),) * 2)
+        for member in self.members:
+            length = float(np.linalg.norm(member.ends[1] - member.ends[0]))
+            half = self.material.density * member.section.area * length / 2
+            for node, at in zip(member.nodes, member.ends, strict=True):
+                carry = wrench_transport(at - self.positions[node])
+                rows = slice(6 * node, 6 * node + 6)
+                M[rows, rows] += carry @ np.diag([half, half, half, 0.0, 0.0, 0.0]) @ carry.T
+        for node, inertia in self.inertias.items():
+            rows = slice(6 * node, 6 * node + 6)
+            M[rows, rows] += inertia
+        return M
+
+    def condensed(self, followers: Sequence[Follower]) -> Condensed:
+        """The free frame at reference points; of its mass, what gravity does to them.
+
+        Raises
+        ------
+        InputError
+            There is one point only, or two move as one.
+        """
+        K, n = self.stiffness, len(self.positions)
+        size = np.sqrt(K.diagonal())
+        scaled = K / np.outer(size, size)
+        # loads are in balance: what is held only takes the rigid motions out
+        left = np.arange(6, 6 * n)
+        factor = np.linalg.inv(scaled[np.ix_(left, left)])
+
+        def solved(F: Floats) -> Floats:
+            u = np.zeros_like(F)
+            u[left] = factor @ (F[left] / size[left, None]) / size[left, None]
+            return u
+
+        loads = np.hstack([self._spread(f) for f in followers])
+        positions = np.array([f.position for f in followers])
+        rigid = np.vstack([wrench_transport(p - positions[0]).T for p in self.positions])
+        mass = sparse.csr_array(self.mass)
+        names = [f.name for f in followers]
+        found = condense(names, positions, loads, mass, rigid, solved)
+        return Condensed(found.names, found.positions, found.stiffness, found.gravity)
+
+    def _spread(self, follower: Follower) -> Floats:
+        """(6 n, 6) forces on the nodes of unit forces and moments at a reference point."""
+        share = np.repeat(follower.weights / np.sum(follower.weights), 3)
+        motions = rigid_motions(follower.places, follower.position)
+        weighted = share[:, None] * motions
+        fit = np.linalg.solve(motions.T @ weighted, weighted.T)
+        loads = np.zeros((6 * len(self.positions), 6))
+        for k, (node, place) in enumerate(zip(follower.nodes, follower.places, strict=True)):
+            carry = wrench_transport(place - self.positions[node])[:, :3]
+            loads[6 * node : 6 * node + 6] += carry @ fit[:, 3 * k : 3 * k + 3].T
+        return loads
+
+
+def on_node(name: str, node: int, position: Floats) -> Follower:
+    """A reference point that moves with one node, which is a rigid body."""
+    places = position + np.vstack([np.eye(3), -np.eye(3)])
+    return Follower(name, np.asarray(position), [node] * 6, places, np.ones(6))

@@ -1,0 +1,651 @@
+"""Timoshenko shaft on springs in space, solved by the force method (level 1 of the ladder).
+
+A shaft is a chain of sections, so statics fixes its internal forces as soon as the support
+reactions are known. The unknowns are therefore the reactions and the six rigid-body motions, a
+system of about twenty equations whatever the number of sections:
+
+- a support stiffness enters as a compliance, so a rigid support is exactly zero compliance: no
+  penalty number, and a very stiff spring tends to it without loss of digits;
+- tapered sections enter through their flexibility, integrated to machine precision, so a cone is
+  one exact element;
+- equilibrium is one of the equations and holds to machine precision.
+
+Frame: x along the shaft, z up, y = z cross x. Vectors of six are ordered Fx, Fy, Fz, Mx, My, Mz
+and ux, uy, uz, rx, ry, rz. A *reaction* is the load that the shaft puts ON the support, at the
+support's station; the force on the shaft is its negative.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fe_drivetrain.beam.sections import Section, element_integrals, transport
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.materials import MATERIALS, Material
+
+# Stations closer than this share of the beam's length are one station.
+_SAME_STATION = 1e-9
+# A rigid-body motion held by less than this share of a unit support is free.
+_FREE = 1e-9
+# A spring this many times softer than the shaft leaves no digit of what it does.
+_SOFT = 1e12
+_MOTION_GROUPS = (
+    ((0,), "move along x"),
+    ((3,), "turn about x"),
+    ((1, 5), "move along y and turn about z"),
+    ((2, 4), "move along z and turn about y"),
+)
+_AXES = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """A connection of one station to the ground.
+
+    Parameters
+    ----------
+    name : str
+        Used in errors and to find the reaction.
+    x : float
+        Station, m.
+    stiffness : array_like
+        Six stiffnesses (N/m for x, y, z, then N m/rad about x, y, z), each 0 (free) to `inf`
+        (rigid); or a symmetric positive semi-definite 6x6 matrix, where a direction with `inf` on
+        the diagonal is rigid and has no other entry. Kept as the 6x6 matrix.
+
+    Raises
+    ------
+    InputError
+        If the stiffness has another shape, is not symmetric or is negative in some direction.
+    """
+
+    name: str
+    x: float
+    stiffness: ArrayLike
+
+    def __post_init__(self) -> None:
+        matrix = np.array(self.stiffness, dtype=float)
+        if matrix.shape == (6,):
+            matrix = np.diag(matrix)
+        if matrix.shape != (6, 6):
+            raise InputError(
+                f"support '{self.name}': stiffness of shape {np.shape(self.stiffness)} must be 6 "
+                "values or a 6x6 matrix: give Fx, Fy, Fz, Mx, My, Mz against ux, uy, uz, rx, ry, "
+                "rz."
+            )
+        if not np.isfinite(self.x):
+            raise InputError(f"support '{self.name}': x = {self.x} must be a finite station in m.")
+        _check_support_matrix(self.name, matrix)
+        matrix.flags.writeable = False
+        object.__setattr__(self, "stiffness", matrix)
+
+    @property
+    def directions(self) -> tuple[Floats, Floats]:
+        """Directions that this support holds, (m, 6), and the compliance of each, (m,).
+
+        The load on the support is ``sum_a t_a rho_a`` with ``t_a . u = c_a rho_a``. A coupled
+        matrix is scaled to a unit diagonal before its eigenvectors are taken, so that metres and
+        radians, and soft and stiff directions, do not drown each other.
+        """
+        matrix = np.asarray(self.stiffness, dtype=float)
+        rigid = np.isinf(np.diag(matrix))
+        held = ~rigid & (np.diag(matrix) > 0.0)
+        root = np.sqrt(np.diag(matrix)[held])
+        value, vector = np.linalg.eigh(matrix[np.ix_(held, held)] / np.outer(root, root))
+        real = value > 1e-12
+        springs = np.zeros((int(real.sum()), 6))
+        springs[:, held] = (vector[:, real] * root[:, None]).T
+        directions = np.vstack([np.eye(6)[rigid], springs])
+        return directions, np.concatenate([np.zeros(int(rigid.sum())), 1.0 / value[real]])
+
+
+@dataclass(frozen=True, eq=False)
+class Beam:
+    """A shaft of sections on supports.
+
+    Parameters
+    ----------
+    sections : sequence of BeamSection or RigiditySection
+        From the upwind end on.
+    supports : sequence of Support
+        At any stations on the beam, each with its own name.
+    start : float
+        x of the upwind end, m.
+    material : Material
+        Of every section given by its shape; the density counts only where gravity does.
+    shear : bool
+        Whether shear deforms the beam (Timoshenko, Cowper's coefficient); False is
+        Euler-Bernoulli.
+
+    Raises
+    ------
+    InputError
+        If there is no section, a support is off the beam or a name is taken twice.
+    """
+
+    sections: Sequence[Section]
+    supports: Sequence[Support]
+    start: float = 0.0
+    material: Material = MATERIALS["steel"]
+    shear: bool = True
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sections", tuple(self.sections))
+        object.__setattr__(self, "supports", tuple(self.supports))
+        if not self.sections:
+            raise InputError("beam with 0 sections needs at least 1: give a BeamSection.")
+        if not np.isfinite(self.start):
+            raise InputError(f"beam start x = {self.start} must be finite: give it in m.")
+        names = [support.name for support in self.supports]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(
+                    f"support name '{name}' is used {names.count(name)} times and must be used "
+                    "once: rename one of them."
+                )
+        for support in self.supports:
+            _stations(self, f"support '{support.name}'", support.x)
+
+    @property
+    def ends(self) -> Floats:
+        """Stations where sections begin and end, (n_sections + 1,), m."""
+        return self.start + np.cumsum([0.0, *(section.length for section in self.sections)])
+
+    @property
+    def length(self) -> float:
+        """Whole length, m."""
+        return float(sum(section.length for section in self.sections))
+
+
+@dataclass(frozen=True, eq=False)
+class BeamSolution:
+    """Displacements and reactions of load cases.
+
+    Parameters
+    ----------
+    stations : ndarray, (S,) or ()
+        Where displacements are given, m; for a scalar they have no axis S.
+    supports : tuple of str, (m,)
+        Names, in the order of the reactions.
+    displacements : ndarray, (..., S, 6)
+        m and rad.
+    reactions : ndarray, (..., m, 6)
+        Load on each support at its station, N and N m.
+    """
+
+    stations: Floats
+    supports: tuple[str, ...]
+    displacements: Floats
+    reactions: Floats
+
+    def reaction(self, support: str) -> Floats:
+        """Load on one support, (..., 6).
+
+        Raises
+        ------
+        InputError
+            If no support has that name.
+        """
+        return np.asarray(self.reactions[..., _support_index(self.supports, support), :])
+
+
+@dataclass(frozen=True, eq=False)
+class UnitLoadResponse:
+    """The beam's whole linear answer: displacements and reactions for unit loads.
+
+    The axis L, or S, is there when the stations were given as a sequence, not for a scalar.
+
+    Parameters
+    ----------
+    load_stations : ndarray, (L,) or ()
+        Where loads may act, m.
+    stations : ndarray, (S,) or ()
+        Where displacements are given, m.
+    supports : tuple of str, (m,)
+        Names, in the order of the reactions.
+    displacement : ndarray, (S, 6, L, 6)
+        Per unit load: the compliance, m/N and so on.
+    reaction : ndarray, (m, 6, L, 6)
+        Load on each support per unit load.
+    gravity_displacement : ndarray, (S, 6, 3)
+        Per m/s^2 of gravity along x, y, z.
+    gravity_reaction : ndarray, (m, 6, 3)
+        Per m/s^2 of gravity along x, y, z.
+    """
+
+    load_stations: Floats
+    stations: Floats
+    supports: tuple[str, ...]
+    displacement: Floats
+    reaction: Floats
+    gravity_displacement: Floats
+    gravity_reaction: Floats
+
+    def solution(self, loads: ArrayLike, gravity: ArrayLike = (0.0, 0.0, 0.0)) -> BeamSolution:
+        """Answer to load cases, as one matrix product.
+
+        Parameters
+        ----------
+        loads : array_like, (..., L, 6), or (..., 6) for a scalar load station
+            N and N m on the shaft.
+        gravity : array_like, (3,)
+            Acceleration, m/s^2: (0, 0, -9.81) for a level shaft.
+
+        Returns
+        -------
+        BeamSolution
+
+        Raises
+        ------
+        InputError
+            If a shape does not fit or a value is not finite.
+        """
+        load = np.asarray(loads, dtype=float)
+        one = (*self.load_stations.shape, 6)
+        if load.ndim < len(one) or load.shape[load.ndim - len(one) :] != one:
+            raise InputError(
+                f"loads of shape {load.shape} must end in {one}: give six components for each load "
+                "station."
+            )
+        _check_finite("loads", load)
+        g = np.asarray(gravity, dtype=float)
+        if g.shape != (3,):
+            raise InputError(f"gravity of shape {g.shape} must be 3 components in m/s^2.")
+        _check_finite("gravity", g)
+        flat = load.reshape(-1, int(np.prod(one)))
+        cases = load.shape[: load.ndim - len(one)]
+
+        def respond(unit: Floats, constant: Floats) -> Floats:
+            out = flat @ unit.reshape(-1, flat.shape[1]).T
+            out += (constant @ g).ravel()
+            return out.reshape(*cases, *constant.shape[:-1])
+
+        return BeamSolution(
+            self.stations,
+            self.supports,
+            respond(self.displacement, self.gravity_displacement),
+            respond(self.reaction, self.gravity_reaction),
+        )
+
+    def reaction_matrix(self, support: str) -> Floats:
+        """Load on one support per unit load, (6, L, 6), or (6, 6) for a scalar load station.
+
+        Raises
+        ------
+        InputError
+            If no support has that name.
+        """
+        return np.asarray(self.reaction[_support_index(self.supports, support)])
+
+
+def unit_load_response(
+    beam: Beam, load_stations: ArrayLike, at: ArrayLike | None = None
+) -> UnitLoadResponse:
+    """Displacements and reactions for a unit of each load component at each load station.
+
+    Parameters
+    ----------
+    beam : Beam
+    load_stations : array_like, (L,) or scalar
+        m.
+    at : array_like, (S,) or scalar, optional
+        Stations of the displacements, m; by default every section end, support and load station,
+        in ascending order.
+
+    Returns
+    -------
+    UnitLoadResponse
+
+    Raises
+    ------
+    InputError
+        If a station is off the beam, the supports leave the beam free to move (the motion is
+        named), or two rigid supports share a load in a way that statics cannot tell.
+    """
+    loaded = _stations(beam, "load station", load_stations)
+    wanted = _stations(beam, "output station", [] if at is None else at)
+    held = np.array([support.x for support in beam.supports])
+    nodes = _merged_stations(
+        np.concatenate([beam.ends, held, loaded.ravel(), wanted.ravel()]), beam.length
+    )
+    if at is None:
+        wanted = nodes
+
+    vectors, compliance, owner = _held_directions(beam, _nearest(nodes, held))
+    directions = np.zeros((nodes.size, 6, owner.size))
+    directions[_nearest(nodes, held)[owner], :, np.arange(owner.size)] = vectors
+    rigid_body = np.swapaxes(transport(nodes - nodes[0]), -1, -2)
+    grip = np.einsum("nca,ncq->aq", directions, rigid_body)
+    _refuse_mechanism(grip, nodes[0], beam.length)
+
+    flexibility, sag, weight = _elements(beam, nodes)
+    loads = np.zeros((nodes.size, 6, loaded.size, 6))
+    for j, node in enumerate(_nearest(nodes, loaded.ravel())):
+        loads[node, :, j, :] = np.eye(6)
+    gravity = np.zeros((nodes.size, 6, 3))
+    gravity[:-1] = weight
+    forces = np.concatenate([loads.reshape(nodes.size, 6, -1), gravity], axis=2)
+    free = np.zeros((nodes.size - 1, 6, forces.shape[2]))
+    free[:, :, -3:] = sag
+
+    clamped = _clamped_displacements(nodes, flexibility, forces, free)
+    yielding = _clamped_displacements(nodes, flexibility, directions)
+    stiff = np.einsum("nca,ncb->ab", directions, yielding) + np.diag(compliance)
+    tip = np.zeros_like(directions)
+    tip[-1] = vectors.T
+    tip_compliance = np.einsum(
+        "ac,ca->a", vectors, _clamped_displacements(nodes, flexibility, tip)[-1]
+    )
+    reaction, motion = _solve_saddle(
+        stiff,
+        grip,
+        np.einsum("nca,ncl->al", directions, clamped),
+        np.einsum("ncq,ncl->ql", rigid_body, forces),
+        tip_compliance,
+        beam,
+    )
+    displacement = (clamped + rigid_body @ motion - yielding @ reaction)[_nearest(nodes, wanted)]
+    on_support = np.zeros((len(beam.supports), 6, forces.shape[2]))
+    np.add.at(on_support, owner, vectors[:, :, None] * reaction[:, None, :])
+    split = loaded.size * 6
+    per_load = (6, *loaded.shape, 6)
+    return UnitLoadResponse(
+        load_stations=loaded,
+        stations=wanted,
+        supports=tuple(support.name for support in beam.supports),
+        displacement=displacement[..., :split].reshape(*wanted.shape, *per_load),
+        reaction=on_support[..., :split].reshape(-1, *per_load),
+        gravity_displacement=displacement[..., split:],
+        gravity_reaction=on_support[..., split:],
+    )
+
+
+def solve(
+    beam: Beam,
+    load_stations: ArrayLike,
+    loads: ArrayLike,
+    at: ArrayLike | None = None,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+) -> BeamSolution:
+    """Displacements and reactions of any number of load cases.
+
+    Parameters
+    ----------
+    beam : Beam
+    load_stations : array_like, (L,) or scalar
+        m.
+    loads : array_like, (..., L, 6), or (..., 6) for a scalar load station
+        N and N m on the shaft.
+    at : array_like, (S,) or scalar, optional
+        Stations of the displacements, see `unit_load_response`.
+    gravity : array_like, (3,)
+        m/s^2; zero leaves the shaft's own weight out.
+
+    Returns
+    -------
+    BeamSolution
+
+    Raises
+    ------
+    InputError
+        See `unit_load_response` and `UnitLoadResponse.solution`.
+    """
+    return unit_load_response(beam, load_stations, at).solution(loads, gravity)
+
+
+def shaft_stiffness(beam: Beam, first: float, second: float) -> Floats:
+    """Stiffness between two stations of the shaft, its supports left aside.
+
+    Parameters
+    ----------
+    beam : Beam
+    first, second : float
+        Stations, m, first < second.
+
+    Returns
+    -------
+    ndarray, (12, 12)
+        Forces on the shaft at `first` and `second` against the displacements there. Exact for
+        loads at the two stations, tapers included.
+
+    Raises
+    ------
+    InputError
+        If the stations are off the beam or in the wrong order, or the shaft between is rigid.
+    """
+    _stations(beam, "stiffness station", [first, second])
+    if not second - first > _SAME_STATION * beam.length:
+        raise InputError(
+            f"stiffness station {second:g} m must lie downwind of {first:g} m: swap the two."
+        )
+    inner = beam.ends[(beam.ends > first) & (beam.ends < second)]
+    nodes = _merged_stations(np.array([first, *inner, second]), beam.length)
+    flexibility, _, _ = _elements(beam, nodes)
+    forces = np.zeros((nodes.size, 6, 6))
+    forces[-1] = np.eye(6)
+    compliance = _clamped_displacements(nodes, flexibility, forces)[-1]
+    if not np.all(np.diag(compliance) > 0.0):
+        raise InputError(
+            f"shaft between {first:g} m and {second:g} m is rigid in some direction and has no "
+            "finite stiffness: give its sections finite rigidities."
+        )
+    stiffness = np.linalg.inv(compliance)
+    stiffness = (stiffness + stiffness.T) / 2.0
+    balance = np.vstack([-transport(np.array(second - first)), np.eye(6)])
+    return np.asarray(balance @ stiffness @ balance.T)
+
+
+def _elements(beam: Beam, nodes: Floats) -> tuple[Floats, Floats, Floats]:
+    """Flexibility (e, 6, 6), sag (e, 6, 3) and weight (e, 6, 3) between neighbouring nodes."""
+    ends = beam.ends
+    parts = []
+    for a, b in pairwise(nodes.tolist()):
+        index = int(np.searchsorted(ends, (a + b) / 2.0)) - 1
+        origin = float(ends[index])
+        parts.append(
+            element_integrals(
+                beam.sections[index], beam.material, beam.shear, a - origin, b - origin
+            )
+        )
+    return (
+        np.array([part.flexibility for part in parts]),
+        np.array([part.sag for part in parts]),
+        np.array([part.weight for part in parts]),
+    )
+
+
+def _clamped_displacements(
+    nodes: Floats, flexibility: Floats, forces: Floats, free: Floats | None = None
+) -> Floats:
+    """Motion of every node, (n, 6, c), with the first one clamped and no other support.
+
+    `forces` (n, 6, c) act at the nodes; `free` (n - 1, 6, c) is what each element's right end
+    moves of itself.
+    """
+    carry = transport(np.diff(nodes))
+    inside = np.array(forces[1:], dtype=float)
+    for e in range(len(carry) - 2, -1, -1):
+        inside[e] += carry[e + 1] @ inside[e + 1]
+    stretch = flexibility @ inside
+    if free is not None:
+        stretch += free
+    motion = np.zeros_like(forces)
+    for e in range(len(carry)):
+        motion[e + 1] = carry[e].T @ motion[e] + stretch[e]
+    return motion
+
+
+def _held_directions(
+    beam: Beam, node_of: NDArray[np.intp]
+) -> tuple[Floats, Floats, NDArray[np.intp]]:
+    """Directions that the supports hold (a, 6), their compliances (a,) and supports (a,)."""
+    vectors, compliances, owner = [np.zeros((0, 6))], [np.zeros(0)], []
+    rigid: dict[tuple[int, int], str] = {}
+    for index, (support, node) in enumerate(zip(beam.supports, node_of, strict=True)):
+        vector, compliance = support.directions
+        for axis in np.argmax(vector[compliance == 0.0], axis=1):
+            key = int(node), int(axis)
+            if key in rigid:
+                raise InputError(
+                    f"supports '{rigid[key]}' and '{support.name}' are both rigid in "
+                    f"{_AXES[axis]} at x = {support.x:g} m and their shares cannot be told: "
+                    "give at least one of them a finite stiffness."
+                )
+            rigid[key] = support.name
+        vectors.append(vector)
+        compliances.append(compliance)
+        owner += [index] * len(compliance)
+    return np.vstack(vectors), np.concatenate(compliances), np.array(owner, dtype=np.intp)
+
+
+def _refuse_mechanism(grip: Floats, origin: float, length: float) -> None:
+    """Raise an error that names each rigid-body motion which no support holds."""
+    # Rotations measured by the travel of an arm as long as the beam, rows of unit size: how stiff
+    # a support is must not decide whether it holds.
+    scaled = grip / np.array([1.0, 1.0, 1.0, length, length, length])
+    scaled = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+
+    def free_motions(columns: tuple[int, ...]) -> Floats:
+        # Rows of zeros make the decomposition square for a beam with few supports.
+        part = np.vstack([scaled[:, columns], np.zeros((len(columns), len(columns)))])
+        _, value, vector = np.linalg.svd(part, full_matrices=False)
+        return np.asarray(vector[value <= _FREE])
+
+    total = len(free_motions((0, 1, 2, 3, 4, 5)))
+    if total == 0:
+        return
+    found: list[str] = []
+    counted = 0
+    for columns, both in _MOTION_GROUPS:
+        motions = free_motions(columns)
+        counted += len(motions)
+        if len(motions) == len(columns):
+            found.append(both)
+        elif len(motions) == 1:
+            move, turn = motions[0][0], motions[0][1] / length
+            axis = both.split(" and ")
+            if abs(turn) * length <= _FREE**0.5:
+                found.append(axis[0])
+            else:
+                sign = 1.0 if columns == (2, 4) else -1.0
+                found.append(f"{axis[1]} at x = {origin + sign * move / turn:.6g} m")
+    if counted < total:
+        found.append("make a coupled motion of several directions")
+    raise InputError(
+        f"the beam is free to {' and to '.join(found)} because no support holds it: give a "
+        "support a stiffness greater than 0 in that direction."
+    )
+
+
+def _solve_saddle(
+    compliance: Floats, grip: Floats, gap: Floats, resultant: Floats, scale: Floats, beam: Beam
+) -> tuple[Floats, Floats]:
+    """Reactions (a, c) and rigid-body motions (6, c).
+
+    ``compliance rho - grip q = gap`` (each support stays on its spring) and
+    ``grip^T rho = resultant`` (equilibrium).
+    """
+    size = np.diag(compliance) + scale
+    size = np.where(size > 0.0, size, size.max() if size.max() > 0.0 else 1.0)
+    row = 1.0 / np.sqrt(size)
+    held = row[:, None] * grip
+    column = 1.0 / np.linalg.norm(held, axis=0)
+    held = held * column
+    n = len(row)
+    matrix = np.zeros((n + 6, n + 6))
+    matrix[:n, :n] = row[:, None] * compliance * row
+    matrix[:n, n:] = -held
+    matrix[n:, :n] = held.T
+    if np.linalg.cond(matrix) > 1e14:
+        # scale is what the shaft gives where the support stands, along the support's direction
+        soft = float(
+            np.max(np.diag(compliance) / np.where(scale > 0.0, scale, np.inf), initial=0.0)
+        )
+        if soft > _SOFT:
+            raise InputError(
+                f"a spring of the supports is {soft:.1g} times softer than the shaft, and cannot "
+                "be told from none: take it away, or make it stiffer."
+            )
+        names = ", ".join(f"'{support.name}'" for support in beam.supports)
+        raise InputError(
+            f"supports {names} are rigid and so is the shaft between them, and their shares "
+            "cannot be told: give a support or a section a finite stiffness."
+        )
+    right = np.vstack([row[:, None] * gap, column[:, None] * resultant])
+    solved = np.linalg.solve(matrix, right)
+    return row[:, None] * solved[:n], column[:, None] * solved[n:]
+
+
+def _merged_stations(stations: Floats, length: float) -> Floats:
+    ordered = np.sort(stations)
+    keep = np.append(True, np.diff(ordered) > _SAME_STATION * length)
+    return np.asarray(ordered[keep])
+
+
+def _nearest(nodes: Floats, stations: Floats) -> NDArray[np.intp]:
+    return np.asarray(np.argmin(np.abs(nodes - stations[..., None]), axis=-1), dtype=np.intp)
+
+
+def _support_index(names: tuple[str, ...], name: str) -> int:
+    if name not in names:
+        raise InputError(f"support '{name}' is not on the beam: choose one of {', '.join(names)}.")
+    return names.index(name)
+
+
+def _stations(beam: Beam, what: str, stations: ArrayLike) -> Floats:
+    x = np.asarray(stations, dtype=float)
+    if x.ndim > 1:
+        raise InputError(f"{what}s of shape {x.shape} must be one value or a list: flatten them.")
+    low, high = beam.ends[0], beam.ends[-1]
+    slack = _SAME_STATION * beam.length
+    outside = x[~((x >= low - slack) & (x <= high + slack))]
+    if outside.size:
+        raise InputError(
+            f"{what} at x = {outside[0]:g} m must be on the beam, from {low:g} to {high:g} m: "
+            "move it or lengthen the beam."
+        )
+    return x
+
+
+def _check_support_matrix(name: str, matrix: Floats) -> None:
+    diagonal = np.diag(matrix)
+    if np.isnan(matrix).any() or not np.all(diagonal >= 0.0):
+        raise InputError(
+            f"support '{name}': stiffness {diagonal.tolist()} must be 0 or more in each "
+            "direction, inf for rigid: mend the negative or missing value."
+        )
+    off = matrix - np.diag(np.where(np.isinf(diagonal), 0.0, diagonal))
+    off[np.isinf(diagonal), np.isinf(diagonal)] = 0.0
+    alone = np.isinf(diagonal) | (diagonal == 0.0)
+    if not np.isfinite(off).all() or np.any(off[alone] != 0.0) or np.any(off[:, alone] != 0.0):
+        raise InputError(
+            f"support '{name}': a direction whose stiffness is 0 or inf must have no coupling "
+            "terms: set the rest of its row and column to 0."
+        )
+    root = np.where(alone, 1.0, np.sqrt(np.where(alone, 1.0, diagonal)))
+    scaled = np.where(alone[:, None] | alone, 0.0, off / np.outer(root, root))
+    worst = float(np.abs(scaled - scaled.T).max())
+    if worst > 1e-6:
+        raise InputError(
+            f"support '{name}': stiffness is asymmetric by {worst:.1e} of its diagonal, at most "
+            "1e-6 is allowed: give the symmetric matrix."
+        )
+    # Each half of a small asymmetry is noise of whatever made the matrix; the mean stands.
+    matrix[:] = (matrix + matrix.T) / 2.0
+    lowest = float(np.linalg.eigvalsh(scaled + np.diag(np.where(alone, 0.0, 1.0))).min())
+    if lowest < -1e-9:
+        raise InputError(
+            f"support '{name}': stiffness has the negative eigenvalue {lowest:.2e} (scaled to a "
+            "unit diagonal) and must have none below 0: check its coupling terms' signs."
+        )
+
+
+def _check_finite(what: str, values: Floats) -> None:
+    if not np.isfinite(values).all():
+        raise InputError(f"{what} hold a value that is not finite: remove NaN and infinity.")

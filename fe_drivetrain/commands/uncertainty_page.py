@@ -1,0 +1,484 @@
+"""What uncertain values do to the results, as tables and charts beside the model's own error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.fidelity.adviser import Advice
+from fe_drivetrain.fidelity.quantities import Number
+from fe_drivetrain.report.charts import chart, rounded
+from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, Text, Verdict, judge
+from fe_drivetrain.scene.scene import Scene, Spread
+from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.uncertainty.input_study import Study, level_error, rung_of, study
+from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
+
+_BINS = 16
+_LEAST = 1e-4
+_SEEN = 0.01
+_CHARTED = 6  # quantities with charts of their own; all are in the tables
+
+
+def inputs(found: Study) -> Section:
+    """What is uncertain, and how."""
+    rows: list[list[Cell]] = []
+    for k, (key, spread) in enumerate(found.scene.uncertainty.items(), 1):
+        nominal = nominal_value(found.scene, key)
+        known = distribution(spread, nominal)
+        low, high = (float(known.ppf(q)) for q in ((1 - SHARE) / 2, (1 + SHARE) / 2))
+        share = _short(100 * relative_spread(spread))
+        rows.append([k, key, nominal, _words(spread), low, high, share])
+    table = Table(
+        caption="Uncertain values",
+        columns=[
+            "no.",
+            "value",
+            "nominal [SI]",
+            "how certain",
+            "2.5 % [SI]",
+            "97.5 % [SI]",
+            "standard deviation [%]",
+        ],
+        rows=rows,
+    )
+    items: list[Table | Text] = [table]
+    if found.surfaces:
+        items += [_surfaces(found), Text(text=_SURFACE)]
+    return Section(title="What is uncertain", items=items)
+
+
+def bands(found: Study) -> Section:
+    """The band of every number, beside the error of the level."""
+    rows: list[list[Cell]] = []
+    for number in found.numbers:
+        samples, error = found.samples[number.name], found.errors[number.name]
+        band, size = samples.band(), abs(samples.nominal)
+        half = half_band(samples)
+        sure = math.hypot(band.low_error, band.high_error) / 2 / size
+        soft = found.soft_samples.get(number.name)
+        rows.append(
+            [
+                number.name,
+                number.unit,
+                *(_short(v, 5) for v in (samples.nominal, band.low, band.high)),
+                _short(100 * half),
+                _short(100 * sure, 2),
+                None if soft is None else _short(100 * half_band(soft)),
+                _small(100 * error.share, 2),
+                "inputs" if half > error.share else "model",
+            ]
+        )
+    table = Table(
+        caption=f"Bands of {100 * SHARE:g} % from {_count(found)} samples at level {found.level}, "
+        "beside what the model itself may be off",
+        columns=[
+            "quantity",
+            "unit",
+            "nominal",
+            "2.5 %",
+            "97.5 %",
+            "inputs: half the band [%]",
+            "its standard error [%]",
+            "half the band, faces on average [%]",
+            "model: error [%]",
+            "larger",
+        ],
+        rows=rows,
+    )
+    sources: dict[str, list[str]] = {}
+    for number in found.numbers:
+        sources.setdefault(found.errors[number.name].source, []).append(number.name)
+    said = "; ".join(f"of {', '.join(names)}: {source}" for source, names in sources.items())
+    items: list[Table | Text | Chart] = [_beside(found), table, Text(text=_BAND)]
+    items.append(Text(text=f"The model's error is, {said}."))
+    items += [_histogram(n, found.samples[n.name]) for n in _charted(found) if _varies(found, n)]
+    return Section(title="How certain the results are", items=items)
+
+
+def slopes(found: Study) -> Section:
+    """First-order sensitivities of every number."""
+    keys = list(found.scene.uncertainty)
+    table = Table(
+        caption="Relative change of each quantity for the relative change of each value, by the "
+        "values' numbers",
+        columns=["quantity", *_numbered(keys)],
+        rows=[
+            [n.name, *(_small(found.slopes[n.name][key]) for key in keys)] for n in found.numbers
+        ],
+    )
+    items: list[Table | Text | Chart] = [
+        _tornado(found, number) for number in _charted(found) if _varies(found, number)
+    ]
+    return Section(title="Which value matters", items=[*items, table, Text(text=_SLOPE)])
+
+
+def variance(found: Study) -> Section:
+    """Shares of the variance: of a plane through the samples, and Sobol's where they were asked."""
+    varying = [n for n in found.numbers if _varies(found, n)]
+    keys = list(found.scene.uncertainty)
+    rows: list[list[Cell]] = []
+    for number in varying:
+        samples = found.samples[number.name]
+        first = first_order(found, number)
+        rows.append(
+            [
+                number.name,
+                _short(100 * float(samples.values.std(ddof=1)) / abs(samples.nominal)),
+                _short(100 * first),
+                _short(samples.linear_share, 4),
+                *(round(100 * share, 1) for share in samples.contributions().tolist()),
+            ]
+        )
+    items: list[Table | Text] = [
+        Table(
+            caption="Standard deviation of the samples and of first order, share of the variance "
+            "that a plane through the samples explains (R²), and what each value contributes to it "
+            "[%], by the values' numbers",
+            columns=["quantity", "sampled [%]", "first order [%]", "R² [-]", *_numbered(keys)],
+            rows=rows,
+        )
+    ]
+    if found.shares:
+        items += [_sobol(found, varying), Text(text=_SOBOL)]
+    return Section(title="Where the uncertainty comes from", items=items)
+
+
+def ladder(found: Study) -> Section:
+    """Why this level."""
+    rows: list[list[Cell]] = []
+    for advice in found.advices:
+        for rung in advice.rungs:
+            rows.append(
+                [
+                    advice.quantity.name,
+                    f"{rung.model.level} {rung.model.title}",
+                    _percent(rung.error),
+                    _percent(rung.estimate),
+                    rung.seconds,
+                    "sampled" if rung is rung_of(advice, found.level) else "",
+                ]
+            )
+    table = Table(
+        caption="The ladder of what was asked",
+        columns=[
+            "quantity",
+            "level",
+            "error against the last [%]",
+            "own estimate ± [%]",
+            "time [s]",
+            "",
+        ],
+        rows=rows,
+    )
+    said = [Text(text=advice.sentence()) for advice in found.advices]
+    return Section(title="Which level", items=[*said, table])
+
+
+def half_band(samples: Samples) -> float:
+    """Half the width of a band, relative to the nominal value."""
+    band = samples.band()
+    return (band.high - band.low) / 2 / abs(samples.nominal)
+
+
+def first_order(found: Study, number: Number) -> float:
+    """Relative standard deviation that the slopes predict, inputs being independent."""
+    parts = [
+        found.slopes[number.name][key] * relative_spread(spread)
+        for key, spread in found.scene.uncertainty.items()
+    ]
+    return float(np.linalg.norm(parts))
+
+
+def relative_spread(spread: Spread) -> float:
+    """Standard deviation of a value relative to its nominal one."""
+    return float(distribution(spread, 1.0).std())
+
+
+def uncertain(
+    case: Case,
+    run: Run,
+    scene: Scene,
+    asked: Sequence[str],
+    load: Floats | None,
+    tolerance: float,
+    level: int | None,
+    count: int,
+    seed: int,
+    sobol: int,
+) -> Results:
+    """Propagate a scene's uncertain values, and say what came out.
+
+    Parameters
+    ----------
+    case, run
+        Whose results these are.
+    scene, asked, load, tolerance, level, count, seed, sobol
+        See `uncertainty_study.study`.
+    """
+    with run.step("uncertainty"):
+        found = study(scene, asked, load, tolerance, level, count, seed, sobol, run.report)
+    sections = [bands(found), inputs(found), slopes(found), variance(found)]
+    if found.advices:
+        sections.append(ladder(found))
+    results = case.results(
+        run,
+        summary=_summary(found),
+        verdicts=[_verdict(advice, found.level, tolerance) for advice in found.advices],
+        sections=sections,
+        figures=figures(found),
+    )
+    return results.model_copy(
+        update={"environment": results.environment.model_copy(update={"seed": seed})}
+    )
+
+
+def figures(found: Study) -> dict[str, Any]:
+    """All numbers, for other programs."""
+    quantities = {}
+    for number in found.numbers:
+        samples, error = found.samples[number.name], found.errors[number.name]
+        band = samples.band()
+        entry: dict[str, Any] = {
+            "unit": number.unit,
+            "nominal": samples.nominal,
+            "band": [band.low, band.high],
+            "band_standard_errors": [band.low_error, band.high_error],
+            "half_band": half_band(samples),
+            "model_error": error.share,
+            "model_error_source": error.source,
+            "sensitivities": dict(found.slopes[number.name]),
+            "samples": rounded(samples.values),
+        }
+        if number.name in found.soft_samples:
+            entry["face_on_average"] = {
+                "nominal": found.soft_samples[number.name].nominal,
+                "half_band": half_band(found.soft_samples[number.name]),
+                "sensitivities": dict(found.soft_slopes[number.name]),
+            }
+        if number.name in found.shares:
+            shares = found.shares[number.name]
+            entry["sobol"] = {
+                key: {
+                    "first": [float(shares.first[k]), float(shares.first_error[k])],
+                    "total": [float(shares.total[k]), float(shares.total_error[k])],
+                }
+                for k, key in enumerate(shares.keys)
+            }
+        quantities[number.name] = entry
+    inputs = next(iter(found.samples.values())).inputs
+    return {
+        "level": found.level,
+        "inputs": {key: rounded(inputs[:, k]) for k, key in enumerate(found.scene.uncertainty)},
+        "quantities": quantities,
+    }
+
+
+_BAND = (
+    "Half the band of the inputs stands beside the error of the model: the larger one says whether "
+    "to know the inputs better or to take a better model. The band's standard error is from "
+    "resampling the samples as if they were independent. Bands are of housings whose face keeps "
+    "its shape; beside them stands what the band is where it moves on average: the shaft's hold "
+    "is between the two."
+)
+_SLOPE = (
+    "Central differences of the level that was sampled. A chart's bar is the change of the "
+    "quantity for one standard deviation of the value."
+)
+_SOBOL = (
+    "First: share of the variance that would go if this value were known; total: share that would "
+    "stay if all others were. Standard errors from resampling; an estimate may fall outside of 0 "
+    "to 1 by that."
+)
+_SURFACE = (
+    "Bearing units that depend on uncertain values were solved at two values of each beside the "
+    "nominal one, and the logarithm of their stiffness is taken as quadratic and additive between "
+    "these; values drawn from the distributions, solved by themselves, check that. What is off "
+    "includes the noise of meshes made anew. All else was solved anew for each sample."
+)
+
+
+def _surfaces(found: Study) -> Table:
+    return Table(
+        caption="Bearing units as surfaces",
+        columns=[
+            "bearing unit",
+            "face",
+            "values",
+            "solid solutions",
+            "largest error at the checks [%]",
+            "sensitivities off by up to [-]",
+        ],
+        rows=[
+            [
+                s.name,
+                "in shape" if s.coupling == "rigid" else "on average",
+                ", ".join(s.keys),
+                s.solutions,
+                _short(100 * s.error),
+                _short(s.slope_error),
+            ]
+            for s in found.surfaces
+        ],
+    )
+
+
+def _beside(found: Study) -> Chart:
+    """Half bands and model errors, a pair of bars a quantity."""
+    shown = [number.name for number in reversed(found.numbers)]
+    halves = [100 * half_band(found.samples[name]) for name in shown]
+    figure = chart(
+        "What the inputs do, and what the model itself may be off",
+        [
+            _bars("model: error of the level", [100 * found.errors[n].share for n in shown], shown),
+            _bars("inputs: half the band", halves, shown),
+        ],
+        x="± [%]",
+        y="",
+    )
+    return _tall(figure, 2 * len(shown))
+
+
+def _tornado(found: Study, number: Number) -> Chart:
+    moved = {
+        key: 100 * found.slopes[number.name][key] * relative_spread(spread)
+        for key, spread in found.scene.uncertainty.items()
+    }
+    order = sorted(moved, key=lambda key: abs(moved[key]))
+    figure = chart(
+        f"Change of {number.name} for one standard deviation of each value",
+        [_bars("", [moved[key] for key in order], order)],
+        x="change [%]",
+        y="",
+    )
+    return _tall(figure, len(order))
+
+
+def _histogram(number: Number, samples: Samples) -> Chart:
+    counts, edges = np.histogram(samples.values, bins=_BINS)
+    band = samples.band()
+    bars = {
+        "type": "bar",
+        "name": "samples",
+        "x": rounded((edges[1:] + edges[:-1]) / 2),
+        "y": counts.tolist(),
+        "width": float(edges[1] - edges[0]),
+        "showlegend": False,
+    }
+    lines = [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": name,
+            "x": rounded([x, x]),
+            "y": [0, int(counts.max())],
+            "line": {"dash": dash},
+        }
+        for name, x, dash in (
+            ("nominal", samples.nominal, "solid"),
+            ("2.5 %", band.low, "dash"),
+            ("97.5 %", band.high, "dash"),
+        )
+    ]
+    return chart(
+        f"{number.name} over the samples", [bars, *lines], x=f"[{number.unit}]", y="samples"
+    )
+
+
+def _sobol(found: Study, varying: Sequence[Number]) -> Table:
+    rows: list[list[Cell]] = []
+    for number in varying:
+        shares = found.shares[number.name]
+        for k, key in enumerate(shares.keys):
+            if shares.total[k] < _SEEN:
+                continue
+            values = (shares.first, shares.first_error, shares.total, shares.total_error)
+            rows.append([number.name, key, *(_small(float(v[k])) for v in values)])
+    return Table(
+        caption=f"Sobol's shares of the variance, totals from {_SEEN:g} on",
+        columns=["quantity", "value", "first [-]", "±", "total [-]", "± "],
+        rows=rows,
+    )
+
+
+def _summary(found: Study) -> list[str]:
+    said = []
+    for number in _charted(found):
+        samples, error = found.samples[number.name], found.errors[number.name]
+        band = samples.band()
+        low, high = (100 * (end / samples.nominal - 1.0) for end in (band.low, band.high))
+        said.append(
+            f"{number.name}: {samples.nominal:.4g} {number.unit}, {min(low, high):+.2g} to "
+            f"{max(low, high):+.2g} % for the inputs ({100 * SHARE:g} % of {_count(found)} "
+            f"samples), ± {100 * error.share:.2g} % for the model at level {found.level}."
+        )
+    return said
+
+
+def _verdict(advice: Advice, level: int, tolerance: float) -> Verdict:
+    rung = rung_of(advice, level)
+    return judge(
+        f"{advice.quantity.name}: error of level {level}, {rung.model.title}",
+        level_error(advice, level),
+        0.0,
+        tolerance=tolerance,
+        relative=False,
+        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own band",
+        reason="asked for",
+    )
+
+
+def _charted(found: Study) -> list[Number]:
+    """What was asked for; else the stiffness in bending, which most depends on."""
+    asked = [number for number in found.numbers if found.is_asked(number)]
+    return (asked or [n for n in found.numbers if n.name.startswith("hub.stiffness.")])[:_CHARTED]
+
+
+def _varies(found: Study, number: Number) -> bool:
+    return found.samples[number.name].varies
+
+
+def _count(found: Study) -> int:
+    return len(next(iter(found.samples.values())).values)
+
+
+def _words(spread: Spread) -> str:
+    if spread.uniform is not None:
+        return f"even, ± {100 * spread.uniform:g} %"
+    if spread.normal is not None:
+        return f"normal, standard deviation {100 * spread.normal:g} %"
+    return f"lognormal, coefficient of variation {100 * float(spread.lognormal or 0):g} %"
+
+
+def _numbered(keys: Sequence[str]) -> list[str]:
+    return [str(k + 1) for k in range(len(keys))]
+
+
+def _short(value: float, digits: int = 3) -> float:
+    return float(f"{value:.{digits}g}")
+
+
+def _small(value: float, digits: int = 3) -> float:
+    """The same, and 0 for what is round-off."""
+    return 0.0 if abs(value) < _LEAST else _short(value, digits)
+
+
+def _percent(share: float) -> Cell:
+    return 100 * share if math.isfinite(share) else None
+
+
+def _bars(name: str, x: Sequence[float], y: Sequence[str]) -> Mapping[str, Any]:
+    bars = {"type": "bar", "orientation": "h", "x": rounded(x), "y": list(y)}
+    return bars | ({"name": name} if name else {})
+
+
+def _tall(figure: Chart, bars: int) -> Chart:
+    """Room for every bar and its label."""
+    layout = figure.figure["layout"]
+    layout["yaxis"] |= {"automargin": True, "dtick": 1}
+    layout["height"] = 140 + 22 * bars
+    return figure

@@ -1,0 +1,12 @@
+from .arrays import Bools as Bools
+from .arrays import Floats as Floats
+from .arrays import Ints as Ints
+from .cache import CACHE_VARIABLE as CACHE_VARIABLE
+from .cache import Cache as Cache
+from .cache import user_cache as user_cache
+from .errors import InputError as InputError
+from .errors import MissingToolError as MissingToolError
+from .processes import CORES_VARIABLE as CORES_VARIABLE
+from .processes import Report as Report
+from .processes import cores as cores
+from .processes import silent as silent

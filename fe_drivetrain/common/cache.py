@@ -1,0 +1,163 @@
+"""What takes long to make, kept on disk under a hash of all that it depends on.
+
+One mechanism for meshes and made hub loads. They are kept in the user's cache folder, which may be
+deleted at any time; the environment variable ``FE_DRIVETRAIN_CACHE`` names another folder, or
+switches keeping off ("off"). Nothing here ever fails a run: what cannot be read or is damaged is
+made anew, and what cannot be written is not kept.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.files import atomic_path, remove_abandoned
+
+CACHE_VARIABLE = "FE_DRIVETRAIN_CACHE"
+"""Environment variable: a folder to keep things in, or "off"."""
+
+LIMIT = 2 * 1024**3
+"""Bytes; beyond it, what was used longest ago is dropped."""
+
+Kind = Literal["hub-loads", "meshes"]
+"""What may be kept; each kind has a folder of its own."""
+
+_OFF = ("off", "0", "no", "false")
+# Only names of our own making are ever deleted: the user may have named any folder.
+_OURS = re.compile(r"[0-9a-f]{32,64}\.npz")
+_UNFINISHED = r"\.[0-9a-f]{32,64}\.npz\.[0-9a-f]{32}\.tmp"
+
+
+@dataclass(frozen=True)
+class Cache:
+    """Arrays on disk, each set under a hash of what it was made from.
+
+    Attributes
+    ----------
+    folder
+        Where they are kept, in one folder a kind; None keeps nothing.
+    limit
+        Most bytes of all that is kept.
+    """
+
+    folder: Path | None
+    limit: int = LIMIT
+
+    def has(self, kind: Kind, content: Mapping[str, Any]) -> bool:
+        """Whether something is kept for this content, sound or not."""
+        file = self._file(kind, content)
+        return file is not None and file.is_file()
+
+    def load(self, kind: Kind, content: Mapping[str, Any]) -> dict[str, NDArray[Any]] | None:
+        """What is kept for this content, or None where there is nothing sound.
+
+        Parameters
+        ----------
+        kind
+            What it is.
+        content
+            All that it depends on, as plain data that JSON can hold.
+        """
+        file = self._file(kind, content)
+        if file is None:
+            return None
+        try:
+            # The zip container carries checksums, which reading the arrays to their end verifies.
+            with np.load(file, allow_pickle=False) as archive:
+                arrays = {name: archive[name] for name in archive.files}
+        except Exception:
+            # Not there, not readable, or damaged, and a damaged archive may raise anything.
+            return None
+        with suppress(OSError):
+            os.utime(file)  # used now: dropped last
+        return arrays
+
+    def keep(
+        self, kind: Kind, content: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
+    ) -> None:
+        """Keep arrays for this content; a full or read-only disk keeps nothing."""
+        file = self._file(kind, content)
+        if file is None:
+            return
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            remove_abandoned(file.parent, _UNFINISHED)
+            with atomic_path(file) as temporary, temporary.open("wb") as stream:
+                np.savez(stream, **dict(arrays))  # type: ignore[arg-type]
+            self._drop_oldest()
+        except OSError:
+            return
+
+    def _file(self, kind: Kind, content: Mapping[str, Any]) -> Path | None:
+        if self.folder is None:
+            return None
+        return self.folder / kind / f"{key(content)}.npz"
+
+    def _drop_oldest(self) -> None:
+        """Delete what was used longest ago until the rest is within the limit."""
+        entries = []
+        for folder in (self.folder / kind for kind in get_args(Kind) if self.folder is not None):
+            if not folder.is_dir():
+                continue
+            with os.scandir(folder) as found:
+                for entry in found:
+                    if _OURS.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
+                        status = entry.stat(follow_symlinks=False)
+                        entries.append((status.st_mtime_ns, status.st_size, entry.path))
+        total = sum(size for _, size, _ in entries)
+        for _, size, path in sorted(entries):
+            if total <= self.limit:
+                break
+            Path(path).unlink(missing_ok=True)
+            total -= size
+
+
+def key(content: Mapping[str, Any]) -> str:
+    """SHA-256 of plain data, the same whatever the order of its keys; floats by all their digits.
+
+    Raises
+    ------
+    TypeError
+        JSON cannot hold the content.
+    """
+    text = json.dumps(content, sort_keys=True, ensure_ascii=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def user_cache() -> Cache:
+    """The user's cache, as `CACHE_VARIABLE` says; where it is unset, in the system's place.
+
+    Read anew each time, so that a run can switch it off for itself and for its processes.
+    """
+    named = os.environ.get(CACHE_VARIABLE, "")
+    if named.strip().lower() in _OFF:
+        return Cache(None)
+    if named:
+        return Cache(Path(named).expanduser())
+    from platformdirs import user_cache_path
+
+    return Cache(user_cache_path("fe-drivetrain"))
+
+
+@contextmanager
+def switched_off() -> Iterator[None]:
+    """Keep and take nothing in here, nor in processes started in here: for what measures time."""
+    before = os.environ.get(CACHE_VARIABLE)
+    os.environ[CACHE_VARIABLE] = _OFF[0]
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[CACHE_VARIABLE]
+        else:
+            os.environ[CACHE_VARIABLE] = before

@@ -1,0 +1,16 @@
+from .calibration import Calibrated as Calibrated
+from .calibration import Surface as Surface
+from .calibration import calibrated as calibrated
+from .calibration import fitted as fitted
+from .calibration import hypercube as hypercube
+from .calibration import nearest as nearest
+from .convergence import DOUBTFUL as DOUBTFUL
+from .convergence import GridConvergence as GridConvergence
+from .convergence import grid_convergence as grid_convergence
+from .convergence import observed_order as observed_order
+from .convergence import richardson as richardson
+from .statistics import Comparison as Comparison
+from .statistics import compare as compare
+from .statistics import resultant as resultant
+from .streaming import compare_streamed as compare_streamed
+from .streaming import moments as moments

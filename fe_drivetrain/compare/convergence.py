@@ -1,0 +1,271 @@
+"""How far a series of meshes is from its limit: observed order, extrapolation, and a band.
+
+Richardson extrapolation and the grid convergence index (GCI) of Roache (1994, J. Fluids Eng. 116,
+405-413) in the form of Celik et al. (2008, J. Fluids Eng. 130, 078001), which ASME V&V 20-2009
+takes over. Both rest on f(h) = f0 + c h^p. Real series, of unstructured meshes above all, follow
+that only roughly, and some not at all; what is observed decides how wide the band is:
+
+- monotone: the last three meshes give the order and the limit; the band of the finest value is
+  safety times what is missing to the limit. Where there is reason to doubt that order, other limits
+  are put beside this one, and the band reaches to the farthest: the limit of the three meshes
+  before, where there are four or more (in place of a least-squares fit, Eca and Hoekstra 2014, J.
+  Comput. Phys. 262, 104-130, which wants more meshes than solids in three dimensions allow), and
+  that of the last two meshes at a least order, where one is given, such as that of a singularity.
+- oscillatory: differences change sign, or all but vanish at once; no order, and the band is
+  safety times the range of the last three values. Nothing is averaged.
+- divergent: differences do not shrink as the sizes do. No band, unless a least order is given; then
+  it is the wider of that of an oscillating series and the distance to the limit at that order.
+- converged: differences are round-off, and so is the band.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+
+Behaviour = Literal["monotone", "oscillatory", "divergent", "converged"]
+
+#: Orders that are looked for: below, a series as good as stands still; above, the last difference
+#: is small by chance.
+ORDERS = 0.2, 8.0
+
+#: Roache's safety factors: of an order that three meshes show, and of one that is not confirmed.
+SAFETY, DOUBTFUL = 1.25, 3.0
+
+_AGREES = 0.1
+_DIGITS = 4
+
+
+@dataclass(frozen=True)
+class GridConvergence:
+    """What a series of meshes shows.
+
+    Attributes
+    ----------
+    sizes, values
+        As given, coarse first.
+    behaviour
+        "monotone", "oscillatory", "divergent" or "converged", by the last three values.
+    order
+        Observed order of convergence; NaN where there is none.
+    extrapolated
+        The value at element size zero; the finest value where no order is seen and none is given.
+    extrapolated_uncertainty
+        Half width of the band that the limit is expected in, in the unit of the values.
+    uncertainty
+        Half width of the band of the finest value, in its unit.
+    gci_fine, gci_coarse
+        Grid convergence index of the two finest meshes and of the two before, relative to the
+        finer value of each (GCI21, GCI32); NaN where there is no order. ``uncertainty`` is at
+        least ``gci_fine`` times the finest value, and more where the order is in doubt.
+    asymptotic_ratio
+        gci_coarse / (r^p gci_fine), 1 in the asymptotic range. With the order observed on the same
+        three meshes it equals the ratio of the two finest values, whatever the series, and so
+        tests nothing; it does with an expected order.
+    """
+
+    sizes: tuple[float, ...]
+    values: tuple[float, ...]
+    behaviour: Behaviour
+    order: float
+    extrapolated: float
+    extrapolated_uncertainty: float
+    uncertainty: float
+    gci_fine: float
+    gci_coarse: float
+    asymptotic_ratio: float
+
+    @property
+    def finest(self) -> float:
+        """Value of the finest mesh."""
+        return self.values[-1]
+
+    @property
+    def relative_uncertainty(self) -> float:
+        """The band's half width over the finest value; infinite of a value that is zero."""
+        if self.uncertainty == 0.0:
+            return 0.0
+        return self.uncertainty / abs(self.finest) if self.finest else float("inf")
+
+    def sentence(self, unit: str = "") -> str:
+        """The finding in words."""
+        unit = f" {unit}" if unit else ""
+        found = f"{_shown(self.finest)}{unit} on the finest of {len(self.sizes)} meshes"
+        band = f"band ± {self.uncertainty:.2g}{unit} ({100 * self.relative_uncertainty:.2g} %)"
+        if self.behaviour == "converged":
+            return f"converged to round-off: {found}, {band}"
+        if self.behaviour == "monotone":
+            return (
+                f"monotone convergence of order {self.order:.2f}: {found}, "
+                f"{_shown(self.extrapolated)}{unit} extrapolated to element size zero, {band}"
+            )
+        what = {
+            "oscillatory": "no monotone convergence, values go up and down",
+            "divergent": "no convergence in sight, differences do not shrink with the sizes",
+        }[self.behaviour]
+        if not np.isfinite(self.uncertainty):
+            band = "no band can be given: add finer meshes"
+        return f"{what}: {found}, {band}"
+
+    def __str__(self) -> str:
+        return self.sentence()
+
+
+def grid_convergence(
+    sizes: ArrayLike,
+    values: ArrayLike,
+    *,
+    safety: float = SAFETY,
+    expected_order: float | None = None,
+    least_order: float | None = None,
+    round_off: float = 1e-12,
+) -> GridConvergence:
+    """Judge a series of three meshes or more.
+
+    Parameters
+    ----------
+    sizes
+        (n,) element sizes, coarse first, in any unit; of cell counts N in d dimensions N^(-1/d).
+    values
+        (n,) what was computed with them.
+    safety
+        Factor on the distance to the limit: 1.25 with three meshes (Roache 1994).
+    expected_order
+        Of the theory. A higher observed order is not believed; where the two are more than a tenth
+        apart, the safety factor is 3 (Oberkampf and Roy 2010, section 8.7; recalled, not re-read).
+    least_order
+        Order to count on at the worst, as where stress is singular. The band then holds that limit
+        too, and where no order is observed, it is the one that is used. Oberkampf and Roy take 0.5
+        for the least that is believed.
+    round_off
+        Differences below this share of the values are none.
+
+    Raises
+    ------
+    InputError
+        There are fewer than three values, a number is not finite, or the sizes do not descend.
+    """
+    h, v = _checked(sizes, values)
+    fine = float(v[-1])
+    spread = float(np.ptp(v[-3:]))
+    size = float(np.abs(v[-3:]).max())
+    nan = float("nan")
+    series = tuple(h.tolist()), tuple(v.tolist())
+
+    if spread <= round_off * size:
+        band = spread + round_off * size
+        relative = band / abs(fine) if fine else 0.0
+        return GridConvergence(*series, "converged", nan, fine, band, band, relative, nan, nan)
+
+    slowest = None if least_order is None else richardson(h[-2:], v[-2:], least_order)
+    order = observed_order(h[-3:], v[-3:])
+    if np.isnan(order):
+        behaviour: Behaviour = "divergent" if _stands_still(h[-3:], v[-3:]) else "oscillatory"
+        limit = fine if slowest is None else slowest
+        known = max(spread, abs(limit - fine))
+        band = max(safety * spread, abs(limit - fine))
+        if behaviour == "divergent" and slowest is None:
+            known = band = float("inf")
+        relative = band / abs(fine) if fine else nan
+        return GridConvergence(*series, behaviour, nan, limit, known, band, relative, nan, nan)
+
+    used = order
+    if expected_order is not None:
+        used = min(order, expected_order)
+        if abs(order / expected_order - 1.0) > _AGREES:
+            safety = max(safety, DOUBTFUL)
+    limit = richardson(h[-2:], v[-2:], used)
+    missing = abs(limit - fine)
+    limits = [] if slowest is None else [slowest]
+    if len(h) > 3:
+        before = observed_order(h[-4:-1], v[-4:-1])
+        if not np.isnan(before):
+            limits.append(richardson(h[-3:-1], v[-3:-1], before))
+    doubt = max([(safety - 1.0) * missing, *(abs(limit - other) for other in limits)])
+    coarse_missing = abs(richardson(h[-3:-1], v[-3:-1], used) - v[-2])
+    gci_fine = safety * missing / abs(fine) if fine else nan
+    gci_coarse = float(safety * coarse_missing / abs(v[-2])) if v[-2] else nan
+    ratio = gci_coarse / ((h[-2] / h[-1]) ** used * gci_fine) if gci_fine else nan
+    return GridConvergence(
+        *series,
+        "monotone",
+        order,
+        limit,
+        doubt,
+        missing + doubt,
+        gci_fine,
+        gci_coarse,
+        float(ratio),
+    )
+
+
+def richardson(sizes: ArrayLike, values: ArrayLike, order: float) -> float:
+    """The limit of two values whose error is proportional to size^order (Richardson 1911).
+
+    Parameters
+    ----------
+    sizes, values
+        (2,), coarse first.
+    """
+    h, v = np.asarray(sizes, dtype=float), np.asarray(values, dtype=float)
+    return float(v[1] - (v[0] - v[1]) / ((h[0] / h[1]) ** order - 1.0))
+
+
+def observed_order(sizes: ArrayLike, values: ArrayLike) -> float:
+    """The p of f0 + c h^p through three values, of whatever ratios; NaN outside `ORDERS`.
+
+    Parameters
+    ----------
+    sizes, values
+        (3,), coarse first.
+    """
+    h, v = np.asarray(sizes, dtype=float), np.asarray(values, dtype=float)
+    first, second = v[0] - v[1], v[1] - v[2]
+
+    def excess(p: float) -> float:
+        steps = -np.diff((h / h[0]) ** p)
+        return float(first * steps[1] - second * steps[0])
+
+    if first * second <= 0.0 or excess(ORDERS[0]) * excess(ORDERS[1]) >= 0.0:
+        return float("nan")
+    return float(brentq(excess, *ORDERS))
+
+
+def _stands_still(h: Floats, v: Floats) -> bool:
+    """Whether three values go one way, and the differences do not shrink as the sizes do."""
+    first, second = v[0] - v[1], v[1] - v[2]
+    if first * second < 0.0 or second == 0.0:
+        return False
+    steps = -np.diff(h ** ORDERS[0])
+    return bool(abs(first) * steps[1] <= abs(second) * steps[0])
+
+
+def _checked(sizes: ArrayLike, values: ArrayLike) -> tuple[Floats, Floats]:
+    h, v = np.asarray(sizes, dtype=float), np.asarray(values, dtype=float)
+    if h.ndim != 1 or h.shape != v.shape or len(h) < 3:
+        raise InputError(
+            f"grid convergence of {v.size} values over {h.size} sizes needs at least three sizes "
+            "that descend, with a value for each: add meshes"
+        )
+    if not (np.isfinite(v).all() and np.isfinite(h).all()):
+        raise InputError(
+            f"grid convergence of the values {v.tolist()} over the sizes {h.tolist()}: all must be "
+            "finite: leave out the meshes that failed"
+        )
+    if np.any(np.diff(h) >= 0) or h[-1] <= 0:
+        raise InputError(
+            f"grid convergence over the sizes {h.tolist()} needs at least three sizes that "
+            "descend and are above zero: sort them, coarse first"
+        )
+    return h, v
+
+
+def _shown(value: float) -> str:
+    return f"{value:.{_DIGITS}g}" if abs(value) < 10**_DIGITS else f"{value:,.0f}"

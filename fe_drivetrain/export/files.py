@@ -1,0 +1,107 @@
+"""Superelements out, and back in: one module a format, all behind `write` and `read`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.export.superelement import Superelement
+
+
+class Format(NamedTuple):
+    """A file format: its name, usual ending, what reads it, its module, the digits it keeps, and
+    the extra it needs.
+
+    The module has ``write(path, element)``, and ``read(path)`` where the file holds enough for it.
+    """
+
+    name: str
+    suffix: str
+    reader: str
+    module: str
+    digits: int = 15
+    extra: str = ""
+
+
+FORMATS: dict[str, Format] = {
+    f.name: f
+    for f in (
+        Format("json", ".json", "anything: docs/superelement.schema.json", "superelement_json"),
+        Format("csv", ".csv", "spreadsheets, pandas", "superelement_csv"),
+        Format("mtx", ".mtx", "Matrix Market readers: the stiffness", "matrix_market"),
+        Format("mtx-mass", ".mtx", "Matrix Market readers: the mass", "matrix_market_mass"),
+        Format("hdf5", ".h5", "HDF5 readers", "hdf5", extra="hdf5"),
+        Format("dmig", ".bdf", "Nastran, as bulk data: GRID, DMIG", "dmig", 10, "nastran"),
+        Format("op4", ".op4", "Nastran INPUTT4, as text", "op4", extra="nastran"),
+        Format("calculix", ".inp", "CalculiX: springs and equations", "calculix_springs", 11),
+        Format("extptfm", ".dat", "OpenFAST 5, ExtPtfm superelement", "extptfm"),
+        Format("subdyn", ".dat", "OpenFAST 5, SubDyn spring element: one point", "subdyn"),
+        Format("rexs", ".rexs", "REXS 1.6, gearbox programs: reduced stiffness", "rexs", 14),
+        Format("simpack", ".subvar", "SIMPACK substitution variables", "simpack"),
+    )
+}
+
+
+def write(path: str | Path, element: Superelement, format: str, overwrite: bool = False) -> None:
+    """Write a superelement; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path
+        The file.
+    element
+        What is written.
+    format
+        A name of `FORMATS`.
+    overwrite
+        Whether an existing file is replaced.
+
+    Raises
+    ------
+    InputError
+        The format is unknown, the file exists, or the format cannot hold this superelement.
+    """
+    path = Path(path)
+    writer = _function(format, "write")
+    if path.exists() and not overwrite:
+        raise InputError(f"{path} exists: name another file, or allow to overwrite it")
+    with atomic_path(path) as unfinished:
+        writer(unfinished, element)
+
+
+def read(path: str | Path, format: str) -> Superelement:
+    """Read a superelement back.
+
+    Raises
+    ------
+    InputError
+        The format is unknown or cannot be read back, or the file is not of that format.
+    """
+    found = _function(format, "read")(Path(path))
+    assert isinstance(found, Superelement)
+    return found
+
+
+def format_module(format: str) -> ModuleType:
+    """The module of a format.
+
+    Raises
+    ------
+    InputError
+        The format is unknown.
+    """
+    if format not in FORMATS:
+        raise InputError(f"format {format!r} is unknown: use one of {', '.join(FORMATS)}")
+    return import_module(f"fe_drivetrain.export.formats.{FORMATS[format].module}")
+
+
+def _function(format: str, name: str) -> Callable[..., object]:
+    module = format_module(format)
+    if not hasattr(module, name):
+        raise InputError(f"format {format!r} can be written only: read another one back")
+    return getattr(module, name)  # type: ignore[no-any-return]

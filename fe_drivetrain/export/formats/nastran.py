@@ -1,0 +1,50 @@
+"""pyNastran, where it is installed."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.errors import MissingToolError
+
+
+def pynastran(module: str) -> Any:
+    """A module of pyNastran, as in "bdf.bdf".
+
+    Raises
+    ------
+    MissingToolError
+        It is not installed, or does not go with this numpy.
+    """
+    # its version 1.4 takes numpy.in1d at import, which numpy 2.4 has no more: isin is the same of
+    # vectors, and all that is read here does without
+    lacking = {} if hasattr(np, "in1d") else {"in1d": np.isin}
+    vars(np).update(lacking)
+    try:
+        return import_module(f"pyNastran.{module}")
+    except (ImportError, AttributeError) as error:
+        raise MissingToolError(
+            f"Nastran files need pyNastran, which cannot be loaded ({error}): install it with pip "
+            'install "fe-drivetrain[nastran]"'
+        ) from error
+    finally:
+        for name in lacking:
+            del vars(np)[name]
+
+
+@contextmanager
+def quietly() -> Iterator[None]:
+    """Keep to itself what pyNastran prints of a card that it cannot read, before it raises."""
+    with (
+        warnings.catch_warnings(),
+        redirect_stdout(io.StringIO()),
+        redirect_stderr(io.StringIO()),
+    ):
+        warnings.simplefilter("ignore")
+        yield

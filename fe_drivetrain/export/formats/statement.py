@@ -1,0 +1,146 @@
+"""What text formats say of a superelement beside its matrices: comments of the form "key: value".
+
+Frame, units, points, order of freedoms, source, uncertainty and checks stand in the file as a
+person reads them, and are read back from there.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.superelement import FRAME, FREEDOMS, UNITS, Origin, Superelement
+
+_WIDTH = 78
+_NUMBER = re.compile(r"[-+0-9.eE]+")
+
+
+def statement(element: Superelement) -> dict[str, str]:
+    """All that is said of a superelement, by key; numbers keep every digit."""
+    origin = element.origin
+    said = {
+        "superelement": element.name,
+        "program": origin.program,
+        "scene": origin.scene,
+        "scene hash": origin.scene_hash,
+        "level": origin.level,
+        "mesh": origin.mesh,
+        "frame": FRAME,
+        "units": UNITS,
+        "freedoms": f"{' '.join(FREEDOMS)} of each point, in this order",
+        "supports": "in the stiffness" if element.supported else "none: the body is free",
+        "band": "not known" if element.band is None else f"{element.band!r} of the stiffness",
+    }
+    for number, (name, position) in enumerate(zip(element.points, element.positions, strict=True)):
+        x, y, z = position.tolist()
+        said[f"point {number + 1}"] = f"{name} at {x!r} {y!r} {z!r} m"
+    for name, value in element.checks().items():
+        said[f"check, {name}"] = f"{value:.2g} of a unit diagonal"
+    return {key: " ".join(value.split()) for key, value in said.items()}
+
+
+def comment_lines(said: Mapping[str, str], mark: str) -> Iterator[str]:
+    """The statement as comments after a ``mark``; three more blanks go on with a line."""
+    for key, value in said.items():
+        yield from textwrap.wrap(
+            f"{key}: {value}".rstrip(),
+            _WIDTH,
+            initial_indent=f"{mark} ",
+            subsequent_indent=f"{mark}    ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+
+
+def commented(lines: Iterable[str], mark: str) -> dict[str, str]:
+    """The statement in the comments of a file; whatever else stands there is left out."""
+    said: dict[str, str] = {}
+    key = ""
+    for line in lines:
+        if not line.startswith(f"{mark} "):
+            key = ""
+            continue
+        text = line[len(mark) + 1 :].rstrip()
+        if text.startswith("   ") and key:
+            said[key] = f"{said[key]} {text.strip()}".strip()
+            continue
+        key, colon, value = text.partition(":")
+        key = key if colon and not text.startswith(" ") else ""
+        if key:
+            said[key] = value.strip()
+    return said
+
+
+def element_of(
+    path: Path, said: Mapping[str, str], stiffness: Floats, mass: Floats | None
+) -> Superelement:
+    """The superelement that a statement and its matrices are.
+
+    Raises
+    ------
+    InputError
+        A key is missing, or a value is not what it is to be.
+    """
+    try:
+        points, positions = _points(said)
+        band = None if said["band"] == "not known" else float(said["band"].split()[0])
+        supported = {"in the stiffness": True, "none: the body is free": False}[said["supports"]]
+        keys = ("scene", "scene hash", "level", "mesh", "program")
+        return Superelement(
+            said["superelement"],
+            points,
+            positions,
+            stiffness,
+            mass,
+            supported,
+            band,
+            Origin(*(said[key] for key in keys)),
+        )
+    except KeyError as error:
+        raise InputError(
+            f"{path} does not say {error}: it is no superelement, or cut off"
+        ) from error
+    except (ValueError, IndexError) as error:
+        raise InputError(f"{path} is no superelement: {error}") from error
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _points(said: Mapping[str, str]) -> tuple[tuple[str, ...], Floats]:
+    names: list[str] = []
+    positions: list[list[float]] = []
+    while f"point {len(names) + 1}" in said:
+        name, _, place = said[f"point {len(names) + 1}"].rpartition(" at ")
+        names.append(name)
+        positions.append([float(value) for value in _NUMBER.findall(place)[:3]])
+    if not names:
+        raise KeyError("point 1")
+    return tuple(names), np.array(positions)
+
+
+def freedom_labels(element: Superelement) -> list[str]:
+    """The 6 n freedoms by name, as in "hub ux"."""
+    return [f"{point} {freedom}" for point in element.points for freedom in FREEDOMS]
+
+
+def text_of(path: Path, kind: str) -> str:
+    """The text of a file.
+
+    Raises
+    ------
+    InputError
+        It is not text.
+    """
+    try:
+        text = path.read_text("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is no {kind}: it is not text") from error
+    if "\0" in text:
+        raise InputError(f"{path} is no {kind}: it is not text")
+    return text

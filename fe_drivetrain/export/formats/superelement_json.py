@@ -1,0 +1,131 @@
+"""JSON with a schema: everything that a superelement is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.superelement import FRAME, FREEDOMS, UNITS, Origin, Superelement, scaled
+
+_SINGULAR = 1e13  # condition of a stiffness with a unit diagonal
+
+_Content = TypeVar("_Content", bound=BaseModel)
+
+
+class _File(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class OriginFile(_File):
+    """Where the matrices come from."""
+
+    scene: str
+    scene_hash: str = Field(description="SHA-256 of the scene's values")
+    level: str
+    mesh: str
+    program: str
+
+
+class SuperelementFile(_File):
+    """The content of a superelement's JSON file."""
+
+    kind: Literal["superelement"] = "superelement"
+    schema_version: Literal[1] = 1
+    name: str
+    frame: str = FRAME
+    units: str = UNITS
+    freedoms: tuple[str, ...] = Field(default=FREEDOMS, description="order of each point's six")
+    points: list[str]
+    positions: list[tuple[float, float, float]] = Field(description="[m]")
+    supported: bool = Field(
+        description="whether the supports are in the stiffness; else it is free"
+    )
+    stiffness: list[list[float]]
+    compliance: list[list[float]] | None = Field(
+        default=None, description="motions for unit forces; null where something is free to move"
+    )
+    mass: list[list[float]] | None
+    band: float | None = Field(description="uncertainty of the stiffness, relative")
+    checks: dict[str, float] = Field(description="of the stiffness, with a unit diagonal")
+    origin: OriginFile
+
+
+def content_of(element: Superelement) -> SuperelementFile:
+    """A superelement as the content of its file."""
+    return SuperelementFile(
+        name=element.name,
+        points=list(element.points),
+        positions=[(float(x), float(y), float(z)) for x, y, z in element.positions],
+        supported=element.supported,
+        stiffness=element.stiffness.tolist(),
+        compliance=_compliance(element),
+        mass=None if element.mass is None else element.mass.tolist(),
+        band=element.band,
+        checks=element.checks(),
+        origin=OriginFile(**vars(element.origin)),
+    )
+
+
+def element_of(content: SuperelementFile) -> Superelement:
+    """The superelement in such a content.
+
+    Raises
+    ------
+    InputError
+        Its values are those of no superelement.
+    """
+    return Superelement(
+        content.name,
+        tuple(content.points),
+        np.array(content.positions),
+        np.array(content.stiffness),
+        None if content.mass is None else np.array(content.mass),
+        content.supported,
+        content.band,
+        Origin(**content.origin.model_dump()),
+    )
+
+
+def write(path: Path, element: Superelement) -> None:
+    """Write one superelement; numbers keep every digit."""
+    path.write_text(content_of(element).model_dump_json(indent=1), encoding="utf-8")
+
+
+def read(path: Path) -> Superelement:
+    """Read one superelement.
+
+    Raises
+    ------
+    InputError
+        The file is no JSON, or not of this schema.
+    """
+    return element_of(read_content(path, SuperelementFile, "superelement in JSON"))
+
+
+def read_content(path: Path, kind: type[_Content], what: str) -> _Content:
+    """Read and validate a JSON file of one kind.
+
+    Raises
+    ------
+    InputError
+        The file is no JSON, or not of that kind; the message says what is wrong in it first.
+    """
+    try:
+        return kind.model_validate_json(path.read_text(encoding="utf-8"))
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"])) or "the file"
+        raise InputError(f"{path} is no {what}: {where}: {first['msg']}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is no {what}: it is not text") from error
+
+
+def _compliance(element: Superelement) -> list[list[float]] | None:
+    if not element.supported or np.linalg.cond(scaled(element.stiffness)) > _SINGULAR:
+        return None
+    inverse = np.linalg.inv(element.stiffness)
+    return (0.5 * (inverse + inverse.T)).tolist()  # type: ignore[no-any-return]

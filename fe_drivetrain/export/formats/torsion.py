@@ -1,0 +1,130 @@
+"""The one torsional spring of a drivetrain that aeroelastic programs have, and its damper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.superelement import Superelement
+
+
+def torsional_stiffness(element: Superelement, first: str, second: str) -> float:
+    """Torque about x between two points of a free shaft for a relative twist of 1 rad [N m/rad].
+
+    The points between carry no load, and nothing else is held: the inverse of the twist of the
+    second point relative to the first under a unit torque on both.
+
+    Parameters
+    ----------
+    element
+        A free shaft along x.
+    first, second
+        Two of its points.
+
+    Raises
+    ------
+    InputError
+        The superelement is on its supports, a point is unknown or given twice, or the points do
+        not resist a relative twist.
+    """
+    if element.supported:
+        raise InputError(
+            f"superelement {element.name!r} has the supports in it, which would carry torque: give "
+            "the free shaft"
+        )
+    for name in (first, second):
+        if name not in element.points:
+            raise InputError(
+                f"point {name!r} is not in superelement {element.name!r}: use two of "
+                f"{', '.join(element.points)}"
+            )
+    if first == second:
+        raise InputError(f"point {first!r} cannot twist relative to itself: give two points")
+    start = 6 * element.points.index(first)
+    free = np.setdiff1d(np.arange(len(element.stiffness)), np.arange(start, start + 6))
+    K = element.stiffness[np.ix_(free, free)]
+    torque = (free == 6 * element.points.index(second) + 3).astype(float)
+    size = np.sqrt(np.where(K.diagonal() > 0, K.diagonal(), 1.0))
+    try:
+        twist = float(torque @ (np.linalg.solve(K / np.outer(size, size), torque / size) / size))
+    except np.linalg.LinAlgError:
+        twist = np.inf
+    if not 0 < twist < np.inf:
+        raise InputError(
+            f"superelement {element.name!r} does not resist a twist of {second} relative to "
+            f"{first}: check its stiffness"
+        )
+    return 1.0 / twist
+
+
+def series_stiffness(shafts: Iterable[tuple[float, float]]) -> float:
+    """Stiffness of shafts one after another, on the low-speed side [N m/rad].
+
+    Parameters
+    ----------
+    shafts
+        Of each shaft: its own torsional stiffness [N m/rad], and its speed over that of the
+        low-speed shaft, which is 1 of the low-speed shaft itself. A shaft that turns n times as
+        fast seems n^2 times as stiff from there.
+
+    Raises
+    ------
+    InputError
+        There is no shaft, or a figure is not positive and finite.
+    """
+    given = [(float(k), float(ratio)) for k, ratio in shafts]
+    if not given or not all(0 < value < np.inf for pair in given for value in pair):
+        raise InputError(
+            f"the shafts {given} must be pairs of a stiffness and a speed ratio, all positive and "
+            "finite, and one pair at least"
+        )
+    return 1.0 / sum(1.0 / (k * ratio**2) for k, ratio in given)
+
+
+def torsional_damping(
+    ratio: float,
+    stiffness: float,
+    rotor_inertia: float,
+    generator_inertia: float,
+    gear_ratio: float = 1.0,
+) -> float:
+    """Damper for a damping ratio of the free-free torsional mode [N m s/rad], low-speed side.
+
+    Rotor and generator turn against each other: c = 2 ratio sqrt(k J) with the inertia
+    J = Jr Jg n^2 / (Jr + Jg n^2) (Jonkman et al. 2009, NREL/TP-500-38060, section 5, whose
+    6.215e6 N m s/rad is 5 % of critical).
+
+    Parameters
+    ----------
+    ratio
+        Of critical, 0 to 1.
+    stiffness
+        [N m/rad], low-speed side.
+    rotor_inertia
+        Of blades and hub about the shaft [kg m^2].
+    generator_inertia
+        About its own shaft [kg m^2], inf where the generator is held.
+    gear_ratio
+        Generator speed over rotor speed.
+
+    Raises
+    ------
+    InputError
+        A figure is out of its range.
+    """
+    if not 0 <= ratio < 1:
+        raise InputError(f"damping ratio {ratio:g} must be 0 or more and below 1: give no percent")
+    figures = {
+        "stiffness": stiffness,
+        "rotor inertia": rotor_inertia,
+        "gear ratio": gear_ratio,
+    }
+    for name, value in figures.items():
+        if not 0 < value < np.inf:
+            raise InputError(f"{name} {value:g} must be positive and finite")
+    if not generator_inertia > 0:
+        raise InputError(f"generator inertia {generator_inertia:g} must be positive")
+    inertia = 1.0 / (1.0 / rotor_inertia + 1.0 / (generator_inertia * gear_ratio**2))
+    return float(2.0 * ratio * np.sqrt(stiffness * inertia))

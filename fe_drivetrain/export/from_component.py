@@ -1,0 +1,110 @@
+"""Superelements of a component: the free body at its points, and it on its supports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib.metadata import version
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.from_scene import COARSER, ORDER, difference
+from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
+from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
+from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
+from fe_drivetrain.scene.component import Component, HousingComponent, component_hash
+from fe_drivetrain.solve.condensation import Condensed, keep_points
+
+BODY, SUPPORTED = "body", "supported"
+
+
+def component_superelement(
+    component: Component,
+    what: str = BODY,
+    at: Sequence[str] | None = None,
+    level: int = 3,
+    solids: tuple[SolidComponent, SolidComponent] | None = None,
+) -> Superelement:
+    """A component, condensed.
+
+    The band of a solid is what a coarser mesh says is missing to element size zero; of a frame it
+    is not known.
+
+    Parameters
+    ----------
+    component
+        The component.
+    what
+        "body": the free body, with its mass. "supported": on its bushings, or held at its flange.
+    at
+        Points that are kept. Where not given, all of the body, and of the supported component
+        those that loads come in by.
+    level
+        1 frame of beams (without mass), 3 solid.
+    solids
+        The component's solid, and that with mesh sizes times `scene_superelements.COARSER`, where
+        they are solved already.
+
+    Raises
+    ------
+    InputError
+        There is no such part, level or point, or a point is given twice or held rigidly.
+    """
+    if what not in (BODY, SUPPORTED):
+        raise InputError(f"{what!r} of a component cannot be exported: use {BODY} or {SUPPORTED}")
+    if at is not None and (not at or len(set(at)) < len(at)):
+        raise InputError(f"the points {', '.join(at) or 'none'} must be one or more, each once")
+    if level not in (1, 3):
+        raise InputError(f"level {level} of a component is unknown: use 1 or 3")
+    names = [a.name for a in component.attachments]
+    if at is None:
+        at = names if what == BODY else component.loaded
+    for name in at:
+        if name not in names:
+            raise InputError(f"point {name!r} is unknown: use {', '.join(names)}")
+    if level == 1:
+        bodies = [_frame(component)]
+        said, mesh = "1 frame of beams", "none"
+    else:
+        if solids is None:
+            coarse = component.model_copy(update={"mesh": component.mesh.scaled(COARSER)})
+            solids = solid_component(component), solid_component(coarse)
+        found = solids[0]
+        bodies = [solid.body for solid in solids]
+        said = "3 solid"
+        mesh = (
+            f"curved tetrahedra of second order, {found.unknowns:,} unknowns, "
+            f"{found.sizes.edge:.3g} m along inner edges"
+        )
+    fine, *others = [_part(component, body, what, at) for body in bodies]
+    band = None
+    if level == 3 and solids is not None:
+        ratio = solids[1].sizes.edge / solids[0].sizes.edge
+        if ratio > 1.0:  # else the coarser mesh had to be made finer
+            band = difference(others[0].stiffness, fine.stiffness) / (ratio**ORDER - 1.0)
+    program = f"fe-drivetrain {version('fe-drivetrain')}"
+    origin = Origin(component.title, component_hash(component), said, mesh, program)
+    kind = "gearbox_housing" if isinstance(component, HousingComponent) else "planet_carrier"
+    return Superelement(
+        kind,
+        fine.names,
+        fine.positions,
+        fine.stiffness,
+        fine.mass,
+        supported=what == SUPPORTED,
+        band=band,
+        origin=origin,
+    )
+
+
+def _frame(component: Component) -> Condensed:
+    if isinstance(component, HousingComponent):
+        return housing_frame(component, ring_gives=True)
+    return carrier_frame(component)
+
+
+def _part(component: Component, body: Condensed, what: str, at: Sequence[str]) -> Condensed:
+    if what == BODY:
+        return keep_points(body, at)
+    K = stiffness_on_supports(body, component.supports, at)
+    return replace(keep_points(body, at), stiffness=K, mass=None)

@@ -1,0 +1,127 @@
+"""Superelements of a scene: its free shaft, the drivetrain on its supports, its bearing units."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from importlib.metadata import version
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.fidelity.bearing_units import unit_stiffness
+from fe_drivetrain.fidelity.ladder import LevelModel
+from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft, solid_shaft
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.solve.condensation import keep_points
+
+#: Coarsening, and order of convergence that is relied upon, for the band of a solid shaft.
+COARSER, ORDER = 1.35, 1.0
+
+
+def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None) -> Superelement:
+    """The free shaft of a scene, condensed.
+
+    Its band is, of a beam, the difference to the meridian; of the meridian, that to elements of one
+    order less; of a solid, what a coarser mesh says is missing to element size zero.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    level
+        1 beam (without mass), 2 meridian, 3 solid with the rings of its bearings.
+    at
+        Points that are kept; all where not given.
+
+    Raises
+    ------
+    InputError
+        There is no such level or point.
+    """
+    factor = 1.0
+    if level == 1:
+        body, other = beam_shaft(scene), meridian_shaft(scene)
+        said = "1 Timoshenko beam", "none"
+    elif level == 2:
+        filleted = any(piece.fillet > 0 for piece in scene.shaft.pieces)
+        order = 4 if filleted else 6
+        body, other = meridian_shaft(scene, order=order), meridian_shaft(scene, order=order - 1)
+        said = "2 meridian in harmonics", f"elements of order {order} in the meridian"
+    elif level == 3:
+        coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)})
+        body, other = solid_shaft(scene), solid_shaft(coarse)
+        factor = 1.0 / (COARSER**ORDER - 1.0)
+        size = f"{scene.mesh.shaft:g} m"
+        said = "3 solid shaft with rings", f"curved tetrahedra of second order, {size}"
+    else:
+        raise InputError(f"level {level} has no free shaft: use one of 1, 2, 3")
+    if at is not None:
+        body, other = keep_points(body, at), keep_points(other, at)
+    return Superelement(
+        "shaft",
+        body.names,
+        body.positions,
+        body.stiffness,
+        body.mass,
+        band=factor * difference(other.stiffness, body.stiffness),
+        origin=scene_origin(scene, *said),
+    )
+
+
+def difference(matrix: Floats, reference: Floats) -> float:
+    """Largest difference of two matrices, the reference scaled to a unit diagonal."""
+    size = np.sqrt(np.abs(reference.diagonal()))
+    size[size == 0.0] = 1.0
+    return float(np.abs((matrix - reference) / np.outer(size, size)).max())
+
+
+def supported_superelement(
+    scene: Scene, model: LevelModel, at: Sequence[str], band: float | None = None
+) -> Superelement:
+    """The drivetrain on its supports, at points of a solved level of the ladder.
+
+    Raises
+    ------
+    InputError
+        The level has no stiffness at a point, or the scene holds a motion there rigidly.
+    """
+    stiffness = model.stiffness(at)
+    places = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
+    places |= {"hub": scene.shaft.front, "gearbox": scene.shaft.rear}
+    positions = np.array([[places[name], 0.0, 0.0] for name in at])
+    origin = scene_origin(
+        scene, f"{model.level} {model.title}", f"{model.cost.unknowns:,} unknowns"
+    )
+    return Superelement("drivetrain", tuple(at), positions, stiffness, None, True, band, origin)
+
+
+def unit_superelement(scene: Scene, name: str) -> Superelement:
+    """A bearing and its housing on the ground, at the bearing's centre: K_R of both planes, too.
+
+    The shaft is taken to keep its face in shape; the band reaches to a face that moves on average.
+    """
+    x = scene.bearing_unit(name).bearing.x
+    stiff, soft = (unit_stiffness(scene, name, coupling=c) for c in ("rigid", "averaged"))
+    return Superelement(
+        name.replace("-", "_"),
+        (name,),
+        np.array([[x, 0.0, 0.0]]),
+        stiff,
+        supported=True,
+        band=difference(soft, stiff),
+        origin=scene_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),
+    )
+
+
+def scene_hash(scene: Scene) -> str:
+    """SHA-256 of all values of a scene, whatever its file looks like."""
+    return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
+
+
+def scene_origin(scene: Scene, level: str, mesh: str) -> Origin:
+    """Where a superelement of a scene comes from: its level and mesh in words."""
+    program = f"fe-drivetrain {version('fe-drivetrain')}"
+    return Origin(scene.title, scene_hash(scene), level, mesh, program)

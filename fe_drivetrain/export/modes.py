@@ -1,0 +1,29 @@
+"""Natural frequencies of a condensed shaft, free or on the supports of its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy import linalg
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.solve.condensation import on_supports
+
+
+def natural_frequencies(
+    points: Sequence[str],
+    stiffness: Floats,
+    mass: Floats,
+    supports: Mapping[str, Floats] | None = None,
+) -> Floats:
+    """Natural frequencies, ascending, those of free motions among them as about 0 [Hz].
+
+    For the arguments see `condensation.on_supports`; mass is of the same freedoms as stiffness.
+    """
+    K, left = on_supports(points, stiffness, supports or {})
+    M = np.asarray(mass)[np.ix_(left, left)]
+    # lengths and angles, points and modes alike: a unit diagonal keeps the digits of all
+    size = np.sqrt(M.diagonal())
+    values = linalg.eigh(K / np.outer(size, size), M / np.outer(size, size), eigvals_only=True)
+    return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))

@@ -1,0 +1,1 @@
+"""Models of other programs, built or run from exported superelements."""

@@ -1,0 +1,36 @@
+"""The bearing seats of a scene as one superelement, as shaft-and-bearing programs import it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.from_scene import unit_superelement
+from fe_drivetrain.export.superelement import Superelement
+from fe_drivetrain.scene.scene import Scene
+
+
+def seats_superelement(scene: Scene) -> Superelement:
+    """All bearings with their housings on the ground: one node a seat, in the order of the scene.
+
+    Each housing stands on its own feet, so no stiffness is between them.
+
+    Raises
+    ------
+    InputError
+        The scene has no bearing.
+    """
+    units = [unit_superelement(scene, unit.bearing.name) for unit in scene.bearing_units]
+    if not units:
+        raise InputError(f"scene {scene.title!r} has no bearing: there is no seat to export")
+    return replace(
+        units[0],
+        name="seats",
+        points=tuple(unit.points[0] for unit in units),
+        positions=np.vstack([unit.positions for unit in units]),
+        stiffness=block_diag(*(unit.stiffness for unit in units)),
+        band=max(unit.band or 0.0 for unit in units),
+    )

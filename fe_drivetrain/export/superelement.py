@@ -1,0 +1,165 @@
+"""A condensed model as other programs take it: matrices at points, and where they come from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.solve.condensation import point_motions
+
+FRAME = (
+    "x downwind along the shaft, z up, y = z cross x; origin at the main bearing's centre where "
+    "the scene puts its shaft so"
+)
+FREEDOMS = ("ux", "uy", "uz", "rx", "ry", "rz")
+UNITS = "N/m, N, N m/rad; kg, kg m, kg m^2; m, rad"
+
+#: What a matrix may be off: of symmetry, of a rigid motion's forces, of a negative eigenvalue;
+#: relative to the largest entry of a unit diagonal.
+ALLOWED = 1e-9
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where the matrices come from.
+
+    Attributes
+    ----------
+    scene
+        Title.
+    scene_hash
+        SHA-256 of the scene's values.
+    level
+        Of the ladder, with its name.
+    mesh
+        In words.
+    program
+        Name and version.
+    """
+
+    scene: str = ""
+    scene_hash: str = ""
+    level: str = ""
+    mesh: str = ""
+    program: str = ""
+
+
+@dataclass(frozen=True)
+class Superelement:
+    """Stiffness and mass of a model at n reference points.
+
+    Attributes
+    ----------
+    name
+        Letters, digits and "_": other programs know it by that.
+    points
+        Names of the n points.
+    positions
+        (n, 3) [m], in `FRAME`.
+    stiffness
+        (6 n, 6 n), symmetric: `FREEDOMS` of each point to forces and moments there.
+    mass
+        (6 n, 6 n), symmetric; None where there is none.
+    supported
+        Whether the scene's supports are in it; else it is free, and has six rigid motions.
+    band
+        Half width of the uncertainty of the stiffness, of any entry relative to the diagonal
+        entries of its row and column; None where it is not known.
+    origin
+        Where it comes from.
+    """
+
+    name: str
+    points: tuple[str, ...]
+    positions: Floats
+    stiffness: Floats
+    mass: Floats | None = None
+    supported: bool = False
+    band: float | None = None
+    origin: Origin = field(default_factory=Origin)
+
+    def __post_init__(self) -> None:
+        """Refuse what is no superelement.
+
+        Raises
+        ------
+        InputError
+            A shape is wrong, a value is not finite, or a matrix is not symmetric or has a negative
+            eigenvalue.
+        """
+        n = len(self.points)
+        if not self.name.replace("_", "").isalnum() or not self.name[0].isalpha():
+            raise InputError(
+                f"superelement {self.name!r} must have a name of letters, digits and '_' that "
+                "begins with a letter: rename it"
+            )
+        if n == 0 or len(set(self.points)) < n or np.shape(self.positions) != (n, 3):
+            raise InputError(
+                f"superelement {self.name!r} has positions of shape {np.shape(self.positions)} for "
+                f"the points {', '.join(self.points) or 'none'}: give each point once, with x, y, z"
+            )
+        for kind, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+            if matrix is None:
+                continue
+            if np.shape(matrix) != (6 * n, 6 * n) or not np.isfinite(matrix).all():
+                raise InputError(
+                    f"superelement {self.name!r}: its {kind} of shape {np.shape(matrix)} must be "
+                    f"({6 * n}, {6 * n}) and finite: six freedoms for each of {n} points"
+                )
+            asymmetry, least = symmetry_error(matrix), least_eigenvalue(matrix)
+            if asymmetry > ALLOWED or least < -ALLOWED:
+                fault = (
+                    f"is not symmetric, by {asymmetry:.2g} of its diagonal"
+                    if asymmetry > ALLOWED
+                    else f"has a negative eigenvalue, {least:.2g} of its diagonal"
+                )
+                raise InputError(
+                    f"superelement {self.name!r}: its {kind} {fault}: check its source"
+                )
+
+    @property
+    def rigid_motions(self) -> Floats:
+        """(6 n, 6) unit motions of the whole about the first point."""
+        return point_motions(self.positions)
+
+    def rigid_error(self) -> float:
+        """Largest force against a rigid motion, of those that its terms would have one by one."""
+        R = self.rigid_motions
+        return float(
+            np.max(np.abs(self.stiffness @ R) / (np.abs(self.stiffness) @ np.abs(R)).max())
+        )
+
+    def inertia(self) -> Floats | None:
+        """(6, 6) mass matrix of its rigid motions about the first point; None without mass."""
+        return None if self.mass is None else self.rigid_motions.T @ self.mass @ self.rigid_motions
+
+    def checks(self) -> dict[str, float]:
+        """What a reader can check, by name."""
+        found = {
+            "asymmetry": symmetry_error(self.stiffness),
+            "least eigenvalue": least_eigenvalue(self.stiffness),
+        }
+        if not self.supported:
+            found["force against rigid motions"] = self.rigid_error()
+        return found
+
+
+def scaled(matrix: Floats) -> Floats:
+    """The matrix with a unit diagonal: lengths and angles count alike."""
+    size = np.sqrt(np.where(matrix.diagonal() > 0, matrix.diagonal(), 1.0))
+    return np.asarray(matrix / np.outer(size, size))
+
+
+def symmetry_error(matrix: Floats) -> float:
+    """Largest difference from its transpose, with a unit diagonal."""
+    found = scaled(matrix)
+    return float(np.abs(found - found.T).max())
+
+
+def least_eigenvalue(matrix: Floats) -> float:
+    """The least eigenvalue, with a unit diagonal."""
+    found = scaled(matrix)
+    return float(np.linalg.eigvalsh(0.5 * (found + found.T))[0])

@@ -1,0 +1,340 @@
+"""Which level of the ladder a quantity needs: from cheap to dear, as far as the tolerance asks.
+
+PROTEST's rule (Report on design-relevant load cases, deliverable of FP7 project 212825, step 2):
+take detail away until the result changes noticeably, and state the difference against the time.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.compare.convergence import grid_convergence
+from fe_drivetrain.fidelity.ladder import (
+    TITLES,
+    LevelModel,
+    assembly_level,
+    housing_springs,
+    shaft_level,
+    statics_level,
+)
+from fe_drivetrain.fidelity.shafts import condensed_shaft
+from fe_drivetrain.response.model import COMPONENTS
+from fe_drivetrain.scene.scene import Scene
+
+MOTIONS = ("ux", "uy", "uz", "rx", "ry", "rz")
+
+#: Factors on mesh sizes of the two coarser assemblies that give the top level its band.
+COARSER = (1.8, 1.35)
+
+#: Stress is singular where parts meet: no better order is relied upon.
+LEAST_ORDER = 0.5
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What is asked for, as a row of numbers that is linear in the loads, or a stiffness.
+
+    Attributes
+    ----------
+    name
+        "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
+        "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
+    load
+        (10,) factors of `model.LOADS`; None for a reaction to all hub loads, one at a time.
+    """
+
+    name: str
+    load: Floats | None = None
+
+    def check(self, scene: Scene) -> None:
+        """Refuse what the scene does not have.
+
+        Raises
+        ------
+        InputError
+            The name is none of the scene's.
+        """
+        names = [unit.bearing.name for unit in scene.bearing_units] + ["gearbox"]
+        known = [f"{name}.{c}" for name in names for c in COMPONENTS]
+        known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
+        if self.name not in known:
+            raise InputError(f"quantity {self.name!r} is unknown: use one of {', '.join(known)}")
+
+    @property
+    def unit(self) -> str:
+        """Of its value."""
+        component = self.name.rpartition(".")[2]
+        if self.name.startswith("hub.stiffness"):
+            return "N/m" if component[0] == "u" else "N m/rad"
+        return "N" if component[0] == "F" else "N m"
+
+    def of(self, model: LevelModel, length: float) -> Floats:
+        """(k,) its values: one, or one for each hub load, moments counting as length times 1 N."""
+        owner, _, component = self.name.partition(".")
+        if owner == "hub":
+            motion = MOTIONS.index(component.rpartition(".")[2])
+            if "hub" not in model.points:
+                return np.array([np.nan])
+            row = 6 * model.points.index("hub") + motion
+            return np.array([1.0 / model.compliance[row, row]])
+        row = model.reaction_matrices[owner][COMPONENTS.index(component)]
+        if self.load is not None:
+            # 0 times what is not known is 0
+            return np.array([row[self.load != 0] @ self.load[self.load != 0]])
+        return np.asarray(row[:6] * np.array([1.0, 1.0, 1.0, length, length, length]))
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One model on the ladder, and how far it is from the top.
+
+    Attributes
+    ----------
+    model
+        What was solved.
+    values
+        Of the quantity.
+    seconds
+        Wall time of all that its value needs; what its estimate takes comes on top.
+    estimate
+        Error expected before any dearer model is known, relative: 0 where statics decides; half
+        the range of its two bounds and the change from beam to meridian where housings are springs;
+        the band of the mesh where it is the assembly; NaN where it has none.
+    error
+        Difference to the last rung, relative.
+    """
+
+    model: LevelModel
+    values: Floats
+    seconds: float
+    estimate: float
+    error: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Advice:
+    """The ladder as far as it was climbed.
+
+    Attributes
+    ----------
+    quantity, tolerance
+        What was asked, the tolerance relative.
+    rungs
+        From cheap to dear.
+    chosen
+        Number of the cheapest rung that is good enough; None where no rung is.
+    springs
+        Stiffness of the bearing units, faces held in shape, where the ladder went so far.
+    """
+
+    quantity: Quantity
+    tolerance: float
+    rungs: Sequence[Rung]
+    chosen: int | None
+    springs: Mapping[str, Floats] = field(default_factory=dict)
+
+    @property
+    def top(self) -> Rung:
+        """The dearest model that was run."""
+        return self.rungs[-1]
+
+    def step(self, number: int) -> float:
+        """Difference of a rung to the next one, relative to that; NaN of the last."""
+        if number == len(self.rungs) - 1:
+            return float("nan")
+        return _difference(self.rungs[number].values, self.rungs[number + 1].values)
+
+    def sentence(self) -> str:
+        """The answer."""
+        share = f"{100 * self.tolerance:g} %"
+        if self.chosen is None:
+            return (
+                f"{self.quantity.name}: no level is known to be within {share}; the finest, "
+                f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %: "
+                "make its mesh finer"
+            )
+        rung = self.rungs[self.chosen]
+        if self.chosen == len(self.rungs) - 1:
+            return (
+                f"{self.quantity.name} within {share} needs level {rung.model.level}, "
+                f"{rung.model.title}: {_expected(rung)}, {rung.seconds:.2g} s"
+            )
+        ratio = self.top.seconds / rung.seconds
+        faster = f"{ratio:.3g} times faster" if ratio > 1 else f"{1 / ratio:.3g} times slower"
+        return (
+            f"{self.quantity.name} within {share}: level {rung.model.level}, {rung.model.title}, "
+            f"is enough: {100 * rung.error:.2g} % from level {self.top.model.level}, "
+            f"{self.top.model.title} ({_expected(self.top)}), and {faster}"
+        )
+
+
+def advise(
+    scene: Scene,
+    quantity: Quantity,
+    tolerance: float,
+    to_the_top: bool = False,
+    report: Callable[[str], object] = lambda step: None,
+) -> Advice:
+    """Climb the ladder until the quantity is known to be within the tolerance.
+
+    Parameters
+    ----------
+    scene
+        The scene; its mesh sizes are the top level's.
+    quantity
+        What is asked for.
+    tolerance
+        Allowed error, relative.
+    to_the_top
+        Whether to go on to the assembly where a cheaper level is known to be enough.
+    report
+        Called with what is being done.
+
+    Raises
+    ------
+    InputError
+        The quantity is unknown, or zero at the top level.
+    """
+    quantity.check(scene)
+    if not 0 < tolerance < 1:
+        raise InputError(
+            f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %: "
+            "give it as in --tolerance 1%"
+        )
+    length = scene.shaft.length
+    rungs: list[Rung] = []
+
+    def climb(model: LevelModel, seconds: float, estimate: float) -> bool:
+        rungs.append(Rung(model, quantity.of(model, length), seconds, estimate))
+        return estimate <= tolerance and not to_the_top
+
+    report("level 0: statics")
+    model = statics_level(scene)
+    decided = bool(np.isfinite(quantity.of(model, length)).all())
+    done = climb(model, model.cost.seconds, 0.0 if decided else float("nan"))
+    if not done:
+        report("level 1: beam, rigid housings")
+        model = shaft_level(scene, 1)
+        done = climb(model, model.cost.seconds, float("nan"))
+    springs: Mapping[str, Floats] = {}
+    if not done:
+        springs, done = _climb_springs(scene, quantity, to_the_top, climb, report)
+    if not done:
+        model, seconds, band = _assembly(scene, quantity, report)
+        climb(model, seconds, band)
+    return _judged(quantity, tolerance, rungs, springs)
+
+
+def _climb_springs(
+    scene: Scene,
+    quantity: Quantity,
+    to_the_top: bool,
+    climb: Callable[[LevelModel, float, float], bool],
+    report: Callable[[str], object],
+) -> tuple[Mapping[str, Floats], bool]:
+    """Shafts on housings that were solved apart, between two bounds of these.
+
+    A solid shaft knows no more of its seats than its meridian does, and takes longer: it is only
+    there where the whole ladder is asked for.
+    """
+    length = scene.shaft.length
+    report("housings, faces in shape")
+    stiff, seconds = housing_springs(scene, coupling="rigid")
+    report("housings, faces on average")
+    soft = housing_springs(scene, coupling="averaged")[0]
+    previous = None
+    for level in (1, 2, 3) if to_the_top else (1, 2):
+        report(f"level {level}: {TITLES[level]}, housings as springs")
+        start = time.perf_counter()
+        body = condensed_shaft(scene, level)
+        condensing = time.perf_counter() - start
+        bounds = stiff, soft
+        if level == 3 and any(unit.ring_on_housing for unit in scene.bearing_units):
+            report("housings under rings that belong to the solid shaft")
+            (hard, seconds), (yielding, _) = (
+                housing_springs(scene, c, level) for c in ("rigid", "averaged")
+            )
+            bounds = hard, yielding
+        model, bound = (shaft_level(scene, level, springs, body) for springs in bounds)
+        values = quantity.of(model, length)
+        estimate = _difference(quantity.of(bound, length), values) / 2
+        if previous is not None:
+            estimate += _difference(previous, values)
+        # only the next of two shafts tells how far the first may be off
+        estimate = float("nan") if previous is None else estimate
+        if climb(model, seconds + condensing + model.cost.seconds, estimate):
+            return stiff, True
+        previous = values
+    return stiff, False
+
+
+def _assembly(
+    scene: Scene, quantity: Quantity, report: Callable[[str], object]
+) -> tuple[LevelModel, float, float]:
+    """The assembly, its time alone, and the band of its mesh from two coarser ones."""
+    length = scene.shaft.length
+    sizes, series = [], []
+    for factor in COARSER:
+        report(f"level 4: assembly of solids, sizes times {factor:g}")
+        turn = max(8, round(scene.mesh.elements_per_turn / factor))
+        mesh = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": turn})
+        try:
+            coarse = assembly_level(scene.model_copy(update={"mesh": mesh}))
+        except InputError:  # too coarse for a wall
+            continue
+        sizes.append(factor)
+        series.append(quantity.of(coarse, length))
+    report("level 4: assembly of solids")
+    start = time.perf_counter()
+    model = assembly_level(scene)
+    seconds = time.perf_counter() - start
+    values = quantity.of(model, length)
+    if len(series) < len(COARSER):
+        return model, seconds, float("nan")
+    size = np.linalg.norm(values)
+    bands = [
+        grid_convergence([*sizes, 1.0], [*(s[k] for s in series), v], least_order=LEAST_ORDER)
+        for k, v in enumerate(values)
+        if max(abs(s[k]) for s in (*series, values)) > 1e-6 * size
+    ]
+    return model, seconds, float(np.linalg.norm([b.uncertainty for b in bands]) / size)
+
+
+def _judged(
+    quantity: Quantity, tolerance: float, rungs: Sequence[Rung], springs: Mapping[str, Floats]
+) -> Advice:
+    top = rungs[-1]
+    if not np.linalg.norm(top.values) > 0:
+        raise InputError(
+            f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
+            "ask for another, or give another load"
+        )
+    found = [
+        Rung(r.model, r.values, r.seconds, r.estimate, _difference(r.values, top.values))
+        for r in rungs
+    ]
+    chosen = None
+    for number, rung in enumerate(found):
+        # what the top does not know counts against all below it
+        uncertain = 0.0 if rung is found[-1] else rung.error
+        known = rung.estimate == 0.0 or uncertain + top.estimate <= tolerance
+        if known and np.isfinite(rung.values).all():
+            chosen = number
+            break
+    return Advice(quantity, tolerance, found, chosen, springs)
+
+
+def _difference(values: Floats, reference: Floats) -> float:
+    return float(np.linalg.norm(values - reference) / np.linalg.norm(reference))
+
+
+def _expected(rung: Rung) -> str:
+    if rung.estimate == 0.0:
+        return "decided by statics"
+    return f"± {100 * rung.estimate:.2g} %"

@@ -1,0 +1,150 @@
+"""A bearing unit by itself, condensed to a spring between the shaft and the ground.
+
+Joint, housing and bedplate are springs in series.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from scipy import sparse
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.interfaces.joints import in_series, joint_stiffness, roller_joint
+from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.mesh.facets import MEANS, face_weights
+from fe_drivetrain.operator.incompressible import assemble_unlocked
+from fe_drivetrain.scene.scene import Coupling, Scene, as_numbers
+from fe_drivetrain.solve.condensation import wrench_transport
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.solvers import solve
+
+_FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
+
+#: How the joint itself moves the faces.
+_PRESCRIBED: dict[str, Coupling] = {
+    "spring": "averaged",
+    "averaged": "averaged",
+    "rigid": "rigid",
+}
+
+
+def unit_stiffness(
+    scene: Scene,
+    name: str,
+    coupling: Coupling = "averaged",
+    method: str = "auto",
+    ring: bool = True,
+) -> Floats:
+    """Stiffness of a bearing and its housing, solved without the shaft.
+
+    A bonded bearing, and one on rollers, is solved with its ring and held at its bore; else the
+    ring is part of the shaft, and the face is the housing's bore. The shaft keeps that face in
+    shape, but not wholly: a face that moves on average (RBE3) is softer than that, and one that
+    moves as a rigid body (RBE2) is stiffer. Where the joint itself says how its faces move, that
+    holds.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    name
+        Of the bearing.
+    coupling
+        Of the face to its reference point.
+    method
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+    ring
+        Whether such a ring gives; else it is rigid, or part of a solid shaft, and the face is that
+        of the housing, or of the rollers.
+
+    Returns
+    -------
+    (6, 6) at the bearing's centre, of joint, housing and bedplate in series [N/m, N, N m/rad].
+    """
+    unit = scene.bearing_unit(name)
+    bonded = unit.interface == "bonded"
+    seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
+    bearing = unit.bearing.model_copy(update={"bore_diameter": seat})
+    joined = frozenset({name} if bonded else ())
+    mesh = cached_mesh(None, [bearing], {name: unit.housing}, scene.mesh, joined)
+    with_ring = unit.ring_on_housing and ring
+    parts = [name, f"{name}.housing"] if with_ring else [f"{name}.housing"]
+    coupling = _PRESCRIBED.get(unit.interface, coupling)
+    if with_ring:
+        face = f"{name}.bore"
+    elif unit.rollers is not None:
+        face, coupling = f"{name}.outer", "rigid"
+    else:
+        face = f"{name}.housing.bore"
+
+    n = len(mesh.points)
+    n_freedoms = 3 * n + (6 if coupling == "rigid" else 0)
+    K = sum(
+        assemble_unlocked(
+            mesh.points, mesh.cells[mesh.part_cells(part)], scene.material_of(part).lame, n_freedoms
+        )
+        for part in parts
+    )
+    cells = np.concatenate([mesh.cells[mesh.part_cells(part)] for part in parts])
+    nodes = mesh.face_nodes(face)
+    centre = np.array([unit.bearing.x, 0.0, 0.0])
+    base = f"{name}.housing.base"
+    held = [constraints.fixed(base, mesh.face_nodes(base), n_freedoms)]
+    left_out = np.setdiff1d(np.arange(n), np.concatenate([cells.ravel(), nodes]))
+    held.append(constraints.fixed("parts left out", left_out, n_freedoms))
+    if coupling == "rigid":
+        point = constraints.rigid_point(name, centre, 3 * n, n_freedoms)
+        held.append(constraints.rigid_face(name, nodes, mesh.points, point))
+    else:
+        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
+        point = constraints.averaged_point(name, nodes, weights, mesh.points, centre, n_freedoms)
+    ground = np.zeros((6, 6))
+    if unit.rollers is not None:
+        free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
+        ground = free.T @ free
+        for at, k in (*roller_joint(unit, mesh, n_freedoms).springs, (point, ground)):
+            K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
+    elimination = constraints.eliminate(held, n_freedoms)
+    system = reduce(mesh.points, cells, K, elimination)
+    F = point.motion.T.toarray()
+    compliance = F.T @ (elimination.T @ solve(system, elimination.T.T @ F, method).x)
+    stiffness = np.linalg.inv(compliance)
+    if unit.rollers is not None:
+        carried = np.eye(6) - np.linalg.pinv(free) @ free
+        stiffness = carried.T @ (stiffness - ground) @ carried
+    if unit.bedplate is not None:
+        # the base moves as a rigid body, so this is exact
+        lever = wrench_transport(np.array([0.0, 0.0, unit.housing.centre_height])).T
+        softness = lever @ np.diag(1.0 / as_numbers(unit.bedplate)) @ lever.T
+        stiffness = np.linalg.solve(np.eye(6) + stiffness @ softness, stiffness)
+    stiffness = 0.5 * (stiffness + stiffness.T)
+    return stiffness if unit.rollers is not None else in_series(stiffness, joint_stiffness(unit))
+
+
+def _free_motions(stiffness: Floats, length: float) -> Floats:
+    """(m, 6) rows that feel the motions alone that a stiffness leaves free, as stiff as it is."""
+    size = np.repeat([1.0, length], 3)
+    values, vectors = np.linalg.eigh(stiffness / np.outer(size, size))
+    free = vectors[:, values < _FREE * values[-1]]
+    return np.asarray(math.sqrt(values[-1]) * free.T * size)
+
+
+def scene_supports(scene: Scene, housings: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Stiffness to ground (6, 6) of the points of a scene: its bearing units and its gearbox.
+
+    Parameters
+    ----------
+    scene
+        The scene; what its gearbox holds rigidly has inf on the diagonal.
+    housings
+        (6, 6) of each bearing unit by name, see `unit_stiffness`.
+    """
+    supports = {unit.bearing.name: housings[unit.bearing.name] for unit in scene.bearing_units}
+    gearbox = as_numbers(scene.gearbox.stiffness)
+    if gearbox.any():
+        supports["gearbox"] = np.diag(gearbox)
+    return supports

@@ -1,0 +1,268 @@
+"""The fidelity ladder: one scene at levels 0 to 4, each answering through the same interface.
+
+0 statics, 1 beam, 2 meridian in harmonics, 3 solid shaft, 4 assembly of solids. Levels 1 to 3
+differ in how the shaft was condensed and in nothing else; their housings are rigid, or springs that
+were solved apart. What a level leaves out, it says.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.bearing_units import scene_supports, unit_stiffness
+from fe_drivetrain.fidelity.shafts import (
+    beam_shaft,
+    condensed_shaft,
+    reference_points,
+    ringed_shaft,
+)
+from fe_drivetrain.geometry import unit_solids
+from fe_drivetrain.interfaces.joints import joint_stiffness
+from fe_drivetrain.response.model import COMPONENTS, LOADS, build_model, mesh_scene
+from fe_drivetrain.response.unit_loads import unit_load_response
+from fe_drivetrain.scene.scene import Coupling, Scene
+from fe_drivetrain.solve.condensation import Condensed, supported, wrench_transport
+
+TITLES = (
+    "statics",
+    "Timoshenko beam",
+    "meridian in harmonics",
+    "solid shaft",
+    "assembly of solids",
+)
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a model took.
+
+    Attributes
+    ----------
+    seconds
+        Wall time, meshes and solutions included.
+    unknowns
+        Of its largest system.
+    """
+
+    seconds: float
+    unknowns: int
+
+
+@dataclass(frozen=True)
+class LevelModel:
+    """A scene at one level, solved for the unit loads of `model.LOADS`, or a component for its own.
+
+    Attributes
+    ----------
+    level
+        0 to 4.
+    title
+        Of the level, with what its housings are.
+    neglects
+        What it leaves out.
+    cost
+        What it took.
+    reaction_matrices
+        (6, 10) by bearing, and "gearbox": what the drivetrain puts on its surroundings, moments
+        about the bearing's centre; NaN where the level cannot tell.
+    points, compliance
+        Names of n points, and (6 n, 6 n) motions of each for unit forces and moments at each, on
+        the scene's supports; no points at level 0.
+    """
+
+    level: int
+    title: str
+    neglects: tuple[str, ...]
+    cost: Cost
+    reaction_matrices: Mapping[str, Floats]
+    points: tuple[str, ...] = ()
+    compliance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def reactions(self, load: Floats) -> dict[str, Floats]:
+        """Reactions (..., 6) [N, N m] to loads (..., 10), factors of `model.LOADS`."""
+        return {name: load @ matrix.T for name, matrix in self.reaction_matrices.items()}
+
+    def stiffness(self, at: Sequence[str]) -> Floats:
+        """(6 n, 6 n) stiffness at n points of the scene on its supports [N/m, N, N m/rad].
+
+        Raises
+        ------
+        InputError
+            The level has no stiffness there, or a motion there is held rigidly.
+        """
+        missing = [name for name in at if name not in self.points]
+        if missing:
+            known = ", ".join(self.points) or "none: it has no stiffness at all"
+            raise InputError(
+                f"level {self.level} ({self.title}) has no stiffness at {', '.join(missing)}: "
+                f"it has {known}"
+            )
+        rows = np.concatenate([6 * self.points.index(name) + np.arange(6) for name in at])
+        compliance = self.compliance[np.ix_(rows, rows)]
+        stuck = [
+            f"{name} {c}"
+            for name, part in zip(at, np.split(compliance.diagonal(), len(at)), strict=True)
+            for c, value in zip(("ux", "uy", "uz", "rx", "ry", "rz"), part, strict=True)
+            if value <= 0.0
+        ]
+        if stuck:
+            raise InputError(
+                f"the stiffness at {', '.join(at)} is infinite in {', '.join(stuck)}, which the "
+                "scene holds rigidly: leave that point out, or make its support a spring"
+            )
+        inverse = np.linalg.inv(0.5 * (compliance + compliance.T))
+        return np.asarray(0.5 * (inverse + inverse.T))
+
+
+def statics_level(scene: Scene) -> LevelModel:
+    """Level 0: what equilibrium alone decides."""
+    start = time.perf_counter()
+    names, positions = reference_points(scene)
+    first = positions[0]
+    carried: list[tuple[str, int]] = []
+    for unit in scene.bearing_units:
+        stiffness = joint_stiffness(unit)
+        carried += [(unit.bearing.name, c) for c in range(6) if stiffness[c].any()]
+    carried += [("gearbox", c) for c, k in enumerate(scene.gearbox.stiffness) if k != 0]
+    at = dict(zip(names, positions, strict=True))
+    A = np.column_stack([wrench_transport(at[name] - first)[:, c] for name, c in carried])
+    size = float(np.ptp(positions[:, 0]))
+    scale = np.array([1.0, 1.0, 1.0, size, size, size])
+    _, values, vectors = np.linalg.svd(A / scale[:, None])
+    null = vectors[(values > 1e-9 * values[0]).sum() :]
+    decided = np.abs(null).max(axis=0, initial=0.0) < 1e-9
+    loads = _applied(beam_shaft(scene), positions)
+    found = np.linalg.lstsq(A / scale[:, None], loads / scale[:, None], rcond=1e-12)[0]
+    matrices = {name: np.zeros((6, len(LOADS))) for name in (*names[1:-1], "gearbox")}
+    for (name, c), row, sure in zip(carried, found, decided, strict=True):
+        matrices[name][c] = row if sure else np.nan
+    unknown = [
+        f"{name} {COMPONENTS[c]}" for (name, c), s in zip(carried, decided, strict=True) if not s
+    ]
+    neglects = ["every stiffness"]
+    if unknown:
+        neglects.append(f"cannot tell {', '.join(unknown)}: statics does not decide their shares")
+    _add_weights(matrices, scene, on_shaft=ringed_shaft(scene)[1])
+    cost = Cost(time.perf_counter() - start, len(carried))
+    return LevelModel(0, TITLES[0], tuple(neglects), cost, matrices)
+
+
+def shaft_level(
+    scene: Scene,
+    level: int,
+    housings: Mapping[str, Floats] | None = None,
+    body: Condensed | None = None,
+) -> LevelModel:
+    """Levels 1 to 3: a condensed shaft on springs.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    level
+        1 beam, 2 meridian, 3 solid.
+    housings
+        (6, 6) stiffness of each bearing unit by name, see `housing_springs`; rigid where not given.
+    body
+        The condensed shaft, where there is one already.
+    """
+    start = time.perf_counter()
+    body = condensed_shaft(scene, level) if body is None else body
+    neglects = []
+    everywhere = {unit.bearing.name for unit in scene.bearing_units}
+    on_shaft = frozenset(everywhere) if level == 3 else ringed_shaft(scene)[1]
+    if on_shaft != everywhere:
+        neglects.append("what the rings of bearings do to the shaft")
+    if level == 1:
+        if any(piece.fillet > 0 for piece in scene.shaft.pieces):
+            neglects.append("fillets")
+        neglects.append("sections that do not stay plane near steps and seats")
+    if housings is None:
+        neglects.append("housings and bedplates that give: they are rigid")
+        housings = {unit.bearing.name: joint_stiffness(unit) for unit in scene.bearing_units}
+        title = f"{TITLES[level]}, rigid housings"
+    else:
+        neglects.append("what shaft and housing do to the shape of the face between them")
+        if any(unit.bedplate is not None for unit in scene.bearing_units):
+            neglects.append("what a bedplate gives under the weight of its housing")
+        title = f"{TITLES[level]}, housings as springs"
+    found = supported(body, scene_supports(scene, housings))
+    n = len(body.names)
+    columns = _unit_loads(body)
+    reactions = {name: R @ columns for name, R in found.reactions.items()}
+    reactions.setdefault("gearbox", np.zeros((6, len(LOADS))))
+    _add_weights(reactions, scene, on_shaft)
+    cost = Cost(time.perf_counter() - start, 6 * n)
+    motions = found.motions[:, : 6 * n]
+    return LevelModel(level, title, tuple(neglects), cost, reactions, body.names, motions)
+
+
+def assembly_level(scene: Scene) -> LevelModel:
+    """Level 4: shaft, bearings and housings as solids; stiffness at the hub."""
+    start = time.perf_counter()
+    response = unit_load_response(build_model(scene, mesh_scene(scene)))
+    names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
+    reactions = {name: response.reactions[name] for name in names}
+    cost = Cost(time.perf_counter() - start, response.n_unknowns)
+    return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
+
+
+def housing_springs(
+    scene: Scene, coupling: Coupling = "averaged", level: int = 2
+) -> tuple[dict[str, Floats], float]:
+    """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
+
+    Parameters
+    ----------
+    scene, coupling
+        See `bearing_units.unit_stiffness`.
+    level
+        Of the shaft that they are for: a solid one (3) has all rings itself.
+    """
+    start = time.perf_counter()
+    found = {
+        unit.bearing.name: unit_stiffness(scene, unit.bearing.name, coupling, ring=level < 3)
+        for unit in scene.bearing_units
+    }
+    return found, time.perf_counter() - start
+
+
+def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozenset[str]) -> None:
+    """Add what the mass of housings, and of rings that are no part of the shaft, does to reactions.
+
+    It stands on the ground and bends no shaft, but for what the housing gives under its own weight.
+    """
+    for unit in scene.bearing_units:
+        bearing = unit.bearing
+        bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
+        ring, housing = unit_solids(bearing, unit.housing, bore)
+        solids = {f"{bearing.name}.housing": housing}
+        if bearing.name not in on_shaft:
+            solids[bearing.name] = ring
+        for part, solid in solids.items():
+            arm = np.array(solid.centre) - [bearing.x, 0.0, 0.0]
+            mass = scene.material_of(part).density * solid.volume
+            reactions[bearing.name][:, 6:9] += mass * wrench_transport(arm)[:, :3]
+
+
+def _unit_loads(body: Condensed) -> Floats:
+    """(6 n + 3, 10) factors that make `model.LOADS` of unit loads at points and of gravity."""
+    n = len(body.names)
+    columns = np.zeros((6 * n + 3, len(LOADS)))
+    columns[body.rows("hub"), :6] = np.eye(6)
+    columns[6 * n :, 6:9] = np.eye(3)
+    columns[6 * body.names.index("gearbox") + 2, 9] = -1.0
+    return columns
+
+
+def _applied(body: Condensed, positions: Floats) -> Floats:
+    """(6, 10) resultants of `model.LOADS` about the hub."""
+    n = len(body.names)
+    carry = np.hstack([wrench_transport(p - positions[0]) for p in positions])
+    return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(body)

@@ -1,0 +1,325 @@
+"""The shaft of a scene condensed to its hub, seats and gearbox: as a beam, in its meridian, solid.
+
+Three levels of the same thing, so that all else of a model can stay as it is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy import linalg, sparse
+
+from fe_drivetrain.beam.of_scene import beam_of_scene
+from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.mesh.facets import MEANS, face_weights
+from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
+from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.operator.incompressible import assemble_unlocked
+from fe_drivetrain.operator.mass import mass_matrix
+from fe_drivetrain.revolution import harmonics
+from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.solve.condensation import Condensed, condense
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.solvers import solve
+
+
+def reference_points(scene: Scene) -> tuple[tuple[str, ...], Floats]:
+    """Hub, bearings and gearbox of a scene: names, and (n, 3) positions on the shaft's axis [m]."""
+    units = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
+    stations = {"hub": scene.shaft.front, **units, "gearbox": scene.shaft.rear}
+    positions = np.zeros((len(stations), 3))
+    positions[:, 0] = list(stations.values())
+    return tuple(stations), positions
+
+
+def ringed_shaft(scene: Scene) -> tuple[Shaft, frozenset[str]]:
+    """The shaft with the rings of its bearings turned on it, and of which bearings.
+
+    A ring stands on the shaft where its joint is outside of it, at the housing, and where it is of
+    the shaft's material; one that is bonded to the housing, or on rollers in it, belongs to that. A
+    spherical ring becomes a cylinder of the same volume.
+    """
+    rings = {
+        unit.bearing.name: unit.bearing
+        for unit in scene.bearing_units
+        if not unit.ring_on_housing
+        and scene.material_of(unit.bearing.name) == scene.material_of("shaft")
+    }
+    shaft = scene.shaft.cut(end for ring in rings.values() for end in ring.span)
+    start = shaft.front
+    sections = []
+    for section in shaft.sections:
+        middle = start + section.length / 2
+        under = [ring for ring in rings.values() if abs(middle - ring.x) < ring.width / 2]
+        if under:
+            width = under[0].width if under[0].kind == "spherical" else 0.0
+            diameter = math.sqrt(under[0].raceway_diameter ** 2 - width**2 / 3)
+            change = {"outer_diameter": diameter, "outer_diameter_end": diameter}
+            section = section.model_copy(update=change)
+        sections.append(section)
+        start += section.length
+    return shaft.model_copy(update={"sections": tuple(sections)}), frozenset(rings)
+
+
+def beam_shaft(scene: Scene, shear: bool = True, rings: bool = True) -> Condensed:
+    """The shaft as a Timoshenko beam.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    shear
+        Whether shear deforms it.
+    rings
+        Whether it has its rings, see `ringed_shaft`; to a beam they are wholly part of it, which is
+        stiffer than a solid is.
+    """
+    names, positions = reference_points(scene)
+    nothing = {unit.bearing.name: np.zeros(6) for unit in scene.bearing_units}
+    if rings:
+        scene = scene.model_copy(update={"shaft": ringed_shaft(scene)[0]})
+    bare = replace(beam_of_scene(scene, nothing, shear), supports=())
+    order = np.argsort(positions[:, 0])
+    stations = positions[order, 0]
+    n = len(names)
+    K = np.zeros((6 * n, 6 * n))
+    for (i, j), (a, b) in zip(pairwise(order), pairwise(stations.tolist()), strict=True):
+        rows = np.r_[6 * i : 6 * i + 6, 6 * j : 6 * j + 6]
+        K[np.ix_(rows, rows)] += shaft_stiffness(bare, a, b)
+    # clamped at every point, its weight is carried by these alone
+    clamps = [
+        Support(name, x, np.full(6, np.inf)) for name, x in zip(names, positions[:, 0], strict=True)
+    ]
+    clamped = Beam(bare.sections, clamps, bare.start, bare.material, bare.shear)
+    gravity = unit_load_response(clamped, bare.start).gravity_reaction.reshape(6 * n, 3)
+    return Condensed(names, positions, K, gravity)
+
+
+def shaft_meridian(
+    scene: Scene, size: float | None = None, order: int | None = None, rings: bool = True
+) -> tuple[Meridian, list[Ints]]:
+    """The meridian of a scene's shaft, and its sides that each reference point moves with.
+
+    For the arguments see `meridian_shaft`.
+    """
+    shaft = ringed_shaft(scene)[0] if rings else scene.shaft
+    spans = [unit.bearing.span for unit in scene.bearing_units]
+    ends = [end for span in spans for end in span]
+    corners = [(x, shaft.outer_radius(sum(span) / 2)) for span in spans for x in span]
+    widest = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
+    # fillets take triangles, of which gmsh makes many where corners are sharp: 2 layers are 4e-4
+    layers = 2 if any(p.fillet > 0 for p in shaft.pieces) else 4
+    mesh = meridian(
+        shaft.cut(ends),
+        widest if size is None else size,
+        order=order,
+        layers=layers,
+        corners=corners,
+    )
+    return mesh, _coupled_sides(mesh, shaft, spans)
+
+
+def meridian_shaft(
+    scene: Scene, size: float | None = None, order: int | None = None, rings: bool = True
+) -> Condensed:
+    """The shaft in its meridian, exact elasticity of a body of revolution.
+
+    Hub and gearbox move as the mean of the end faces, the bearings as that of their seats, or of
+    the rings there, all without stiffening these (RBE3).
+
+    Parameters
+    ----------
+    scene
+        The scene; housings have no part in this.
+    size
+        Largest edge length [m]; the largest diameter where not given, for elements are of high
+        order and graded to steps and to the ends of seats: stiffness is right to 1e-4, of shafts
+        with fillets to 4e-4.
+    order
+        See `fe_drivetrain.revolution.meridian_mesh.meridian`.
+    rings
+        Whether it has its rings, see `ringed_shaft`.
+    """
+    names, positions = reference_points(scene)
+    material = scene.material_of("shaft")
+    mesh, sides = shaft_meridian(scene, size, order, rings)
+    mass = harmonic_mass(mesh, material.density, 0)
+    axial = _harmonic(mesh, material, 0, (0, 3), names, positions, sides, mass)
+    mass = mass * (harmonics.turn(1) / harmonics.turn(0))
+    sideways = _harmonic(mesh, material, 1, (1, 5), names, positions, sides, mass)
+    n = len(names)
+    # along z and about y as along y and about z, but the rotation has the other sense
+    along_y, along_z = (np.add.outer(6 * np.arange(n), rows).ravel() for rows in ([1, 5], [2, 4]))
+    sense = np.tile([1.0, -1.0], n)
+    matrices = []
+    for first, second in ((axial.stiffness, sideways.stiffness), (axial.mass, sideways.mass)):
+        both = np.asarray(first) + np.asarray(second)
+        both[np.ix_(along_z, along_z)] = np.outer(sense, sense) * both[np.ix_(along_y, along_y)]
+        matrices.append(both)
+    gravity = axial.gravity + sideways.gravity
+    gravity[along_z, 2] = sense * gravity[along_y, 1]
+    return Condensed(names, positions, matrices[0], gravity, matrices[1])
+
+
+def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
+    """The shaft with the rings of its bearings as a solid, in curved tetrahedra of second order.
+
+    Hub and gearbox move as the mean of the end faces, the bearings as that of their outer faces.
+
+    Parameters
+    ----------
+    scene
+        The scene; the housings have no part in this.
+    method
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+    """
+    names, positions = reference_points(scene)
+    bearings = [unit.bearing for unit in scene.bearing_units]
+    mesh = cached_mesh(scene.shaft, bearings, {}, scene.mesh, frozenset())
+    n = len(mesh.points)
+    faces = ["shaft.front", *(f"{b.name}.outer" for b in bearings), "shaft.rear"]
+    points = []
+    for name, face, position in zip(names, faces, positions, strict=True):
+        nodes = mesh.face_nodes(face)
+        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
+        points.append(
+            constraints.averaged_point(name, nodes, weights, mesh.points, position, 3 * n)
+        )
+    K = None
+    mass = sparse.csr_array((3 * n, 3 * n))
+    for part in mesh.part_names:
+        material = scene.material_of(part)
+        cells = mesh.cells[mesh.part_cells(part)]
+        own = assemble_unlocked(mesh.points, cells, material.lame, 3 * n)
+        K = own if K is None else K + own
+        mass = mass + mass_matrix(mesh.points, cells, material.density, 3 * n)
+    elimination = constraints.eliminate([_pins(mesh.points)], 3 * n)
+    system = reduce(mesh.points, mesh.cells, K, elimination)
+
+    def solved(F: Floats) -> Floats:
+        return np.asarray(elimination.T @ solve(system, elimination.T.T @ F, method).x)
+
+    loads = np.hstack([point.motion.T.toarray() for point in points])
+    rigid = rigid_motions(mesh.points, positions[0])
+    return condense(names, positions, loads, mass, rigid, solved)
+
+
+def condensed_shaft(scene: Scene, level: int) -> Condensed:
+    """The shaft at a level of the ladder: 1 beam, 2 meridian, 3 solid."""
+    condensers: dict[int, Callable[[Scene], Condensed]] = {
+        1: beam_shaft,
+        2: meridian_shaft,
+        3: solid_shaft,
+    }
+    return condensers[level](scene)
+
+
+def _pins(points: Floats) -> constraints.Constraint:
+    """Six freedoms of three nodes that are far apart: they hold a solid without straining it."""
+    a = int(np.argmin(points[:, 0]))
+    b = int(np.argmax(np.linalg.norm(points - points[a], axis=1)))
+    along = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
+    c = int(np.argmax(np.linalg.norm(np.cross(points - points[a], along), axis=1)))
+    nodes = np.array([a, b, c])
+    length = float(np.linalg.norm(points[b] - points[a]))
+    motions = rigid_motions(points[nodes], points[nodes].mean(axis=0))
+    motions[:, 3:] /= length
+    best = linalg.qr(motions.T, mode="r", pivoting=True)[1][:6]
+    return constraints.held_freedoms("pins", constraints.freedoms(nodes).ravel()[best], points.size)
+
+
+def _coupled_sides(
+    mesh: Meridian, shaft: Shaft, spans: Sequence[tuple[float, float]]
+) -> list[Ints]:
+    """Sides of the meridian that each reference point moves with."""
+
+    def end(at: float) -> Ints:
+        return mesh.sides(lambda x, r: np.abs(x - at) < SAME_LENGTH)
+
+    def seat(low: float, high: float) -> Ints:
+        radius = shaft.outer_radius((low + high) / 2)
+        return mesh.sides(
+            lambda x, r: (
+                (np.abs(r - radius) < SAME_LENGTH)
+                & (x > low - SAME_LENGTH)
+                & (x < high + SAME_LENGTH)
+            )
+        )
+
+    return [end(shaft.front), *(seat(*span) for span in spans), end(shaft.rear)]
+
+
+def harmonic_motions(n: int, x: Floats, r: Floats) -> Floats:
+    """(2, ..., 3) amplitudes of a rigid motion in harmonic n: along x and about it; along y and
+    about the line along z through x = 0."""
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    first, second = {
+        0: ((one, zero, zero), (zero, zero, r)),
+        1: ((zero, one, -one), (-r, x, -x)),
+    }[n]
+    return np.stack([np.stack(first, axis=-1), np.stack(second, axis=-1)])
+
+
+def motion_traction(mesh: Meridian, n: int, sides: Ints, place: float, k: int) -> Floats:
+    """Nodal forces of a traction as large as the k-th rigid motion about x = place."""
+    return harmonics.surface_loads(
+        mesh, n, sides, lambda at, _: harmonic_motions(n, at[:, 0] - place, at[:, 1])[k]
+    )
+
+
+def _harmonic(
+    mesh: Meridian,
+    material: Material,
+    n: int,
+    kept: tuple[int, int],
+    names: tuple[str, ...],
+    positions: Floats,
+    sides: list[Ints],
+    mass: sparse.csr_array,
+) -> Condensed:
+    """The share of one harmonic with its mass matrix: components ``kept`` of each point."""
+    x, r = mesh.nodes.T
+    columns = []
+    for place, where in zip(positions[:, 0], sides, strict=True):
+        tractions = np.column_stack([motion_traction(mesh, n, where, place, k) for k in (0, 1)])
+        here = harmonic_motions(n, x - place, r).reshape(2, -1)
+        # scaled to do unit work on these motions, tractions take the face's mean one, as RBE3 does
+        columns.append(tractions @ np.linalg.inv(here @ tractions))
+    # loads are in balance: what is held only takes the rigid motions out
+    ends = [int(np.lexsort((-r, sense * x))[0]) for sense in (1.0, -1.0)]
+    held = {
+        0: np.concatenate([harmonics.freedoms(np.array(ends[:1]), c) for c in (0, 2)]),
+        1: harmonics.freedoms(np.array(ends), 1),
+    }[n]
+    solved = harmonics.harmonic_solver(mesh, material, n, held)
+    rigid = harmonic_motions(n, x - positions[0, 0], r).reshape(2, -1).T
+    return condense(names, positions, np.hstack(columns), mass, rigid, solved, kept)
+
+
+def harmonic_mass(mesh: Meridian, density: float, n: int) -> sparse.csr_array:
+    """(3 n_nodes, 3 n_nodes) mass matrix in harmonic n [kg]."""
+    element = mesh.element
+    nodes = mesh.nodes[mesh.cells]
+    (xs, rs), (xt, rt) = np.moveaxis(element.gradients @ nodes[:, None], (2, 3), (0, 1))
+    volume = (xs * rt - rs * xt) * element.weights * (nodes[..., 1] @ element.values.T)
+    local = harmonics.turn(n) * density * (element.values.T @ (volume[..., None] * element.values))
+    rows = np.broadcast_to(mesh.cells[:, :, None], local.shape).ravel()
+    columns = np.broadcast_to(mesh.cells[:, None, :], local.shape).ravel()
+    size = len(mesh.nodes)
+    scalar = sparse.coo_array((local.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+    # the same of each component: every row three times, its columns three apart
+    turned = scalar[np.repeat(np.arange(size), 3)]
+    component = np.repeat(np.tile(np.arange(3), size), np.diff(turned.indptr))
+    return sparse.csr_array(
+        (turned.data, 3 * turned.indices + component, turned.indptr), shape=(3 * size, 3 * size)
+    )

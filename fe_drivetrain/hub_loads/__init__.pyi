@@ -1,0 +1,12 @@
+from .aero_rotor import assumptions as assumptions
+from .histories import COMPONENTS as COMPONENTS
+from .histories import UNITS as UNITS
+from .histories import LoadHistory as LoadHistory
+from .histories import read_hub_loads as read_hub_loads
+from .surrogate import SHEARS as SHEARS
+from .surrogate import WIND_SPEEDS as WIND_SPEEDS
+from .surrogate import Condition as Condition
+from .surrogate import hub_load_set as hub_load_set
+from .surrogate import hub_loads as hub_loads
+from .surrogate import not_kept as not_kept
+from .surrogate import surrogate_grid as surrogate_grid

@@ -1,0 +1,408 @@
+"""Interfaces, supports and reference points as linear constraints, eliminated and never penalised.
+
+A constraint is a row of C in C u = 0 over all freedoms u: three displacements a node, then six
+freedoms for each rigid reference point. ``eliminate`` turns all rows together into u = T q, where
+q are the freedoms that are left, so that stiffness contrast cannot spoil the conditioning.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import linalg, sparse
+from scipy.sparse.linalg import splu
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.operator.elasticity import rigid_motions
+
+AXES = ("x", "y", "z")
+
+_BLOCK = 256  # columns that are dense at a time while constraints are eliminated
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """Rows of C u = 0 that belong to one named interface or support.
+
+    Attributes
+    ----------
+    name
+        What the rows are, for messages.
+    rows
+        (m, n_freedoms) coefficients.
+    pivots
+        (m,) the freedom that each row is solved for.
+    """
+
+    name: str
+    rows: sparse.csr_array
+    pivots: Ints
+
+
+@dataclass(frozen=True)
+class ReferencePoint:
+    """A point that loads and springs act on, tied to a face.
+
+    Attributes
+    ----------
+    name
+        What the point is: "hub", "gearbox", ...
+    position
+        (3,) [m].
+    motion
+        (6, n_freedoms): displacement [m] and rotation [rad] of the point from all freedoms. Its
+        transpose spreads a force and a moment at the point over the freedoms.
+    """
+
+    name: str
+    position: Floats
+    motion: sparse.csr_array
+
+
+def freedoms(nodes: Ints) -> Ints:
+    """The (n, 3) displacement freedoms of n nodes."""
+    return np.asarray(3 * np.asarray(nodes)[:, None] + np.arange(3))
+
+
+def fixed(name: str, nodes: Ints, n_freedoms: int) -> Constraint:
+    """All displacements of the nodes are zero."""
+    return held_nodes(name, nodes, (0, 1, 2), n_freedoms)
+
+
+def held_freedoms(name: str, columns: Ints, n_freedoms: int) -> Constraint:
+    """These freedoms are zero."""
+    held = np.asarray(columns)
+    return Constraint(name, _rows(np.ones((held.size, 1)), held[:, None], n_freedoms), held)
+
+
+def held_nodes(name: str, nodes: Ints, axes: Sequence[int], n_freedoms: int) -> Constraint:
+    """Displacements of the nodes along these axes (0, 1, 2) are zero."""
+    return held_freedoms(name, freedoms(nodes)[:, list(axes)].ravel(), n_freedoms)
+
+
+def sliding_sphere(
+    name: str, inner: Ints, outer: Ints, points: Floats, centre: Floats, n_freedoms: int
+) -> Constraint:
+    """Spherical joint, sliding form: equal normal displacement, free tangential displacement.
+
+    Parameters
+    ----------
+    inner, outer
+        (n,) nodes of the convex and of the concave side, pairwise at the same place.
+    points
+        (n_nodes, 3) node coordinates [m].
+    centre
+        (3,) centre of the sphere [m].
+    """
+    normal = points[outer] - centre
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    columns = np.hstack([freedoms(outer), freedoms(inner)])
+    largest = np.argmax(np.abs(normal), axis=1)
+    pivots = 3 * np.asarray(outer) + largest
+    return Constraint(name, _rows(np.hstack([normal, -normal]), columns, n_freedoms), pivots)
+
+
+def averaged_sphere(
+    name: str,
+    inner: Ints,
+    outer: Ints,
+    inner_weights: Floats,
+    outer_weights: Floats,
+    groups: Ints,
+    first_freedom: int,
+    n_freedoms: int,
+) -> Constraint:
+    """Spherical joint, averaged form: the mean displacements of the two faces are equal.
+
+    One row over all nodes would couple each with each and fill the matrix. So every group of
+    nodes gets its own sum as a freedom, and the sums of the groups are what must vanish: the same
+    constraint, eliminated sparsely.
+
+    Parameters
+    ----------
+    inner, outer
+        (n,) nodes of the convex and of the concave side.
+    inner_weights, outer_weights
+        Integrals of the shape functions over the face at those nodes [m^2].
+    groups
+        (2 n,) group number from 0 on of each node, inner ones first.
+    first_freedom
+        First of the 3 n_groups freedoms that are the groups' sums.
+    """
+    nodes = np.concatenate([inner, outer])
+    weights = np.concatenate(
+        [inner_weights / inner_weights.sum(), -outer_weights / outer_weights.sum()]
+    )
+    # Vertex nodes of straight-sided faces carry no weight, and no part in the mean.
+    kept = np.abs(weights) > 1e-12 * np.abs(weights).max()
+    nodes, weights, groups = (
+        nodes[kept],
+        weights[kept],
+        np.unique(groups[kept], return_inverse=True)[1],
+    )
+    n_groups = int(groups.max()) + 1
+    scale = np.bincount(groups, np.abs(weights))
+    pivot_nodes = np.empty(n_groups, dtype=np.int64)
+    # In ascending order of weight the last, heaviest node of each group stays.
+    order = np.argsort(np.abs(weights))
+    pivot_nodes[groups[order]] = nodes[order]
+
+    # One component: rows "sum of group / scale = s_group", then "sum of scale s_group = 0".
+    member = sparse.csr_array(
+        (weights / scale[groups], (groups, nodes)), shape=(n_groups + 1, n_freedoms // 3 + 1)
+    )
+    rows, pivots = [], []
+    for axis in range(3):
+        entries = member.tocoo()
+        sums = first_freedom + 3 * np.arange(n_groups) + axis
+        rows.append(
+            sparse.csr_array(
+                (
+                    np.concatenate([entries.data, -np.ones(n_groups), scale]),
+                    (
+                        np.concatenate(
+                            [entries.coords[0], np.arange(n_groups), np.full(n_groups, n_groups)]
+                        ),
+                        np.concatenate([3 * entries.coords[1] + axis, sums, sums]),
+                    ),
+                ),
+                shape=(n_groups + 1, n_freedoms),
+            )
+        )
+        pivots += [*(3 * pivot_nodes + axis), int(sums[np.argmax(scale)])]
+    return Constraint(name, sparse.vstack(rows, format="csr"), np.array(pivots))
+
+
+def centred_weights(weights: Floats, points: Floats, centre: Floats) -> Floats:
+    """Face weights, tilted slightly so that their centroid is the given centre.
+
+    A face's nodes are not quite symmetric about the centre of its joint. With these weights the
+    force of an averaged joint passes through the centre exactly, and carries no moment about it.
+
+    Parameters
+    ----------
+    weights
+        (n,) integrals of the shape functions over the face [m^2].
+    points
+        (n, 3) [m].
+    centre
+        (3,) [m].
+    """
+    r = points - centre
+    tilt = np.linalg.solve(np.einsum("n,ni,nj->ij", weights, r, r), -(weights @ r))
+    return np.asarray(weights * (1.0 + r @ tilt))
+
+
+def shared_motion(
+    name: str, position: Floats, motion: sparse.csr_array, groups: Sequence[Ints], first: int
+) -> tuple[Constraint, ReferencePoint]:
+    """A motion of many nodes as the sum of its groups' shares, which are freedoms of their own.
+
+    A spring on the motion itself would couple each node with each; on the shares it does not.
+
+    Parameters
+    ----------
+    name, position
+        Of the point that moves so.
+    motion
+        (6, n_freedoms) the motion from the nodes' displacements.
+    groups
+        Nodes of each group; together all that the motion has, none of them twice.
+    first
+        First of the 6 len(groups) freedoms.
+    """
+    n_freedoms = motion.shape[1]
+    columns = motion.tocsc()
+    rows, pivots = [], []
+    for number, nodes in enumerate(groups):
+        chosen = freedoms(nodes).ravel()
+        share = columns[:, chosen].toarray()
+        order = linalg.qr(share, mode="r", pivoting=True)[1]
+        pivots.append(chosen[order[:6]])
+        own = first + 6 * number + np.arange(6)[:, None]
+        wide = np.broadcast_to(chosen, (6, chosen.size))
+        rows.append(_rows(np.hstack([share, -np.ones((6, 1))]), np.hstack([wide, own]), n_freedoms))
+    shares = first + np.arange(6)[:, None] + 6 * np.arange(len(groups))
+    total = _rows(np.ones(shares.shape), shares, n_freedoms)
+    stacked = sparse.vstack(rows, format="csr")
+    constraint = Constraint(f"{name} shares", stacked, np.concatenate(pivots))
+    return constraint, ReferencePoint(name, position, total)
+
+
+def rigid_face(name: str, nodes: Ints, points: Floats, point: ReferencePoint) -> Constraint:
+    """The nodes move with the reference point as one rigid body (RBE2)."""
+    n_freedoms = point.motion.shape[1]
+    columns = freedoms(nodes).ravel()
+    own = _rows(np.ones((columns.size, 1)), columns[:, None], n_freedoms)
+    rigid = sparse.csr_array(rigid_motions(points[nodes], point.position))
+    return Constraint(name, (own - rigid @ point.motion).tocsr(), columns)
+
+
+def equal_translations(name: str, first: ReferencePoint, second: ReferencePoint) -> Constraint:
+    """Two reference points move together and turn freely."""
+    rows = (first.motion[:3] - second.motion[:3]).tocsr()
+    return Constraint(name, rows, _pivots(rows))
+
+
+def held(name: str, point: ReferencePoint, components: Sequence[int]) -> Constraint:
+    """Motions of a reference point (0-2 displacements, 3-5 rotations) that are zero."""
+    rows = point.motion[list(components)].tocsr()
+    return Constraint(name, rows, _pivots(rows))
+
+
+def rigid_point(name: str, position: Floats, first_freedom: int, n_freedoms: int) -> ReferencePoint:
+    """A reference point with six freedoms of its own, from ``first_freedom`` on."""
+    columns = first_freedom + np.arange(6)[:, None]
+    return ReferencePoint(name, position, _rows(np.ones((6, 1)), columns, n_freedoms))
+
+
+def averaged_point(
+    name: str, nodes: Ints, weights: Floats, points: Floats, position: Floats, n_freedoms: int
+) -> ReferencePoint:
+    """A reference point that moves as the face does on average, without stiffening it (RBE3).
+
+    The rotation is the weighted least-squares fit of a rigid motion to the face's displacements:
+    omega = I^-1 sum w r x u with r from the face's centroid, as in the RBE3 of Nastran.
+
+    Parameters
+    ----------
+    nodes
+        (n,) nodes of the face.
+    weights
+        (n,) integrals of the shape functions over the face [m^2].
+    points
+        (n_nodes, 3) node coordinates [m].
+    position
+        (3,) where the point is [m].
+    """
+    w = weights / weights.sum()
+    motions = rigid_motions(points[nodes], position)
+    weighted = motions * np.repeat(w, 3)[:, None]
+    fit = np.linalg.solve(motions.T @ weighted, weighted.T)
+    columns = np.broadcast_to(freedoms(nodes).ravel(), fit.shape)
+    return ReferencePoint(name, position, _rows(fit, columns, n_freedoms))
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """All constraints solved for their pivots: u = T q fulfils them for any q.
+
+    Attributes
+    ----------
+    T
+        (n_freedoms, n_freedoms); the columns of eliminated freedoms are empty.
+    free
+        (n_freedoms,) which freedoms are left.
+    constraints
+        What was eliminated.
+    """
+
+    T: sparse.csr_array
+    free: NDArray[np.bool_]
+    constraints: tuple[Constraint, ...]
+
+    def multipliers(self, residual: Floats) -> dict[str, Floats]:
+        """Constraint forces by the name of the constraint.
+
+        Parameters
+        ----------
+        residual
+            (n_freedoms, n_loads) K u - f of the unconstrained system, which the constraints carry.
+
+        Returns
+        -------
+        multipliers
+            (m, n_loads) for each constraint: lambda in K u - f = C^T lambda, one a row of C.
+        """
+        if not self.constraints:
+            return {}
+        C, pivots = _stack(self.constraints)
+        values = splu(C[:, pivots].T.tocsc()).solve(np.asarray(residual[pivots]))
+        sizes = np.cumsum([len(c.pivots) for c in self.constraints])[:-1]
+        return dict(zip((c.name for c in self.constraints), np.split(values, sizes), strict=True))
+
+    def particular(self, right: Mapping[str, Floats]) -> Floats:
+        """One u with C u = g: what is added to T q where displacements are prescribed.
+
+        Parameters
+        ----------
+        right
+            (m, n_loads) g of each constraint that is not homogeneous, by its name.
+
+        Returns
+        -------
+        u
+            (n_freedoms, n_loads), zero at the freedoms that are left.
+        """
+        C, pivots = _stack(self.constraints)
+        n_loads = max(values.shape[1] for values in right.values())
+        g = [right.get(c.name, np.zeros((len(c.pivots), n_loads))) for c in self.constraints]
+        u = np.zeros((C.shape[1], n_loads))
+        u[pivots] = splu(C[:, pivots].tocsc()).solve(np.vstack(g))
+        return u
+
+
+def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination:
+    """Solve all constraints together for their pivots.
+
+    Raises
+    ------
+    InputError
+        Two constraints hold the same freedom.
+    """
+    owner = np.full(n_freedoms, -1)
+    for number, constraint in enumerate(constraints):
+        taken = owner[constraint.pivots]
+        if (taken >= 0).any() or len(np.unique(constraint.pivots)) < len(constraint.pivots):
+            other = constraints[int(taken.max())].name if (taken >= 0).any() else constraint.name
+            raise InputError(
+                f"{constraint.name!r} and {other!r} constrain the same nodes: "
+                "give each interface and support a face of its own"
+            )
+        owner[constraint.pivots] = number
+    free = np.flatnonzero(owner < 0)
+    keep = _selection(free, n_freedoms)
+    T = keep
+    if constraints:
+        C, pivots = _stack(constraints)
+        right = -C[:, free]
+        # Pivots may stand in other rows too, so the (small, sparse) pivot block is solved; only
+        # for the columns that are not empty.
+        columns = np.flatnonzero(np.diff(right.indptr))
+        factor = splu(C[:, pivots])
+        solved = [
+            sparse.csc_array(factor.solve(right[:, some].toarray()))
+            for some in np.array_split(columns, len(columns) // _BLOCK + 1)
+        ]
+        dependent = sparse.hstack(solved, format="csr") @ _selection(columns, free.size).T
+        T = (T + _selection(pivots, n_freedoms) @ dependent).tocsr()
+    return Elimination((T @ keep.T).tocsr(), owner < 0, tuple(constraints))
+
+
+def _stack(constraints: Sequence[Constraint]) -> tuple[sparse.csc_array, Ints]:
+    C = sparse.vstack([constraint.rows for constraint in constraints], format="csc")
+    return C, np.concatenate([constraint.pivots for constraint in constraints])
+
+
+def _selection(chosen: Ints, size: int) -> sparse.csr_array:
+    """(size, n_chosen) matrix that puts values to their places."""
+    return sparse.csr_array(
+        (np.ones(chosen.size), (chosen, np.arange(chosen.size))), shape=(size, chosen.size)
+    )
+
+
+def _rows(coefficients: Floats, columns: Ints, n_freedoms: int) -> sparse.csr_array:
+    m, k = coefficients.shape
+    return sparse.csr_array(
+        (coefficients.ravel(), np.ascontiguousarray(columns).ravel(), np.arange(0, m * k + 1, k)),
+        shape=(m, n_freedoms),
+    )
+
+
+def _pivots(rows: sparse.csr_array) -> Ints:
+    """One column for each row, so that the block of these columns is far from singular."""
+    columns = np.unique(rows.indices)
+    order = linalg.qr(rows[:, columns].toarray(), mode="r", pivoting=True)[1]
+    return np.asarray(columns[order[: rows.shape[0]]])

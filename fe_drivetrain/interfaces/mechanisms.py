@@ -1,0 +1,332 @@
+"""A scene that can move without deforming is found and named before anything is solved.
+
+Without strain, each body (parts that share nodes) has six rigid motions. A combination of them
+that fulfils every constraint and stretches no spring is a mechanism. One that stretches soft
+springs only is nearly one: round-off of the stiffness of the bodies, which the motion should not
+feel at all, is then no longer small beside that of the springs, and digits of the result are lost.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg, sparse
+from scipy.sparse.csgraph import connected_components
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces.constraints import AXES, Constraint, ReferencePoint
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.operator.elasticity import rigid_motions
+
+# Relative to constraint rows of size one: far above round-off, far below any real restraint.
+_NULL = 1e-9
+
+_EPSILON = float(np.finfo(np.float64).eps)
+
+WEAK = 1e-9
+"""Restraint of a motion, relative to the bodies' own stiffness, below which it is warned of.
+
+Round-off leaves an error of about 2e-16 over this ratio, and of an averaged joint up to a hundred
+times as much (``cases/stability/near_mechanisms.py``): of the seven digits that are left here two
+may go there, and four is what a stiffness needs.
+"""
+
+
+@dataclass(frozen=True)
+class WeakMotion:
+    """A motion without strain that soft springs alone restrain.
+
+    Attributes
+    ----------
+    description
+        What moves and how, as in "shaft can nearly turn about x through (0, 0, 0) m".
+    ratio
+        Work of the springs over that of a spring of the bodies' own scale, Young's modulus times
+        length, which is stretched by the largest displacement anywhere in the body.
+    """
+
+    description: str
+    ratio: float
+
+    @property
+    def digits_lost(self) -> float:
+        """Decades from the springs to the bodies, of the sixteen digits of a double."""
+        return -math.log10(min(max(self.ratio, _EPSILON), 1.0))
+
+    def __str__(self) -> str:
+        return (
+            f"{self.description}: the only restraint is {self.ratio:.1g} of the stiffness of what "
+            f"moves (Young's modulus times length); results in that direction lose "
+            f"{self.digits_lost:.0f} of 16 digits"
+        )
+
+
+@dataclass(frozen=True)
+class _StrainFree:
+    """Rigid motions of all bodies, then the freedoms that belong to no body, as columns.
+
+    Attributes
+    ----------
+    motions
+        (n_freedoms, 6 n_bodies + n_extra) displacements; turning is measured by its `length`.
+    body_of_node
+        (n_nodes,).
+    names
+        Of the parts of each body.
+    centres
+        (n_bodies, 3) that the bodies turn about [m].
+    length
+        Turning by 1 / length moves the far end of the scene by about one [m].
+    extents
+        (n_bodies,) largest dimension of each body [m].
+    """
+
+    motions: Floats
+    body_of_node: Ints
+    names: list[tuple[str, ...]]
+    centres: Floats
+    length: float
+    extents: Floats
+
+    def largest(self, motion: Floats) -> Floats:
+        """(n_bodies,) largest displacement of any node of each body in a motion (m,)."""
+        moved = (self.motions @ motion)[: 3 * len(self.body_of_node)].reshape(-1, 3)
+        found = np.zeros(len(self.names))
+        np.maximum.at(found, self.body_of_node, np.linalg.norm(moved, axis=1))
+        return found
+
+
+def bodies(mesh: Mesh) -> tuple[Ints, list[tuple[str, ...]]]:
+    """Which body each node belongs to, and the names of the parts of each body.
+
+    Returns
+    -------
+    body_of_node, part_names
+        (n_nodes,) and one tuple of names for each body.
+    """
+    n = len(mesh.points)
+    first = np.repeat(mesh.cells[:, 0], mesh.cells.shape[1])
+    graph = sparse.coo_array((np.ones(first.size), (first, mesh.cells.ravel())), shape=(n, n))
+    count, body_of_node = connected_components(graph, directed=False)
+    body_of_cell = body_of_node[mesh.cells[:, 0]]
+    names = [
+        tuple(mesh.part_names[p] for p in np.unique(mesh.part[body_of_cell == body]))
+        for body in range(count)
+    ]
+    return body_of_node, names
+
+
+def find_mechanisms(
+    mesh: Mesh,
+    constraints: Sequence[Constraint],
+    springs: Sequence[tuple[ReferencePoint, Floats]],
+) -> list[str]:
+    """Describe every motion that costs no energy; empty where the scene stands still.
+
+    Parameters
+    ----------
+    mesh
+        The whole scene.
+    constraints
+        All interfaces and supports.
+    springs
+        Reference points with their (6, 6) stiffness to ground.
+    """
+    free = _strain_free(mesh, _n_freedoms(mesh, constraints, springs))
+    motions = free.motions
+    restraints = [np.zeros((1, motions.shape[1]))]
+    restraints += [constraint.rows @ motions for constraint in constraints]
+    for point, stiffness in springs:
+        values, vectors = np.linalg.eigh(stiffness)
+        active = vectors[:, values > 0.0]
+        restraints.append(active.T @ (point.motion @ motions))
+    null = _null_space(restraints)[:, : 6 * len(free.names)]
+    null = null[np.abs(null).max(axis=1) > _NULL] if null.size else null
+    return [_describe(motion.reshape(-1, 6), free, "freely") for motion in _sparsest(null)]
+
+
+def refuse_mechanisms(
+    mesh: Mesh,
+    constraints: Sequence[Constraint],
+    springs: Sequence[tuple[ReferencePoint, Floats]],
+) -> None:
+    """Raise an InputError that names every free motion, where there is one."""
+    found = find_mechanisms(mesh, constraints, springs)
+    if found:
+        raise InputError(
+            "the scene is a mechanism: " + "; ".join(found) + ": add a support, or a gearbox "
+            "stiffness in that direction"
+        )
+
+
+def weak_restraints(
+    mesh: Mesh,
+    constraints: Sequence[Constraint],
+    springs: Sequence[tuple[ReferencePoint, Floats]],
+    moduli: Mapping[str, float],
+    below: float = WEAK,
+) -> list[WeakMotion]:
+    """Every motion without strain that the constraints allow and springs hardly restrain.
+
+    Parameters
+    ----------
+    mesh, constraints, springs
+        As for `find_mechanisms`; the scene is no mechanism.
+    moduli
+        Young's modulus of each part [Pa]; of a body of several parts the largest counts.
+    below
+        Ratio of the restraint to the bodies' own stiffness that a motion must be below.
+
+    Returns
+    -------
+    motions
+        The weakest restraint first.
+    """
+    if not springs:
+        return []
+    free = _strain_free(mesh, _n_freedoms(mesh, constraints, springs))
+    n_moving = 6 * len(free.names)
+    null = _null_space(
+        [np.zeros((1, free.motions.shape[1])), *(c.rows @ free.motions for c in constraints)]
+    )
+    # Roots of energies, so that soft and stiff springs side by side do not drown each other.
+    rows = []
+    for point, stiffness in springs:
+        values, vectors = np.linalg.eigh(stiffness)
+        root = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+        rows.append(root @ (point.motion @ free.motions))
+    springs_root = np.vstack(rows)
+    moduli_of = [max(moduli[part] for part in names) for names in free.names]
+    own = np.array(moduli_of) * free.extents
+    # The bodies' scale as the unit; what belongs to no body follows the bodies.
+    scaled = null[:, :n_moving] * np.repeat(np.sqrt(own), 6)
+    left, sizes, _ = np.linalg.svd(scaled, full_matrices=False)
+    kept = sizes > _NULL * sizes.max(initial=0.0)
+    basis = (left[:, kept] / sizes[kept]).T @ null
+    sizes, right = np.linalg.svd(springs_root @ basis.T)[1:]
+    sizes = np.append(sizes, np.zeros(len(basis) - len(sizes)))
+    # Here a body that turns is measured by the length of the scene: never less than what its nodes
+    # move, but where it moves along as well.
+    weak = right[sizes**2 < 2.0 * below] @ basis
+    scale = np.abs(weak[:, :n_moving]).max(axis=1, initial=0.0)
+    found = []
+    for motion in _sparsest(weak / scale[:, None], n_moving):
+        work = float(((springs_root @ motion) ** 2).sum())
+        ratio = work / float(own @ free.largest(motion) ** 2)
+        if ratio < below:
+            moved = motion[:n_moving].reshape(-1, 6)
+            found.append(WeakMotion(_describe(moved, free, "nearly"), ratio))
+    return sorted(found, key=lambda motion: motion.ratio)
+
+
+def warn_of_weak_restraints(
+    mesh: Mesh,
+    constraints: Sequence[Constraint],
+    springs: Sequence[tuple[ReferencePoint, Floats]],
+    moduli: Mapping[str, float],
+) -> tuple[str, ...]:
+    """One sentence for each motion of `weak_restraints`.
+
+    Raises
+    ------
+    InputError
+        A restraint is so weak that round-off leaves no digit of the result.
+    """
+    found = weak_restraints(mesh, constraints, springs, moduli)
+    lost = [motion for motion in found if motion.ratio < _EPSILON]
+    if lost:
+        raise InputError(
+            "the scene is a mechanism but for round-off: "
+            + "; ".join(map(str, lost))
+            + f": give the spring there at least {WEAK:g} of that stiffness, or hold it rigidly"
+        )
+    return tuple(map(str, found))
+
+
+def _strain_free(mesh: Mesh, n_freedoms: int) -> _StrainFree:
+    body_of_node, names = bodies(mesh)
+    n = len(mesh.points)
+    length = float(np.ptp(mesh.points, axis=0).max())
+    centres = np.array([mesh.points[body_of_node == b].mean(axis=0) for b in range(len(names))])
+    extra = n_freedoms - 3 * n
+    motions = np.zeros((n_freedoms, 6 * len(names) + extra))
+    extents = np.zeros(len(names))
+    for b in range(len(names)):
+        nodes = np.flatnonzero(body_of_node == b)
+        extents[b] = np.ptp(mesh.points[nodes], axis=0).max()
+        # Turning about a body's own centre, by the angle that moves its far end by about one.
+        rigid = rigid_motions(mesh.points[nodes], centres[b])
+        rigid[:, 3:] /= length
+        rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+        motions[rows, 6 * b : 6 * b + 6] = rigid
+    motions[3 * n :, 6 * len(names) :] = np.eye(extra)
+    return _StrainFree(motions, body_of_node, names, centres, length, extents)
+
+
+def _null_space(restraints: Sequence[Floats]) -> Floats:
+    """(n_null, m) orthonormal combinations of motions that no restraint (k, m) feels."""
+    A = linalg.qr(np.vstack(restraints), mode="r")[0]
+    _, sizes, right = np.linalg.svd(A)
+    rank = int((sizes > _NULL * max(sizes[0], 1.0)).sum()) if sizes.size else 0
+    return np.asarray(right[rank:])
+
+
+def _n_freedoms(
+    mesh: Mesh,
+    constraints: Sequence[Constraint],
+    springs: Sequence[tuple[ReferencePoint, Floats]],
+) -> int:
+    if constraints:
+        return int(constraints[0].rows.shape[1])
+    return int(springs[0][0].motion.shape[1]) if springs else 3 * len(mesh.points)
+
+
+def _sparsest(null: Floats, n_columns: int | None = None) -> Floats:
+    """Reduced row echelon form of a null space: each motion moves as few things as it can.
+
+    Of ``n_columns`` columns, all where not given; the others go along.
+    """
+    basis = null.copy()
+    rank = 0
+    # Rotations first: "turns about x" says more than a translation that comes with it.
+    columns = sorted(range(n_columns or basis.shape[1]), key=lambda c: (c // 6, c % 6 < 3, c))
+    for column in columns:
+        if rank == len(basis):
+            break
+        row = rank + int(np.argmax(np.abs(basis[rank:, column])))
+        if abs(basis[row, column]) < 1e-6:
+            continue
+        basis[[rank, row]] = basis[[row, rank]]
+        basis[rank] /= basis[rank, column]
+        others = [r for r in range(len(basis)) if r != rank]
+        basis[others] -= np.outer(basis[others, column], basis[rank])
+        rank += 1
+    return basis[:rank]
+
+
+def _describe(motion: Floats, free: _StrainFree, how: str) -> str:
+    """Who moves and how: "freely" or "nearly"."""
+    names, length = free.names, free.length
+    moving = [b for b in range(len(names)) if np.abs(motion[b]).max() > 1e-6]
+    parts = [name for b in moving for name in names[b]]
+    subject = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+    translation, rotation = motion[moving[0]][:3], motion[moving[0]][3:] / length
+    turn = np.linalg.norm(rotation)
+    move, spin = (f"{v} freely" if how == "freely" else f"{how} {v}" for v in ("move", "turn"))
+    if turn * length < 1e-6:
+        return f"{subject} can {move} along {_direction(translation)}"
+    # The point of the axis that is nearest to the body's centre.
+    through = free.centres[moving[0]] + np.cross(rotation, translation) / turn**2
+    through = through - rotation * (rotation @ through) / turn**2
+    at = ", ".join(f"{x:.3g}" for x in np.where(np.abs(through) < 1e-6 * length, 0.0, through))
+    return f"{subject} can {spin} about {_direction(rotation)} through ({at}) m"
+
+
+def _direction(vector: Floats) -> str:
+    unit = vector / np.linalg.norm(vector)
+    axis = int(np.argmax(np.abs(unit)))
+    if abs(unit[axis]) > 1 - 1e-6:
+        return AXES[axis]
+    return "the direction (" + ", ".join(f"{x:.3g}" for x in unit) + ")"

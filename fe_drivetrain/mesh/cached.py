@@ -1,0 +1,131 @@
+"""Meshes from the cache: the same parts and sizes are meshed once."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache as once
+from importlib.resources import files
+from typing import Any
+
+import gmsh
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
+from fe_drivetrain.mesh.mesh import Mesh, generate
+
+Arrays = dict[str, NDArray[Any]]
+
+
+def cached_mesh(
+    shaft: Shaft | None,
+    bearings: Sequence[Bearing],
+    housings: Mapping[str, Housing],
+    sizes: MeshSizes,
+    bonded: frozenset[str],
+    cache: Cache | None = None,
+) -> Mesh:
+    """The mesh of these parts, taken from the cache where it was made before.
+
+    Parameters
+    ----------
+    shaft, bearings, housings, sizes, bonded
+        As for `fe_drivetrain.mesh.mesh.generate`.
+    cache
+        The user's if not given.
+
+    Returns
+    -------
+    Mesh
+        The same to the last bit, and laid out alike in memory, whether it was kept or made now;
+        its ``kept`` says which.
+
+    Raises
+    ------
+    InputError
+        As `fe_drivetrain.mesh.mesh.generate`.
+    """
+    used = user_cache() if cache is None else cache
+    content = _content(shaft, bearings, housings, sizes, bonded)
+    arrays = used.load("meshes", content)
+    if arrays is not None:
+        try:
+            return replace(_from_arrays(arrays), kept=True)
+        except (KeyError, IndexError, ValueError):
+            pass  # not as it was written: made anew below
+    arrays = _to_arrays(generate(shaft, bearings, housings, sizes, bonded))
+    used.keep("meshes", content, arrays)
+    return _from_arrays(arrays)
+
+
+def _content(
+    shaft: Shaft | None,
+    bearings: Sequence[Bearing],
+    housings: Mapping[str, Housing],
+    sizes: MeshSizes,
+    bonded: frozenset[str],
+) -> dict[str, Any]:
+    """All that a mesh depends on; the material is not among it."""
+    return {
+        "shaft": None if shaft is None else shaft.model_dump(mode="json", exclude={"material"}),
+        "bearings": [b.model_dump(mode="json", exclude={"material"}) for b in bearings],
+        "housings": {
+            name: housing.model_dump(mode="json", exclude={"material"})
+            for name, housing in housings.items()
+        },
+        "sizes": sizes.model_dump(mode="json"),
+        "bonded": sorted(bonded),
+        "made by": _made_by(),
+    }
+
+
+@once
+def _made_by() -> dict[str, str]:
+    """The programs that make a mesh: another version may make another mesh."""
+    code = hashlib.sha256()
+    for package, names in (("fe_drivetrain.geometry", None), ("fe_drivetrain.mesh", {"mesh.py"})):
+        for file in sorted(files(package).iterdir(), key=lambda file: file.name):
+            if file.name.endswith(".py") and (names is None or file.name in names):
+                code.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return {
+        "gmsh": gmsh.__version__,
+        "numpy": np.__version__,
+        # A home folder may be shared by machines whose last digits differ.
+        "machine": f"{platform.system()} {platform.machine()}",
+        "code": code.hexdigest(),
+    }
+
+
+def _to_arrays(mesh: Mesh) -> Arrays:
+    """A mesh as plain arrays."""
+    arrays = {
+        "points": mesh.points,
+        "cells": mesh.cells,
+        "part": mesh.part,
+        "part_names": np.array(mesh.part_names, dtype=np.str_),
+        "face_names": np.array(list(mesh.faces), dtype=np.str_),
+        "point_names": np.array(list(mesh.named_points), dtype=np.str_),
+        "named_points": np.array(list(mesh.named_points.values()), dtype=np.int64),
+    }
+    arrays |= {f"face {k}": face for k, face in enumerate(mesh.faces.values())}
+    # How arrays lie in memory can decide the last digits of what follows, so as a file keeps them.
+    return {name: np.ascontiguousarray(array) for name, array in arrays.items()}
+
+
+def _from_arrays(arrays: Arrays) -> Mesh:
+    names = [str(name) for name in arrays["face_names"]]
+    return Mesh(
+        arrays["points"],
+        arrays["cells"],
+        arrays["part"],
+        tuple(str(name) for name in arrays["part_names"]),
+        {name: arrays[f"face {k}"] for k, name in enumerate(names)},
+        {
+            str(name): int(node)
+            for name, node in zip(arrays["point_names"], arrays["named_points"], strict=True)
+        },
+    )

@@ -1,0 +1,524 @@
+"""Structured hexahedra of a shaft: its meridian in quadrilaterals, turned about the x axis.
+
+Every node lies where the true cylinder or cone has it: the outer surface, the bore, and the
+surfaces of revolution between them. A solid length has a core of square cross-section instead of
+elements that would be pointed at the axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise, product
+from typing import Literal
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.mesh.linear import renumbered
+
+Nodes = Literal[8, 20, 27]
+
+SAME_LENGTH = 1e-9
+"""Two lengths closer than this (m) are the same length."""
+
+CORE = 0.5
+"""Radius inside which a solid length has its core, as a share of its least radius."""
+SQUARE = 0.6
+"""Half the diagonal of the square in the core, as a share of the core's radius."""
+
+VTK_LATTICE = np.array(
+    [
+        *((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)),
+        *((1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)),
+        *((0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)),
+        *((0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2), (1, 1, 1)),
+    ]
+)
+"""Places of the 27 nodes, in VTK's order, on the lattice of half edges of a hexahedron.
+
+Corners, middles of edges, of faces, of the body: the first 8 and 20 are the elements of so many
+nodes.
+"""
+
+
+@dataclass(frozen=True)
+class Hexahedra:
+    """Hexahedra of a shaft.
+
+    Attributes
+    ----------
+    points
+        (n, 3), m.
+    cells
+        (ne, 8), (ne, 20) or (ne, 27) node ids in VTK's order.
+    front, rear
+        Ids of the nodes of the two end faces, ascending.
+    seats
+        Ids of the nodes of each bearing seat by its name, ascending.
+    """
+
+    points: Floats
+    cells: Ints
+    front: Ints
+    rear: Ints
+    seats: dict[str, Ints]
+
+
+@dataclass(frozen=True)
+class Grading:
+    """Ever thinner layers of elements where stress is singular.
+
+    The element beside such an edge is split that many times, each time at `ratio` of what is
+    left next to the edge.
+
+    Attributes
+    ----------
+    steps
+        Layers at the re-entrant edges of steps in the outer diameter and the bore.
+    ends
+        Layers at the edges of the two end faces, singular where an end is held or rigid.
+    ratio
+        Between 0 and 1.
+    """
+
+    steps: int = 0
+    ends: int = 0
+    ratio: float = 0.3
+
+
+UNGRADED = Grading()
+
+
+def shaft_hexahedra(
+    shaft: Shaft,
+    size: float,
+    nodes: Nodes = 27,
+    *,
+    elements_per_turn: int = 12,
+    refinement: int = 1,
+    grading: Grading = UNGRADED,
+    seats: Mapping[str, tuple[float, float]] | None = None,
+) -> Hexahedra:
+    """Mesh a shaft with structured hexahedra, curved where they have nodes to be curved with.
+
+    Parameters
+    ----------
+    shaft
+        Without fillets; bored or solid, stepped, tapered, with a flange or without.
+    size
+        Largest length of an element along x and along the radius, m.
+    nodes
+        Of each element: 8, 20 or 27.
+    elements_per_turn
+        Elements round the axis, a multiple of 4 where a length of the shaft is solid.
+    refinement
+        Every element of the mesh for 1 is cut into so many along each of its three directions.
+    grading
+        Thinner layers at edges where stress is singular.
+    seats
+        Ranges (low, high) of x of bearing seats by name, m; each gets its own nodes.
+
+    Returns
+    -------
+    Hexahedra
+
+    Raises
+    ------
+    InputError
+        The shaft has a fillet, or a setting is out of its range.
+    """
+    _check(shaft, size, nodes, elements_per_turn, refinement, grading)
+    seats = {} if seats is None else dict(seats)
+    seat_radii = {
+        name: shaft.seat_diameter((low + high) / 2, high - low, name) / 2
+        for name, (low, high) in seats.items()
+    }
+    core = CORE * min(r for piece in _pieces(shaft, 0.0) for r in piece.radii if r > 0)
+    meridian = _meridian(_pieces(shaft, core), size, refinement, grading, seats.values())
+    turn = 2 * elements_per_turn * refinement
+    points, cells = _turned(meridian, turn)
+    if any(piece.inner_diameter == 0 for piece in shaft.pieces):
+        points, cells = _with_core(points, cells, meridian, core, turn, refinement)
+    mesh = renumbered(points, cells[:, :nodes])
+    x, r = mesh.points[:, 0], np.hypot(mesh.points[:, 1], mesh.points[:, 2])
+    return Hexahedra(
+        mesh.points,
+        mesh.cells,
+        np.flatnonzero(np.abs(x - shaft.front) < SAME_LENGTH),
+        np.flatnonzero(np.abs(x - shaft.rear) < SAME_LENGTH),
+        {
+            name: np.flatnonzero(
+                (np.abs(r - seat_radii[name]) < SAME_LENGTH)
+                & (x > low - SAME_LENGTH)
+                & (x < high + SAME_LENGTH)
+            )
+            for name, (low, high) in seats.items()
+        },
+    )
+
+
+def shaft_quadrilaterals(
+    shaft: Shaft, size: float, *, refinement: int = 1, grading: Grading = UNGRADED
+) -> tuple[Floats, Ints]:
+    """The meridian that `shaft_hexahedra` turns, down to the axis where the shaft is solid.
+
+    Parameters
+    ----------
+    shaft, size, refinement, grading
+        As for `shaft_hexahedra`.
+
+    Returns
+    -------
+    nodes, quads
+        (n, 2) x and radius, m; (nq, 3, 3) node ids, along x, then along the radius: corners at
+        even places, middles at odd ones.
+
+    Raises
+    ------
+    InputError
+        As `shaft_hexahedra`.
+    """
+    _check(shaft, size, 27, 4, refinement, grading)
+    meridian = _meridian(_pieces(shaft, 0.0), size, refinement, grading, [])
+    return meridian.nodes, meridian.quads
+
+
+def _check(
+    shaft: Shaft, size: float, nodes: int, turn: int, refinement: int, grading: Grading
+) -> None:
+    for piece, x in zip(shaft.pieces, shaft.stations[1:], strict=False):
+        if piece.fillet > 0:
+            raise InputError(
+                f"shaft step at x = {x:g} m: fillet is {piece.fillet:g} m but must be 0 for "
+                "hexahedra: set it to 0, or mesh the shaft with tetrahedra (mesh.generate)"
+            )
+    solid = any(piece.inner_diameter == 0 for piece in shaft.pieces)
+    if turn < 4 or (solid and turn % 4):
+        allowed = "a multiple of 4 for a shaft with a solid length" if solid else "4 or more"
+        raise InputError(f"elements_per_turn is {turn} but must be {allowed}: try 12")
+    ranges = (
+        ("size", size, 0 < size < math.inf, "greater than 0", "give an edge length in m"),
+        ("nodes", nodes, nodes in (8, 20, 27), "8, 20 or 27", "use 27 where in doubt"),
+        ("refinement", refinement, refinement >= 1, "1 or more", "1 leaves the mesh as it is"),
+        ("grading.ratio", grading.ratio, 0 < grading.ratio < 1, "between 0 and 1", "try 0.3"),
+        ("grading.steps", grading.steps, grading.steps >= 0, "0 or more", "0 grades nothing"),
+        ("grading.ends", grading.ends, grading.ends >= 0, "0 or more", "0 grades nothing"),
+    )
+    for name, value, right, allowed, mend in ranges:
+        if not right:
+            raise InputError(f"hexahedra: {name} is {value:g} but must be {allowed}: {mend}")
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A length of the meridian: straight below (a bore, or the core), straight above."""
+
+    x0: float
+    x1: float
+    inner: float
+    outer: tuple[float, float]
+    solid: bool
+
+    @property
+    def radii(self) -> tuple[float, float, float]:
+        return (self.inner, *self.outer)
+
+    def radius(self, share: float, end: int) -> float:
+        """Radius at a share of the wall, at the front (0) or the rear (1)."""
+        return self.inner + share * (self.outer[end] - self.inner)
+
+    def share(self, radius: float, end: int) -> float:
+        """Inverse of `radius`."""
+        return (radius - self.inner) / (self.outer[end] - self.inner)
+
+
+def _pieces(shaft: Shaft, core: float) -> list[_Piece]:
+    return [
+        _Piece(
+            x0,
+            x1,
+            piece.inner_diameter / 2 or core,
+            (piece.outer_diameter / 2, piece.end_diameter / 2),
+            piece.inner_diameter == 0,
+        )
+        for piece, (x0, x1) in zip(shaft.pieces, pairwise(shaft.stations), strict=True)
+    ]
+
+
+def _lines(pieces: list[_Piece]) -> list[list[float]]:
+    """Shares of the wall at which each piece is divided, so that neighbours match at each step.
+
+    The outer surface and the bore of a piece go on as a line inside its neighbour, along the
+    same share of the wall, and from there into the next.
+    """
+    shares: list[list[float]] = [[0.0, 1.0] for _ in pieces]
+    changed = True
+    while changed:
+        changed = False
+        for a, b in pairwise(range(len(pieces))):
+            for one, end, other, beginning in ((a, 1, b, 0), (b, 0, a, 1)):
+                for share in list(shares[one]):
+                    radius = pieces[one].radius(share, end)
+                    wall = pieces[other].inner, pieces[other].outer[beginning]
+                    there = [pieces[other].radius(s, beginning) for s in shares[other]]
+                    inside = wall[0] - SAME_LENGTH < radius < wall[1] + SAME_LENGTH
+                    if inside and min(abs(radius - r) for r in there) > SAME_LENGTH:
+                        shares[other].append(pieces[other].share(radius, beginning))
+                        changed = True
+    return [sorted(s) for s in shares]
+
+
+def _strips(pieces: list[_Piece], shares: list[list[float]]) -> list[list[int]]:
+    """Number of the strip that each interval between lines belongs to, through all pieces."""
+    numbers: list[list[int]] = []
+    count = 0
+    for p, piece in enumerate(pieces):
+        row = []
+        for low, high in pairwise(shares[p]):
+            found = count
+            if p:
+                before, middle = pieces[p - 1], piece.radius((low + high) / 2, 0)
+                edges = [before.radius(s, 1) for s in shares[p - 1]]
+                k = int(np.searchsorted(edges, middle)) - 1
+                if 0 <= k < len(edges) - 1:
+                    found = numbers[-1][k]
+            row.append(found)
+            count = max(count, found + 1)
+        numbers.append(row)
+    return numbers
+
+
+def _divided(n: int, low: int, high: int, ratio: float, refinement: int) -> Floats:
+    """A lattice of half edges on [0, 1]: n elements, the first and last split towards the end.
+
+    Returns
+    -------
+    (2 m + 1,) ascending: vertices at the even places, middles at the odd ones.
+    """
+    if low and high:
+        n = max(n, 2)
+    vertices = np.linspace(0.0, 1.0, n + 1)
+    beside = vertices[1] * ratio ** np.arange(low, 0, -1)
+    above = 1.0 - vertices[1] * ratio ** np.arange(1, high + 1)
+    vertices = np.concatenate([[0.0], beside, vertices[1:-1], above, [1.0]])
+    halves = np.arange(2 * refinement) / (2 * refinement)
+    inner = vertices[:-1, None] + np.diff(vertices)[:, None] * halves
+    return np.append(inner.ravel(), 1.0)
+
+
+@dataclass(frozen=True)
+class _Meridian:
+    """Nine-node quadrilaterals in the half plane of x and radius.
+
+    Attributes
+    ----------
+    nodes
+        (n, 2) x and radius, m.
+    quads
+        (nq, 3, 3) node ids: along x, then along the radius.
+    core_edges
+        (nc, 3) node ids, along x, of the edges on the core of solid lengths.
+    """
+
+    nodes: Floats
+    quads: Ints
+    core_edges: Ints
+
+
+def _meridian(
+    pieces: list[_Piece],
+    size: float,
+    refinement: int,
+    grading: Grading,
+    seats: Iterable[tuple[float, float]],
+) -> _Meridian:
+    shares = _lines(pieces)
+    strips = _strips(pieces, shares)
+    lattices = _radial_lattices(pieces, shares, strips, size, refinement, grading)
+    cuts = sorted({x for seat in seats for x in seat})
+    steps = _step_stations(pieces)
+    nodes, columns, quads, edges = [], [], [], []
+    first_column = first_node = 0
+    for p, piece in enumerate(pieces):
+        x = _along(piece, cuts, steps, (pieces[0].x0, pieces[-1].x1), size, refinement, grading)
+        walls = [
+            low + (high - low) * lattices[strip]
+            for (low, high), strip in zip(pairwise(shares[p]), strips[p], strict=True)
+        ]
+        wall = np.concatenate([walls[0], *(w[1:] for w in walls[1:])])
+        along = (x - piece.x0) / (piece.x1 - piece.x0)
+        outer = piece.outer[0] + (piece.outer[1] - piece.outer[0]) * along
+        radius = piece.inner + (outer - piece.inner)[:, None] * wall
+        place = first_node + np.arange(radius.size).reshape(radius.shape)
+        nodes.append(np.column_stack([np.repeat(x, len(wall)), radius.ravel()]))
+        columns.append(np.repeat(first_column + np.arange(len(x)), len(wall)))
+        windows = np.lib.stride_tricks.sliding_window_view(place, (3, 3))[::2, ::2]
+        quads.append(windows.reshape(-1, 3, 3))
+        if piece.solid:
+            edges.append(np.lib.stride_tricks.sliding_window_view(place[:, 0], 3)[::2])
+        first_column += len(x) - 1
+        first_node += radius.size
+    merged, number = _merged(np.concatenate(nodes), np.concatenate(columns))
+    core_edges = np.concatenate(edges) if edges else np.empty((0, 3), dtype=np.int64)
+    return _Meridian(merged, number[np.concatenate(quads)], number[core_edges])
+
+
+def _merged(nodes: Floats, columns: Ints) -> tuple[Floats, Ints]:
+    """Nodes of one column and one radius made one; positions, and each old node's new id."""
+    order = np.lexsort((nodes[:, 1], columns))
+    apart = (np.diff(columns[order]) > 0) | (np.diff(nodes[order, 1]) > SAME_LENGTH)
+    rank = np.concatenate([[0], np.cumsum(apart)])
+    number = np.empty(len(nodes), dtype=np.int64)
+    number[order] = rank
+    return nodes[order][np.concatenate([[True], apart])], number
+
+
+def _step_stations(pieces: list[_Piece]) -> dict[float, list[float]]:
+    """Radii of the re-entrant edges by the x of their step."""
+    found: dict[float, list[float]] = {}
+    for one, two in pairwise(pieces):
+        if abs(one.outer[1] - two.outer[0]) > SAME_LENGTH:
+            found.setdefault(one.x1, []).append(min(one.outer[1], two.outer[0]))
+        # the core of a solid length is no edge, but the end of its neighbour's bore is
+        bores = [0.0 if piece.solid else piece.inner for piece in (one, two)]
+        if abs(bores[0] - bores[1]) > SAME_LENGTH:
+            found.setdefault(one.x1, []).append(max(bores))
+    return found
+
+
+def _radial_lattices(
+    pieces: list[_Piece],
+    shares: list[list[float]],
+    strips: list[list[int]],
+    size: float,
+    refinement: int,
+    grading: Grading,
+) -> dict[int, Floats]:
+    """Lattice of half edges across each strip: as many elements as its thickest place needs."""
+    steps = _step_stations(pieces)
+    counts: dict[int, int] = {}
+    layers: dict[int, list[int]] = {}
+    for p, piece in enumerate(pieces):
+        for (low, high), strip in zip(pairwise(shares[p]), strips[p], strict=True):
+            thickness = max(piece.radius(high, e) - piece.radius(low, e) for e in (0, 1))
+            counts[strip] = max(counts.get(strip, 1), _count(thickness, size))
+            sides = layers.setdefault(strip, [0, 0])
+            for end, side in product((0, 1), (0, 1)):
+                radius = piece.radius((low, high)[side], end)
+                corners = steps.get((piece.x0, piece.x1)[end], [])
+                if any(abs(radius - r) < SAME_LENGTH for r in corners):
+                    sides[side] = max(sides[side], grading.steps)
+                is_end = (p, end) in ((0, 0), (len(pieces) - 1, 1))
+                is_surface = (low, high)[side] == side and not (side == 0 and piece.solid)
+                if is_end and is_surface:
+                    sides[side] = max(sides[side], grading.ends)
+    return {
+        strip: _divided(n, layers[strip][0], layers[strip][1], grading.ratio, refinement)
+        for strip, n in counts.items()
+    }
+
+
+def _along(
+    piece: _Piece,
+    cuts: list[float],
+    steps: Mapping[float, list[float]],
+    ends: tuple[float, float],
+    size: float,
+    refinement: int,
+    grading: Grading,
+) -> Floats:
+    """Lattice of half edges along a piece, m, with a vertex at each cut inside it."""
+    inside = [c for c in cuts if piece.x0 + SAME_LENGTH < c < piece.x1 - SAME_LENGTH]
+    lattice = [np.array([piece.x0])]
+    for a, b in pairwise([piece.x0, *inside, piece.x1]):
+        low, high = (
+            grading.steps if x in steps else grading.ends if x in ends else 0 for x in (a, b)
+        )
+        t = _divided(_count(b - a, size), low, high, grading.ratio, refinement)
+        lattice.append((a + (b - a) * t)[1:])
+    return np.concatenate(lattice)
+
+
+def _count(length: float, size: float) -> int:
+    return max(1, math.ceil(length / size - 1e-6))
+
+
+def _turned(meridian: _Meridian, turn: int) -> tuple[Floats, Ints]:
+    """The quadrilaterals turned about the x axis, in steps of half an element.
+
+    Returns
+    -------
+    points, cells
+        (n * turn, 3), node k of ring m at m * turn + k; and (nq * turn / 2, 27).
+    """
+    angle = 2 * np.pi * np.arange(turn) / turn
+    x, r = meridian.nodes.T[:, :, None]
+    points = np.stack(np.broadcast_arrays(x, r * np.cos(angle), r * np.sin(angle)), axis=-1)
+    around = (np.arange(0, turn, 2)[:, None] + np.arange(3)) % turn
+    lattice = meridian.quads[:, None, :, :, None] * turn + around[None, :, None, None, :]
+    return points.reshape(-1, 3), _in_vtk_order(lattice.reshape(-1, 3, 3, 3))
+
+
+def _with_core(
+    points: Floats, cells: Ints, meridian: _Meridian, core: float, turn: int, refinement: int
+) -> tuple[Floats, Ints]:
+    """Fill solid lengths inside the core's radius.
+
+    The cross-section is a square, standing on a corner, with rings of elements between it and
+    the circle; the outermost ring of nodes is there already.
+    """
+    side = turn // 4
+    angle = 2 * np.pi * np.arange(turn) / turn
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    along = (np.arange(turn) % side)[:, None] / side
+    corners = circle[::side]
+    square = np.repeat(corners, side, axis=0) * (1 - along)
+    square += np.repeat(np.roll(corners, -1, axis=0), side, axis=0) * along
+    # rings from the square to the circle, then what lies inside the square
+    n_rings = 2 * refinement
+    share = (np.arange(n_rings + 1) / n_rings)[:, None, None]
+    rings = (1 - share) * SQUARE * square + share * circle
+    a, b = np.meshgrid(*[np.arange(side + 1)] * 2, indexing="ij")
+    u, v = a[..., None] / side, b[..., None] / side
+    c = SQUARE * corners
+    inside = (1 - u) * (1 - v) * c[0] + u * (1 - v) * c[1] + u * v * c[2] + (1 - u) * v * c[3]
+
+    ring_id = np.arange((n_rings + 1) * turn).reshape(n_rings + 1, turn)
+    grid = np.empty((side + 1, side + 1), dtype=np.int64)
+    k = np.arange(side)
+    grid[:-1, 0], grid[-1, :-1] = ring_id[0, k], ring_id[0, side + k]
+    grid[side - k, -1], grid[0, side - k] = ring_id[0, 2 * side + k], ring_id[0, 3 * side + k]
+    grid[1:-1, 1:-1] = ring_id.size + np.arange((side - 1) ** 2).reshape(side - 1, side - 1)
+    section = np.concatenate([rings.reshape(-1, 2), inside[1:-1, 1:-1].reshape(-1, 2)]) * core
+
+    window = np.lib.stride_tricks.sliding_window_view
+    closed = np.concatenate([ring_id, ring_id[:, :1]], axis=1)
+    quads = np.concatenate(
+        [window(table, (3, 3))[::2, ::2].reshape(-1, 3, 3) for table in (closed, grid)]
+    )
+    stations, edges = np.unique(meridian.core_edges, return_inverse=True)
+    number = len(points) + np.arange(len(stations) * len(section)).reshape(len(stations), -1)
+    number[:, ring_id[-1]] = stations[:, None] * turn + np.arange(turn)
+    x = meridian.nodes[stations, 0]
+    more = np.concatenate(
+        [
+            np.broadcast_to(x[:, None, None], (len(x), len(section), 1)),
+            np.broadcast_to(section, (len(x), *section.shape)),
+        ],
+        axis=2,
+    )
+    lattice = number[edges.reshape(-1, 3)[:, None, :, None, None], quads[None, :, None, :, :]]
+    return (
+        np.concatenate([points, more.reshape(-1, 3)]),
+        np.concatenate([cells, _in_vtk_order(lattice.reshape(-1, 3, 3, 3))]),
+    )
+
+
+def _in_vtk_order(lattice: Ints) -> Ints:
+    """(ne, 27) node ids from (ne, 3, 3, 3) ones along a right-handed triple of directions."""
+    a, b, c = VTK_LATTICE.T
+    return np.ascontiguousarray(lattice[:, a, b, c])

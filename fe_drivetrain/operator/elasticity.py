@@ -1,0 +1,139 @@
+"""The elastic operator: stiffness of tetrahedra and hexahedra, straight into 3x3 node blocks.
+
+scikit-fem's shape functions and quadrature, but an assembly of its own: sparsity first, then each
+element adds its blocks in place. Tetrahedra with straight edges take one reference tensor, only the
+curved ones are integrated. Checked against scikit-fem's generic assembly in the tests.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from skfem import (
+    ElementTetP2,
+)
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTet
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.mesh.shapes import element_kind, is_straight, jacobian, shape_functions
+from fe_drivetrain.operator import kernels
+
+_CHUNK = 4096  # elements at a time: keeps the work arrays inside the cache and memory bounded
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Which nodes share a cell: stays as long as the cells do, whatever material or shape.
+
+    Attributes
+    ----------
+    indptr, indices
+        Block rows and columns, as in ``scipy.sparse.bsr_array``.
+    slots
+        (n_cells, k, k) the place in ``indices`` of each pair of a cell's nodes.
+    """
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    slots: NDArray[np.int32]
+
+
+def sparsity(cells: Ints, n_nodes: int) -> Pattern:
+    """The sparsity of the stiffness of these cells.
+
+    Parameters
+    ----------
+    cells
+        (n_cells, k) node numbers in VTK's order.
+    n_nodes
+        Number of block rows.
+    """
+    return Pattern(*kernels.sparsity(np.ascontiguousarray(cells, dtype=np.int32), n_nodes))
+
+
+def assemble(
+    points: Floats,
+    cells: Ints,
+    lame: tuple[float, float],
+    n_freedoms: int | None = None,
+    pattern: Pattern | None = None,
+) -> sparse.bsr_array:
+    """Assemble the stiffness of the given elements.
+
+    Parameters
+    ----------
+    points
+        (n, 3) node coordinates [m].
+    cells
+        (n_cells, k) node numbers in VTK's order; tetrahedra of 4 or 10, hexahedra of 8, 20 or 27
+        nodes.
+    lame
+        Lame's constants (lambda, mu) [Pa].
+    n_freedoms
+        Order of the matrix, a multiple of three; freedom 3 i + k is displacement k of node i, what
+        comes after 3 n belongs to reference points and is left empty. 3 n where not given.
+    pattern
+        From `sparsity` for the same cells and n_freedoms / 3 nodes, to spare making it again.
+
+    Returns
+    -------
+    stiffness
+        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
+    """
+    n_blocks = len(points) if n_freedoms is None else n_freedoms // 3
+    kind = element_kind(cells.shape[1])
+    pattern = pattern or sparsity(cells, n_blocks)
+    nodes = np.ascontiguousarray(cells, dtype=np.int32)
+    data = np.zeros((len(pattern.indices), 3, 3))
+    if kind.n_corners == 4:
+        affine = is_straight(points, cells) if kind.name == "tetra10" else np.full(len(cells), True)
+        # The gradients of straight elements are linear at most: a rule of degree 2 is exact.
+        gradients, weights = kind.table(2)
+        reference = np.einsum("q,qpa,qrb->abpr", weights, gradients, gradients)
+        chosen = np.flatnonzero(affine)
+        kernels.add_affine(points, nodes, chosen, reference, *lame, pattern.slots, data)
+    else:
+        affine = np.full(len(cells), False)
+    gradients, weights = kind.table(kind.degree)
+    chosen = np.flatnonzero(~affine)
+    kernels.add_curved(points, nodes, chosen, gradients, weights, *lame, pattern.slots, data)
+    return sparse.bsr_array(
+        (data, pattern.indices, pattern.indptr), shape=(3 * n_blocks, 3 * n_blocks)
+    )
+
+
+def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
+    """Integrals of the shape functions over the elements; (n_nodes,) [m^3]."""
+    X, W = get_quadrature(RefTet, 4)
+    values, gradients = shape_functions(ElementTetP2(), X)
+    weights = np.zeros(n_nodes)
+    for start in range(0, len(cells), _CHUNK):
+        part = cells[start : start + _CHUNK]
+        determinant = jacobian(points, part, gradients)[1]
+        np.add.at(weights, part, (np.abs(determinant) * W) @ values)
+    return weights
+
+
+def rigid_motions(points: Floats, centre: Floats | None = None) -> Floats:
+    """The six rigid motions of a set of nodes.
+
+    Parameters
+    ----------
+    points
+        (n, 3) node coordinates [m].
+    centre
+        (3,) point about which the rotations turn; the origin where not given.
+
+    Returns
+    -------
+    motions
+        (3 n, 6): unit translations along x, y, z [m], unit rotations about x, y, z [rad].
+    """
+    r = points if centre is None else points - centre
+    motions = np.zeros((len(points), 3, 6))
+    motions[:, :, :3] = np.eye(3)
+    for axis in range(3):
+        motions[:, :, 3 + axis] = np.cross(np.eye(3)[axis], r)
+    return motions.reshape(-1, 6)

@@ -1,0 +1,210 @@
+"""The elastic operator of nearly incompressible solids: dilatation averaged inside each element.
+
+Near nu = 1/2 any change of volume costs more than all else, and elements that can bend only by
+changing it somewhere inside do not bend: they lock. Here Lame's constant lambda multiplies not the
+dilatation div u but its projection on few functions of each element, the mean alone or with it the
+slopes. That is the mixed form with the pressure p = -lambda div u, discontinuous from element to
+element and condensed out of each (Herrmann 1965; Malkus and Hughes 1978, Comput. Methods Appl.
+Mech. Eng. 15, 63-81, who show that it is selective reduced integration), so that the matrix has
+the pattern of the plain one and goes to the same solvers.
+
+How many functions an element bears is a matter of the inf-sup condition (Boffi, Brezzi and Fortin
+2013, Mixed Finite Element Methods and Applications, chapter 8): the mean for hexahedra of 8 nodes
+(B-bar, Hughes 1980) and tetrahedra of 10, the mean and three slopes for hexahedra of 20 and 27.
+Tetrahedra of four nodes have a constant dilatation already, and no remedy in it. With the mean
+alone, tetrahedra of 10 nodes lose an order of accuracy: away from nu = 1/2 they are better plain.
+"""
+
+import numpy as np
+from scipy import sparse
+from skfem.quadrature import get_quadrature
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.operator import elasticity
+from fe_drivetrain.operator.elasticity import Pattern
+from fe_drivetrain.operator.stress import strains
+
+AVERAGED_FROM = 0.45
+"""Poisson's ratio from which parts of a scene, tetrahedra of 10 nodes, have averaged dilatations.
+
+Bonded, plain ones lose more to locking from here on than averaged ones lose in bending, at the same
+two elements across (``cases/stability/volumetric_locking.py``). Structural metals stand below.
+"""
+
+#: Functions that the dilatation of an element is projected on, by its number of nodes.
+FUNCTIONS = {8: 1, 10: 1, 20: 4, 27: 4}
+
+_CHUNK = 1024  # cells at a time
+
+
+def assemble(
+    points: Floats,
+    cells: Ints,
+    lame: tuple[float, float],
+    n_freedoms: int | None = None,
+    pattern: Pattern | None = None,
+) -> sparse.bsr_array:
+    """Assemble the stiffness, the dilatation projected; as `elasticity.assemble` otherwise.
+
+    Parameters
+    ----------
+    points
+        (n, 3) node coordinates [m].
+    cells
+        (n_cells, k) node numbers in VTK's order; tetrahedra of 10, hexahedra of 8, 20 or 27 nodes.
+    lame
+        Lame's constants (lambda, mu) [Pa].
+    n_freedoms
+        Order of the matrix; 3 n where not given.
+    pattern
+        As for `elasticity.assemble`.
+
+    Returns
+    -------
+    stiffness
+        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
+
+    Raises
+    ------
+    InputError
+        The elements are tetrahedra of four nodes.
+    """
+    size = 3 * len(points) if n_freedoms is None else n_freedoms
+    rows = np.concatenate(
+        [
+            _projected(points, cells[start : start + _CHUNK])[0]
+            for start in range(0, len(cells), _CHUNK)
+        ]
+    )
+    plain = elasticity.assemble(points, cells, (0.0, lame[1]), n_freedoms, pattern)
+    return plus_products(plain, lame[0], rows, cells, size)
+
+
+def poisson_ratio(lame: tuple[float, float]) -> float:
+    """nu of Lame's constants (lambda, mu)."""
+    lam, mu = lame
+    return 0.5 * lam / (lam + mu)
+
+
+def assemble_unlocked(
+    points: Floats, cells: Ints, lame: tuple[float, float], n_freedoms: int | None = None
+) -> sparse.bsr_array:
+    """`elasticity.assemble` below `AVERAGED_FROM`, and `assemble` from there on."""
+    averaged = poisson_ratio(lame) >= AVERAGED_FROM
+    return (assemble if averaged else elasticity.assemble)(points, cells, lame, n_freedoms)
+
+
+def warn_of_averaging(part: str, lame: tuple[float, float]) -> tuple[str, ...]:
+    """A sentence on a part that `assemble_unlocked` treats as nearly incompressible, or none."""
+    nu = poisson_ratio(lame)
+    if nu < AVERAGED_FROM:
+        return ()
+    return (
+        f"{part} has nu = {nu:g}, and from {AVERAGED_FROM:g} on plain elements lock: its "
+        "dilatation is averaged in each element; give it four elements through its thickness",
+    )
+
+
+def stresses(
+    points: Floats, cells: Ints, u: Floats, lame: tuple[float, float], at: Floats
+) -> Floats:
+    """Stresses inside the elements with the dilatation that was assembled; see `stress.stresses`.
+
+    Parameters
+    ----------
+    points, cells, lame
+        As for `assemble`.
+    u
+        (3 n,) or longer, displacements [m].
+    at
+        (3, n_q) reference coordinates in each element.
+
+    Returns
+    -------
+    stresses
+        (n_cells, n_q, 6) in the order of `stress.COMPONENTS` [Pa].
+    """
+    kind = element_kind(cells.shape[1])
+    values = kind.shape(at)[0]
+    found = 2.0 * lame[1] * strains(points, cells, u, at)
+    displacements = u[: points.size].reshape(-1, 3)
+    for start in range(0, len(cells), _CHUNK):
+        some = cells[start : start + _CHUNK]
+        rows, factor = _projected(points, some)
+        coefficients = np.einsum("epki,eki->ep", rows, displacements[some])
+        positions = np.einsum("qn,eni->eqi", values, points[some])
+        functions = _functions(points[some], positions, rows.shape[1])
+        orthonormal = np.linalg.solve(factor[:, None], functions[..., None])[..., 0]
+        dilatation = np.einsum("eqp,ep->eq", orthonormal, coefficients)
+        found[start : start + len(some), :, :3] += lame[0] * dilatation[..., None]
+    return found
+
+
+def plus_products(
+    K: sparse.bsr_array, factor: float, rows: Floats, cells: Ints, n_freedoms: int
+) -> sparse.bsr_array:
+    """K + factor R^T R, each row of R over the freedoms of one cell.
+
+    Parameters
+    ----------
+    K
+        (n_freedoms, n_freedoms) in 3x3 blocks.
+    rows
+        (n_cells, p, k, 3): p rows a cell, over the displacements of its nodes.
+    cells
+        (n_cells, k) node numbers.
+    """
+    n_cells, p, k, _ = rows.shape
+    columns = np.repeat(cells[:, None], p, axis=1).astype(np.int32)
+    R = sparse.bsr_array(
+        (rows.reshape(-1, 1, 3), columns.ravel(), k * np.arange(n_cells * p + 1, dtype=np.int32)),
+        shape=(n_cells * p, n_freedoms),
+    )
+    total = K + factor * (R.T @ R)
+    total.sort_indices()
+    indices, indptr = (i.astype(np.int32, copy=False) for i in (total.indices, total.indptr))
+    return sparse.bsr_array((total.data, indices, indptr), shape=K.shape)
+
+
+def _projected(points: Floats, cells: Ints) -> tuple[Floats, Floats]:
+    """Dilatations of unit displacements in orthonormal functions of each cell.
+
+    Returns
+    -------
+    rows, factor
+        (n_cells, p, k, 3) coefficients, and (n_cells, p, p) the lower factor L of the functions'
+        mass matrix: L^-1 makes them orthonormal.
+    """
+    kind = element_kind(cells.shape[1])
+    if cells.shape[1] not in FUNCTIONS:
+        raise InputError(
+            "nearly incompressible solids cannot be made of tetrahedra of 4 nodes, which lock "
+            "whatever is averaged inside them: use tetrahedra of 10 nodes, or hexahedra of 8, 20 "
+            "or 27"
+        )
+    at, weights = get_quadrature(kind.element.refdom, kind.degree)
+    values, gradients = kind.shape(at)
+    physical, determinant = jacobian(points, cells, gradients)
+    volumes = np.abs(determinant) * weights
+    positions = np.einsum("qn,eni->eqi", values, points[cells])
+    functions = _functions(points[cells], positions, FUNCTIONS[cells.shape[1]])
+    weighted = volumes[..., None] * functions
+    mass = np.einsum("eqp,eqr->epr", weighted, functions)
+    rows = np.einsum("eqp,eqik->epki", weighted, physical, optimize=True)
+    factor = np.linalg.cholesky(mass)
+    shape = rows.shape
+    return np.linalg.solve(factor, rows.reshape(*shape[:2], -1)).reshape(shape), factor
+
+
+def _functions(nodes: Floats, positions: Floats, count: int) -> Floats:
+    """(n_cells, n_q, count): one, and x, y, z from the middle of the cell, over its size.
+
+    In the positions themselves, not in reference coordinates: so a linear pressure is held exactly
+    by distorted elements, too (Arnold, Boffi and Falk 2002, Math. Comput. 71, 909-922).
+    """
+    middle = nodes.mean(axis=1, keepdims=True)
+    size = np.ptp(nodes, axis=1).max(axis=1)[:, None, None]
+    ones = np.ones((*positions.shape[:2], 1))
+    return np.concatenate([ones, (positions - middle) / size], axis=2)[..., :count]

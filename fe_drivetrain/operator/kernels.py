@@ -1,0 +1,329 @@
+"""Compiled loops over elements and over node blocks: what NumPy cannot say without large copies.
+
+Matrices are block CSR with 3x3 blocks, one block row a node (``indptr``, ``indices``, ``data`` as
+in ``scipy.sparse.bsr_array``). Right-hand sides are the columns of C-ordered (n, m) arrays, and
+every loop takes all of them in one pass over the matrix. Compiled by numba at the first call
+(seconds), then kept in its cache on disk.
+"""
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.arrays import Floats
+
+Index = NDArray[np.int32]
+
+
+@njit(cache=True)
+def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
+    """Which nodes share a cell.
+
+    Returns
+    -------
+    indptr, indices, slots
+        Rows of the pattern, sorted; and (n_cells, k, k) where in ``indices`` the pair of local
+        nodes (a, b) of each cell stands.
+    """
+    n_cells, k = cells.shape
+    start = np.zeros(n_nodes + 1, np.int64)
+    for c in range(n_cells):
+        for a in range(k):
+            start[cells[c, a] + 1] += 1
+    for i in range(n_nodes):
+        start[i + 1] += start[i]
+    fill = start[:-1].copy()
+    where = np.empty(n_cells * k, np.int64)  # the places of each node in ``cells``, flat
+    for c in range(n_cells):
+        for a in range(k):
+            i = cells[c, a]
+            where[fill[i]] = c * k + a
+            fill[i] += 1
+
+    seen = np.full(n_nodes, -1, np.int64)
+    indptr = np.zeros(n_nodes + 1, np.int32)
+    for i in range(n_nodes):
+        count = 0
+        for w in range(start[i], start[i + 1]):
+            for b in range(k):
+                j = cells[where[w] // k, b]
+                if seen[j] != i:
+                    seen[j] = i
+                    count += 1
+        indptr[i + 1] = indptr[i] + count
+
+    indices = np.empty(indptr[n_nodes], np.int32)
+    slots = np.empty((n_cells, k, k), np.int32)
+    place = np.empty(n_nodes, np.int32)
+    seen[:] = -1
+    for i in range(n_nodes):
+        end = indptr[i]
+        for w in range(start[i], start[i + 1]):
+            for b in range(k):
+                j = cells[where[w] // k, b]
+                if seen[j] != i:
+                    seen[j] = i
+                    indices[end] = j
+                    end += 1
+        # By insertion: rows are short, and NumPy's sort would take a second to compile.
+        for p in range(indptr[i] + 1, end):
+            j, q = indices[p], p
+            while q > indptr[i] and indices[q - 1] > j:
+                indices[q] = indices[q - 1]
+                q -= 1
+            indices[q] = j
+        for p in range(indptr[i], end):
+            place[indices[p]] = p
+        for w in range(start[i], start[i + 1]):
+            c = where[w] // k
+            a = where[w] - c * k
+            for b in range(k):
+                slots[c, a, b] = place[cells[c, b]]
+    return indptr, indices, slots
+
+
+@njit(cache=True)
+def _inverse_transposed(J: Floats, A: Floats) -> float:
+    """Put J^-T into A; the determinant of J."""
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        for p in range(3):
+            q, r = (p + 1) % 3, (p + 2) % 3
+            A[i, p] = J[j, q] * J[k, r] - J[j, r] * J[k, q]
+    determinant = J[0, 0] * A[0, 0] + J[0, 1] * A[0, 1] + J[0, 2] * A[0, 2]
+    A /= determinant
+    return float(determinant)
+
+
+@njit(cache=True)
+def _add_pair(H: Floats, lam: float, mu: float, data: Floats, ab: int, ba: int) -> None:
+    """Add lam H + mu H^T + mu tr(H) I at (a, b), and its transpose at (b, a)."""
+    trace = mu * (H[0, 0] + H[1, 1] + H[2, 2])
+    for i in range(3):
+        for j in range(3):
+            value = lam * H[i, j] + mu * H[j, i]
+            if i == j:
+                value += trace
+            data[ab, i, j] += value
+            if ab != ba:
+                data[ba, j, i] += value
+
+
+@njit(cache=True, fastmath=True)
+def add_affine(
+    points: Floats,
+    cells: Index,
+    chosen: NDArray[np.int64],
+    reference: Floats,
+    lam: float,
+    mu: float,
+    slots: Index,
+    data: Floats,
+) -> None:
+    """Add the stiffness of tetrahedra with straight edges: one reference tensor for all.
+
+    Parameters
+    ----------
+    chosen
+        Which cells.
+    reference
+        (k, k, 3, 3) integrals of dN_a/dxi_p dN_b/dxi_q over the reference element.
+    lam, mu
+        Lame's constants [Pa].
+    slots, data
+        From `sparsity`, and the blocks to add to.
+    """
+    k = cells.shape[1]
+    J, A, M, H = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    for e in chosen:
+        for i in range(3):
+            origin = points[cells[e, 0], i]
+            for p in range(3):
+                J[i, p] = points[cells[e, p + 1], i] - origin
+        size = abs(_inverse_transposed(J, A))
+        for a in range(k):
+            for b in range(a, k):
+                R = reference[a, b]
+                for i in range(3):
+                    for q in range(3):
+                        M[i, q] = size * (A[i, 0] * R[0, q] + A[i, 1] * R[1, q] + A[i, 2] * R[2, q])
+                for i in range(3):
+                    for j in range(3):
+                        H[i, j] = M[i, 0] * A[j, 0] + M[i, 1] * A[j, 1] + M[i, 2] * A[j, 2]
+                _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
+
+
+@njit(cache=True, fastmath=True)
+def add_curved(
+    points: Floats,
+    cells: Index,
+    chosen: NDArray[np.int64],
+    gradients: Floats,
+    weights: Floats,
+    lam: float,
+    mu: float,
+    slots: Index,
+    data: Floats,
+) -> None:
+    """Add the stiffness of isoparametric elements of any kind, by quadrature.
+
+    Parameters
+    ----------
+    chosen
+        Which cells.
+    gradients, weights
+        (n_q, 3, k) reference gradients and (n_q,) weights of the rule.
+    lam, mu
+        Lame's constants [Pa].
+    slots, data
+        From `sparsity`, and the blocks to add to.
+    """
+    k, n_q = cells.shape[1], len(weights)
+    J, A, H = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    G, WG = np.empty((k, 3, n_q)), np.empty((k, 3, n_q))
+    for e in chosen:
+        for q in range(n_q):
+            J[:] = 0.0
+            for a in range(k):
+                for i in range(3):
+                    x = points[cells[e, a], i]
+                    for p in range(3):
+                        J[i, p] += x * gradients[q, p, a]
+            size = abs(_inverse_transposed(J, A)) * weights[q]
+            for a in range(k):
+                for i in range(3):
+                    g = 0.0
+                    for p in range(3):
+                        g += A[i, p] * gradients[q, p, a]
+                    G[a, i, q] = g
+                    WG[a, i, q] = size * g
+        for a in range(k):
+            for b in range(a, k):
+                for i in range(3):
+                    for j in range(3):
+                        h = 0.0
+                        for q in range(n_q):
+                            h += WG[a, i, q] * G[b, j, q]
+                        H[i, j] = h
+                _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
+
+
+@njit(cache=True)
+def distances(indptr: Index, indices: Index, start: int) -> Index:
+    """Steps from one node to each other one along the graph of a matrix; -1 where none lead."""
+    n = len(indptr) - 1
+    steps, queue = np.full(n, -1, np.int32), np.empty(n, np.int32)
+    steps[start], queue[0] = 0, start
+    first, last = 0, 1
+    while first < last:
+        i = queue[first]
+        first += 1
+        for p in range(indptr[i], indptr[i + 1]):
+            j = indices[p]
+            if steps[j] < 0:
+                steps[j] = steps[i] + 1
+                queue[last] = j
+                last += 1
+    return steps
+
+
+@njit(cache=True, parallel=True)
+def keep_freedoms(
+    indptr: Index, indices: Index, data: Floats, kept: Floats, diagonal: float
+) -> None:
+    """Zero the rows and columns of freedoms that are not kept, and put ``diagonal`` there.
+
+    Parameters
+    ----------
+    kept
+        (n_nodes, 3): one or zero.
+    """
+    for i in prange(len(indptr) - 1):
+        for p in range(indptr[i], indptr[i + 1]):
+            j = indices[p]
+            for r in range(3):
+                for s in range(3):
+                    data[p, r, s] *= kept[i, r] * kept[j, s]
+                if i == j and kept[i, r] == 0.0:
+                    data[p, r, r] = diagonal
+
+
+@njit(cache=True, parallel=True, fastmath=True)
+def residual(
+    indptr: Index, indices: Index, data: Floats, X: Floats, B: Floats, out: Floats
+) -> None:
+    """``out = B - K X``."""
+    m = X.shape[1]
+    for i in prange(len(indptr) - 1):
+        # A copy of its own: in place, the compiler must fear that it is a part of X.
+        y = np.empty((3, m))
+        for r in range(3):
+            for k in range(m):
+                y[r, k] = B[3 * i + r, k]
+        for p in range(indptr[i], indptr[i + 1]):
+            c = 3 * indices[p]
+            for r in range(3):
+                u, v, w = data[p, r, 0], data[p, r, 1], data[p, r, 2]
+                for k in range(m):
+                    y[r, k] -= u * X[c, k] + v * X[c + 1, k] + w * X[c + 2, k]
+        for r in range(3):
+            for k in range(m):
+                out[3 * i + r, k] = y[r, k]
+
+
+@njit(cache=True, parallel=True, fastmath=True)
+def chebyshev_step(
+    indptr: Index,
+    indices: Index,
+    data: Floats,
+    inverse: Floats,
+    X: Floats,
+    B: Floats,
+    D: Floats,
+    out: Floats,
+    momentum: float,
+    step: float,
+) -> None:
+    """``D = momentum D + step diag^-1 (B - K X)``, then ``out = X + D``.
+
+    Parameters
+    ----------
+    inverse
+        (n_nodes, 3, 3) inverses of the diagonal blocks.
+    """
+    m = X.shape[1]
+    for i in prange(len(indptr) - 1):
+        y = np.empty((3, m))
+        for r in range(3):
+            for k in range(m):
+                y[r, k] = B[3 * i + r, k]
+        for p in range(indptr[i], indptr[i + 1]):
+            c = 3 * indices[p]
+            for r in range(3):
+                u, v, w = data[p, r, 0], data[p, r, 1], data[p, r, 2]
+                for k in range(m):
+                    y[r, k] -= u * X[c, k] + v * X[c + 1, k] + w * X[c + 2, k]
+        for r in range(3):
+            row = 3 * i + r
+            u, v, w = inverse[i, r, 0], inverse[i, r, 1], inverse[i, r, 2]
+            for k in range(m):
+                d = momentum * D[row, k] + step * (u * y[0, k] + v * y[1, k] + w * y[2, k])
+                D[row, k] = d
+                out[row, k] = X[row, k] + d
+
+
+@njit(cache=True, parallel=True, fastmath=True)
+def advance(X: Floats, R: Floats, P: Floats, Q: Floats, alpha: Floats) -> None:
+    """``X += alpha P`` and ``R += alpha Q``, with one alpha a column."""
+    for i in prange(X.shape[0]):
+        for k in range(X.shape[1]):
+            X[i, k] += alpha[k] * P[i, k]
+            R[i, k] += alpha[k] * Q[i, k]
+
+
+@njit(cache=True, parallel=True, fastmath=True)
+def redirect(P: Floats, Z: Floats, beta: Floats) -> None:
+    """``P = Z + beta P``, with one beta a column."""
+    for i in prange(P.shape[0]):
+        for k in range(P.shape[1]):
+            P[i, k] = Z[i, k] + beta[k] * P[i, k]

@@ -1,0 +1,81 @@
+"""Charts of lines, as Plotly's JSON."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.report.results import Chart
+
+
+def trace(name: str, x: ArrayLike, y: ArrayLike, points: bool = False, **more: Any) -> Any:
+    """A line, or points; numbers rounded to what a chart can show."""
+    return {
+        "type": "scatter",
+        "mode": "markers" if points else "lines",
+        "name": name,
+        "x": rounded(x),
+        "y": rounded(y),
+        **more,
+    }
+
+
+def chart(
+    caption: str,
+    traces: Sequence[Any],
+    x: str,
+    y: str,
+    logarithmic: Iterable[str] = (),
+    safe: tuple[float | None, float | None] | None = None,
+) -> Chart:
+    """A chart of traces.
+
+    Parameters
+    ----------
+    caption
+        What it shows.
+    traces
+        From `trace`.
+    x, y
+        Titles of the axes, with units.
+    logarithmic
+        "x", "y" or both.
+    safe
+        Range of x that is shaded as safe; None for an end without a bound.
+    """
+    axes: dict[str, Any] = {
+        "xaxis": {"title": {"text": x}},
+        "yaxis": {"title": {"text": y}},
+    }
+    for axis in logarithmic:
+        axes[f"{axis}axis"]["type"] = "log"
+        # plain powers of ten, not 2 and 5 between them
+        axes[f"{axis}axis"]["exponentformat"] = "power"
+    if safe is not None:
+        axes["shapes"] = [_shaded(traces, safe)]
+    return Chart(caption=caption, figure={"data": list(traces), "layout": axes})
+
+
+def rounded(values: ArrayLike, digits: int = 6) -> list[float]:
+    """Plain floats of so many significant digits: keeps results.json and pages small."""
+    return [float(f"{v:.{digits}g}") for v in np.ravel(np.asarray(values, dtype=float))]
+
+
+def _shaded(traces: Sequence[Any], safe: tuple[float | None, float | None]) -> dict[str, Any]:
+    """A green band behind the curves, to the outermost points where it has no bound."""
+    shown = [x for t in traces for x in t["x"]]
+    low, high = safe
+    return {
+        "type": "rect",
+        "xref": "x",
+        "yref": "paper",
+        "x0": min(shown) if low is None else low,
+        "x1": max(shown) if high is None else high,
+        "y0": 0,
+        "y1": 1,
+        "fillcolor": "#2e7d32",
+        "opacity": 0.12,
+        "line": {"width": 0},
+        "layer": "below",
+    }

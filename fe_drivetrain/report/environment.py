@@ -1,0 +1,40 @@
+"""What a run depended on, so that it can be repeated."""
+
+import platform
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+from fe_drivetrain.report.results import Environment
+
+_PACKAGES = (
+    "fe-drivetrain",
+    "scikit-fem",
+    "gmsh",
+    "meshio",
+    "numpy",
+    "scipy",
+    "pypardiso",
+    "pyvista",
+    "plotly",
+    "openfast-io",
+)
+
+
+def environment(settings: Mapping[str, Any], seed: int | None = None) -> Environment:
+    """Date, platform, versions, and the user's settings."""
+    versions = {}
+    for name in _PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return Environment(
+        date=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        python=platform.python_version(),
+        platform=f"{platform.system()} {platform.machine()}",
+        versions=versions,
+        settings=dict(settings),
+        seed=seed,
+    )

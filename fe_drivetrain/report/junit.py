@@ -1,0 +1,61 @@
+"""Verdicts as JUnit XML, which continuous-integration servers read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+from fe_drivetrain.common.files import atomic_path
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Problem, Results
+
+
+def write_junit(
+    path: Path,
+    names: Sequence[str],
+    results: Mapping[str, Results],
+    problems: Mapping[str, Problem],
+) -> None:
+    """Write a test suite for each case, and in it a test for each verdict.
+
+    Parameters
+    ----------
+    path
+        The file; it appears whole or not at all.
+    names
+        Of the cases, in order.
+    results, problems
+        Of each case, one or the other.
+    """
+    root = ElementTree.Element("testsuites", name="fe-drivetrain")
+    for name in names:
+        found = results.get(name)
+        suite = ElementTree.SubElement(root, "testsuite", name=name)
+        if found is None:
+            problem = problems[name]
+            test = ElementTree.SubElement(suite, "testcase", classname=name, name="runs")
+            outcome = "skipped" if problem.is_missing_tool else "error"
+            ElementTree.SubElement(test, outcome, message=problem.message)
+        else:
+            suite.set("time", f"{sum(found.times.values()):.3f}")
+            for verdict in found.verdicts:
+                test = ElementTree.SubElement(
+                    suite, "testcase", classname=name, name=verdict.quantity
+                )
+                if not verdict.passed:
+                    allowed = f"{verdict.tolerance:g} {'relative' if verdict.relative else 'in it'}"
+                    message = (
+                        f"computed {verdict.computed:.6g}, reference {verdict.reference:.6g} "
+                        f"{verdict.unit}, tolerance {allowed}"
+                    )
+                    failure = ElementTree.SubElement(test, "failure", message=message)
+                    failure.text = f"{verdict.reason}\n{verdict.source}"
+        for kind, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
+            suite.set(kind, str(len(suite.findall(f"testcase/{tag}"))))
+        suite.set("tests", str(len(suite)))
+    ElementTree.indent(root)
+    with atomic_path(path) as unfinished:
+        ElementTree.ElementTree(root).write(unfinished, encoding="utf-8", xml_declaration=True)

@@ -1,0 +1,233 @@
+"""What a case found, as data: written to results.json, and the page is made from that alone."""
+
+import statistics
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Cell = float | int | str | bool | None
+
+Measure = Literal[
+    "stiffness",
+    "deflection",
+    "rotation",
+    "stress",
+    "reaction",
+    "frequency",
+    "energy",
+    "mass",
+    "order",
+    "identity",
+]
+"""What kind of quantity a verdict is about; "identity" must vanish or agree to round-off."""
+
+
+class _Result(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Verdict(_Result):
+    """One quantity judged against a reference, with the tolerance and its reason."""
+
+    # a case that computes NaN has failed, and its page must be able to say so
+    model_config = ConfigDict(ser_json_inf_nan="strings")
+
+    quantity: str
+    unit: str
+    computed: float
+    reference: float
+    source: str = Field(description="where the reference comes from")
+    tolerance: float = Field(description="allowed |computed - reference|, relative or in the unit")
+    relative: bool = Field(description="whether tolerance is relative to the reference")
+    reason: str = Field(description="why the tolerance is what it is")
+    measure: Measure | None = Field(default=None, description="kind of quantity, for statistics")
+    band: float | None = Field(
+        default=None,
+        ge=0,
+        description="half width of the numerical uncertainty of computed, in its unit",
+    )
+    passed: bool
+
+
+def judge(
+    quantity: str,
+    computed: float,
+    reference: float,
+    *,
+    tolerance: float,
+    reason: str,
+    source: str,
+    unit: str = "",
+    relative: bool = True,
+    measure: Measure | None = None,
+    band: float | None = None,
+) -> Verdict:
+    """Judge one quantity; a NaN never passes. For the arguments see `Verdict`."""
+    size = abs(reference) if relative else 1.0
+    passed = bool(abs(computed - reference) <= tolerance * size)
+    return Verdict(
+        quantity=quantity,
+        unit=unit,
+        computed=float(computed),
+        reference=float(reference),
+        source=source,
+        tolerance=tolerance,
+        relative=relative,
+        reason=reason,
+        measure=measure,
+        band=None if band is None else float(band),
+        passed=passed,
+    )
+
+
+@dataclass(frozen=True)
+class Statistic:
+    """How far many verdicts of one measure are from their references, relative to these.
+
+    Attributes
+    ----------
+    measure
+        Which.
+    count
+        Number of verdicts.
+    bias
+        Mean of the signed errors.
+    scatter
+        Standard deviation of the signed errors; 0 of one verdict.
+    largest
+        Largest error, without its sign.
+    """
+
+    measure: str
+    count: int
+    bias: float
+    scatter: float
+    largest: float
+
+
+def bias_and_scatter(verdicts: Iterable[Verdict]) -> list[Statistic]:
+    """Statistics of each measure, over verdicts that are relative to a reference other than 0."""
+    errors: dict[str, list[float]] = {}
+    for v in verdicts:
+        if v.measure in (None, "identity") or not v.relative or v.reference == 0.0:
+            continue
+        errors.setdefault(str(v.measure), []).append((v.computed - v.reference) / abs(v.reference))
+    return [
+        Statistic(
+            measure,
+            len(found),
+            statistics.fmean(found),
+            statistics.stdev(found) if len(found) > 1 else 0.0,
+            max(map(abs, found)),
+        )
+        for measure, found in sorted(errors.items())
+    ]
+
+
+class Text(_Result):
+    """A paragraph."""
+
+    kind: Literal["text"] = "text"
+    text: str
+
+
+class Table(_Result):
+    """Rows of cells; each column's heading carries its unit."""
+
+    kind: Literal["table"] = "table"
+    caption: str
+    columns: list[str]
+    rows: list[list[Cell]]
+
+
+class Chart(_Result):
+    """A Plotly figure."""
+
+    kind: Literal["chart"] = "chart"
+    caption: str
+    figure: dict[str, Any] = Field(description="a Plotly figure as JSON")
+
+
+class Image(_Result):
+    """A PNG beside results.json."""
+
+    kind: Literal["image"] = "image"
+    caption: str
+    file: str
+
+
+class Section(_Result):
+    """A heading and what stands under it."""
+
+    title: str
+    items: Sequence[Annotated[Text | Table | Chart | Image, Field(discriminator="kind")]]
+
+
+class AssumptionRow(_Result):
+    """A value that the sources do not give."""
+
+    name: str
+    value: Cell
+    unit: str
+    source: str = Field(description="where it comes from, or why it was assumed")
+
+
+class Limit(_Result):
+    """How far a method can be trusted, found by driving one parameter into its failure."""
+
+    method: str = Field(description="what fails: an element, a solver, a theory, a metric")
+    parameter: str = Field(description="what was varied, with its unit")
+    low: float | None = Field(default=None, description="least safe value; None: no bound found")
+    high: float | None = Field(default=None, description="largest safe value; None: no bound found")
+    criterion: str = Field(description="what counts as safe, such as an error below 1 %")
+    beyond: str = Field(description="what happens outside of the safe range")
+    program: str = Field(description="what the program does about it")
+    remedy: str = Field(description="what holds there, shown on the same axis")
+
+
+class Environment(_Result):
+    """What a run depended on, so that it can be repeated."""
+
+    date: str
+    python: str
+    platform: str
+    versions: dict[str, str]
+    settings: dict[str, Any]
+    seed: int | None = None
+
+
+class Problem(NamedTuple):
+    """Why a case has no results."""
+
+    message: str
+    is_missing_tool: bool = False
+
+
+class Results(_Result):
+    """All that a case found."""
+
+    schema_version: Literal[1] = 1
+    case: str
+    title: str
+    source: str
+    summary: list[str] = Field(description="the answer first, in a few sentences")
+    verdicts: list[Verdict]
+    sections: list[Section]
+    limits: list[Limit] = []
+    assumptions: list[AssumptionRow] = []
+    times: dict[str, float] = Field(default={}, description="wall time of each step [s]")
+    figures: dict[str, Any] = Field(default={}, description="named numbers for other programs")
+    environment: Environment
+
+    @property
+    def passed(self) -> bool:
+        """Whether every verdict passed."""
+        return all(verdict.passed for verdict in self.verdicts)
+
+
+def read_results(path: str | Path) -> Results:
+    """Read and validate a results.json."""
+    return Results.model_validate_json(Path(path).read_text(encoding="utf-8"))

@@ -1,0 +1,304 @@
+"""The finite-element model of a scene: operators of its parts, constraints, springs, unit loads."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.spatial import cKDTree
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
+from fe_drivetrain.interfaces.joints import SECTORS, roller_joint, spring_joint
+from fe_drivetrain.interfaces.mechanisms import refuse_mechanisms, warn_of_weak_restraints
+from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.mesh.checks import refuse_unsound
+from fe_drivetrain.mesh.facets import MEANS, face_weights
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.operator.elasticity import volume_weights
+from fe_drivetrain.operator.incompressible import assemble_unlocked, warn_of_averaging
+from fe_drivetrain.scene.scene import BearingUnit, Scene, Springs, as_numbers
+
+COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+
+#: The unit loads of every scene, in the order of the columns of every response: hub forces [N] and
+#: moments [N m], a uniform acceleration [m/s^2] along each axis, 1 N of gearbox weight (along -z).
+LOADS = (
+    *(f"hub.{c}" for c in COMPONENTS),
+    "gravity.x",
+    "gravity.y",
+    "gravity.z",
+    "gearbox.weight",
+)
+
+_N_GROUPS = 32  # near the square root of the number of nodes on a joint: least fill
+
+
+@dataclass(frozen=True)
+class Model:
+    """A scene's finite-element model, before it is solved.
+
+    Attributes
+    ----------
+    scene, mesh
+        What it was built from.
+    part_stiffness
+        (n_freedoms, n_freedoms) stiffness of each part alone [N/m].
+    part_mass
+        (n_nodes,) integrals of density times shape function of each part [kg].
+    points
+        Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing; where there are
+        such, "NAME.base" (on a bedplate that gives), and "NAME.joint" or "NAME.roller K", whose
+        motion is that of the bearing against its housing.
+    constraints
+        All interfaces, couplings and supports.
+    springs
+        Reference points with their (6, 6) stiffness.
+    held
+        Motions (0-2 displacements, 3-5 rotations) of reference points that are rigidly held; their
+        constraint is "NAME reaction".
+    n_freedoms
+        Three a node, and six for each rigid reference point.
+    warnings
+        Sentences for the user, about motions that soft springs hardly restrain, and parts that are
+        nearly incompressible.
+    """
+
+    scene: Scene
+    mesh: Mesh
+    part_stiffness: Mapping[str, sparse.bsr_array]
+    part_mass: Mapping[str, Floats]
+    points: Mapping[str, ReferencePoint]
+    constraints: tuple[Constraint, ...]
+    springs: tuple[tuple[ReferencePoint, Floats], ...]
+    held: Mapping[str, Sequence[int]]
+    n_freedoms: int
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def stiffness(self) -> sparse.bsr_array:
+        """Stiffness of all parts and springs, before any constraint [N/m]."""
+        total = sum(self.part_stiffness.values())
+        for point, k in self.springs:
+            spring = point.motion.T @ sparse.csr_array(k) @ point.motion
+            total = total + spring.tobsr((3, 3))
+        return total
+
+    @property
+    def mass(self) -> Floats:
+        """(n_nodes,) integrals of density times shape function over all parts [kg]."""
+        return np.asarray(np.sum(list(self.part_mass.values()), axis=0))
+
+    def unit_loads(self) -> Floats:
+        """(n_freedoms, 10): the loads of `LOADS`, one a column."""
+        F = np.zeros((self.n_freedoms, len(LOADS)))
+        F[:, :6] = self.points["hub"].motion.T.toarray()
+        mass = self.mass
+        for axis in range(3):
+            F[axis : 3 * len(mass) : 3, 6 + axis] = mass
+        F[:, 9] = -self.points["gearbox"].motion[[2]].toarray()[0]
+        return F
+
+    def part_loads(self, part: str) -> Floats:
+        """(n_freedoms, 10): the share of `unit_loads` that acts inside one part (its gravity)."""
+        F = np.zeros((self.n_freedoms, len(LOADS)))
+        mass = self.part_mass[part]
+        for axis in range(3):
+            F[axis : 3 * len(mass) : 3, 6 + axis] = mass
+        return F
+
+
+def mesh_scene(scene: Scene) -> Mesh:
+    """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
+
+    A mesh that was made before comes from the cache, see `fe_drivetrain.common.cache`.
+    """
+    return cached_mesh(
+        scene.shaft,
+        [unit.bearing for unit in scene.bearing_units],
+        {unit.bearing.name: unit.housing for unit in scene.bearing_units},
+        scene.mesh,
+        frozenset(u.bearing.name for u in scene.bearing_units if u.interface == "bonded"),
+    )
+
+
+def build_model(scene: Scene, mesh: Mesh) -> Model:
+    """Assemble all parts of a scene and state its constraints.
+
+    Raises
+    ------
+    InputError
+        The mesh has a fault, see `mesh_checks`; or the scene is a mechanism, or but for round-off;
+        the message names the part and its place or motion.
+    """
+    units = scene.bearing_units
+    apart = [u.bearing.name for u in units if u.interface != "bonded"]
+    refuse_unsound(mesh, needed_faces(scene), apart)
+    n = len(mesh.points)
+    extra: dict[str, int] = {}  # freedoms beside the nodes' own
+    for name, coupling in (("hub", scene.hub.coupling), ("gearbox", scene.gearbox.coupling)):
+        if coupling == "rigid":
+            extra[name] = 6
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        if unit.interface == "rigid":
+            extra |= {f"{name}.outer": 6, f"{name}.housing.bore": 6}
+        elif unit.interface == "averaged":
+            extra[f"{name} joint"] = 3 * _N_GROUPS
+        elif unit.interface == "spring":
+            extra[f"{name}.joint"] = 6 * SECTORS
+        if unit.bedplate is not None:
+            extra[f"{name}.base"] = 6
+    ends = 3 * n + np.cumsum([0, *extra.values()])
+    first_freedom = dict(zip(extra, ends[:-1].tolist(), strict=True))
+    n_freedoms = int(ends[-1])
+
+    conditions: list[Constraint] = []
+    points: dict[str, ReferencePoint] = {}
+    springs: list[tuple[ReferencePoint, Floats]] = []
+    held: dict[str, Sequence[int]] = {}
+
+    def couple(name: str, face: str, position: Floats) -> ReferencePoint:
+        nodes = mesh.face_nodes(face)
+        if name in first_freedom:
+            point = constraints.rigid_point(name, position, first_freedom[name], n_freedoms)
+            conditions.append(constraints.rigid_face(name, nodes, mesh.points, point))
+            return point
+        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
+        return constraints.averaged_point(name, nodes, weights, mesh.points, position, n_freedoms)
+
+    points["hub"] = couple("hub", "shaft.front", np.array([scene.shaft.front, 0.0, 0.0]))
+    points["gearbox"] = couple("gearbox", "shaft.rear", np.array([scene.shaft.rear, 0.0, 0.0]))
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        centre = np.array([unit.bearing.x, 0.0, 0.0])
+        points[f"{name}.seat"] = couple(f"{name}.seat", f"shaft.seat.{name}", centre)
+        if unit.interface == "rigid":
+            inner, outer = (
+                couple(face, face, centre) for face in (f"{name}.outer", f"{name}.housing.bore")
+            )
+            conditions.append(constraints.equal_translations(f"{name} joint", inner, outer))
+        elif unit.interface in ("spring", "rollers"):
+            joint = (
+                roller_joint(unit, mesh, n_freedoms)
+                if unit.interface == "rollers"
+                else spring_joint(unit, mesh, first_freedom[f"{name}.joint"], n_freedoms)
+            )
+            conditions += joint.constraints
+            springs += joint.springs
+            points |= {point.name: point for point, _ in joint.springs}
+        elif unit.interface != "bonded":
+            first = first_freedom.get(f"{name} joint", 0)
+            conditions.append(_spherical_joint(unit, mesh, first, n_freedoms))
+        base = f"{name}.housing.base"
+        if unit.bedplate is None:
+            conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_freedoms))
+        else:
+            under = centre - [0.0, 0.0, unit.housing.centre_height]
+            points[f"{name}.base"] = couple(f"{name}.base", base, under)
+            _stand(points[f"{name}.base"], unit.bedplate, conditions, springs, held)
+    _stand(points["gearbox"], scene.gearbox.stiffness, conditions, springs, held)
+
+    refuse_mechanisms(mesh, conditions, springs)
+    moduli = {part: scene.material_of(part).youngs_modulus for part in mesh.part_names}
+    warnings = warn_of_weak_restraints(mesh, conditions, springs, moduli)
+
+    part_stiffness, part_mass = {}, {}
+    for part in mesh.part_names:
+        material = scene.material_of(part)
+        cells = mesh.cells[mesh.part_cells(part)]
+        part_stiffness[part] = assemble_unlocked(mesh.points, cells, material.lame, n_freedoms)
+        warnings += warn_of_averaging(part, material.lame)
+        part_mass[part] = material.density * volume_weights(mesh.points, cells, n)
+    return Model(
+        scene,
+        mesh,
+        part_stiffness,
+        part_mass,
+        points,
+        tuple(conditions),
+        tuple(springs),
+        held,
+        n_freedoms,
+        warnings,
+    )
+
+
+def _stand(
+    point: ReferencePoint,
+    stiffness: Springs,
+    conditions: list[Constraint],
+    springs: list[tuple[ReferencePoint, Floats]],
+    held: dict[str, Sequence[int]],
+) -> None:
+    """Put a reference point on the ground."""
+    numbers = as_numbers(stiffness)
+    rigid = np.flatnonzero(np.isinf(numbers)).tolist()
+    if rigid:
+        conditions.append(constraints.held(f"{point.name} reaction", point, rigid))
+        held[point.name] = rigid
+    k = np.diag(np.where(np.isinf(numbers), 0.0, numbers))
+    if k.any():
+        springs.append((point, k))
+
+
+def needed_faces(scene: Scene) -> list[str]:
+    """Names of the faces of a mesh that the loads, supports and interfaces of a scene need."""
+    names = ["shaft.front", "shaft.rear"]
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        names += [f"shaft.seat.{name}", f"{name}.housing.base"]
+        if unit.interface != "bonded":
+            names += [f"{name}.outer", f"{name}.housing.bore"]
+    return names
+
+
+def joint_pairs(mesh: Mesh, bearing: str) -> tuple[Ints, Ints]:
+    """Nodes of the two sides of a spherical joint, pairwise at the same place.
+
+    Returns
+    -------
+    inner, outer
+        (n,) nodes on the bearing and on the housing.
+
+    Raises
+    ------
+    InputError
+        The two faces do not match.
+    """
+    inner = mesh.face_nodes(f"{bearing}.outer")
+    outer = mesh.face_nodes(f"{bearing}.housing.bore")
+    distance, partner = cKDTree(mesh.points[outer]).query(mesh.points[inner])
+    if len(inner) != len(outer) or distance.max(initial=0.0) > 1e-9:
+        raise InputError(
+            f"the joint of {bearing!r} has {len(inner)} nodes on the bearing and {len(outer)} on "
+            f"the housing, up to {distance.max(initial=0.0):.3g} m apart: mesh both sides alike"
+        )
+    return inner, outer[partner]
+
+
+def _spherical_joint(
+    unit: BearingUnit, mesh: Mesh, first_freedom: int, n_freedoms: int
+) -> Constraint:
+    name = unit.bearing.name
+    inner, outer = joint_pairs(mesh, name)
+    label = f"{name} joint"
+    points = mesh.points
+    centre = np.array([unit.bearing.x, 0.0, 0.0])
+    if unit.interface == "sliding":
+        return constraints.sliding_sphere(label, inner, outer, points, centre, n_freedoms)
+    inner_weights, outer_weights = (
+        constraints.centred_weights(
+            face_weights(points, mesh.faces[face], len(points), MEANS)[nodes], points[nodes], centre
+        )
+        for face, nodes in ((f"{name}.outer", inner), (f"{name}.housing.bore", outer))
+    )
+    # Neighbours round the shaft form a group, both sides together.
+    nodes = np.concatenate([inner, outer])
+    angle = np.arctan2(points[nodes, 2], points[nodes, 1])
+    groups = np.floor((angle + np.pi) / (2.0 * np.pi) * _N_GROUPS).astype(np.int64) % _N_GROUPS
+    return constraints.averaged_sphere(
+        label, inner, outer, inner_weights, outer_weights, groups, first_freedom, n_freedoms
+    )

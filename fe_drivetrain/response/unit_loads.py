@@ -1,0 +1,276 @@
+"""Responses to unit loads: solved once, then any load history is one matrix product."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.interfaces.constraints import eliminate, freedoms
+from fe_drivetrain.response.model import COMPONENTS, LOADS, Model
+from fe_drivetrain.solve.condensation import wrench_transport
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.solvers import solve
+
+#: Standard gravity [m/s^2] (CGPM 1901).
+GRAVITY = 9.80665
+
+
+@dataclass(frozen=True)
+class Response:
+    """What the unit loads of `model.LOADS` do, one load a column.
+
+    Six components are Fx, Fy, Fz [N], Mx, My, Mz [N m], or displacements [m] and rotations [rad].
+
+    Attributes
+    ----------
+    reactions
+        (6, 10) by name: what the drivetrain puts on its surroundings or on the next part.
+        "NAME" (housing base, moments about the bearing's centre) for each bearing, "gearbox"
+        (springs and torque reaction), and the interfaces "NAME.seat" (shaft on bearing) and
+        "NAME.outer" (bearing on housing).
+    positions
+        (3,) by the same names: the point that the moments are about [m]; and "hub".
+    motions
+        (6, 10) by reference point: "hub", "gearbox", "NAME.seat".
+    strain_energy
+        (10, 10) by part: U = w^T E w / 2 for the load factors w [J].
+    displacements
+        (n_nodes, 3, 10) [m].
+    equilibrium_error
+        Largest imbalance of loads and reactions over all unit loads, relative to the load.
+    superposition_error
+        Difference between the reactions to a random load, solved directly, and the superposed
+        ones, relative to the largest reaction.
+    residual, energy_error, iterations, method, reason, seconds, solver_bytes, n_unknowns
+        Diagnostics of the solve, see `solvers.Solution`.
+    """
+
+    reactions: Mapping[str, Floats]
+    positions: Mapping[str, Floats]
+    motions: Mapping[str, Floats]
+    strain_energy: Mapping[str, Floats]
+    displacements: Floats
+    equilibrium_error: float
+    superposition_error: float
+    residual: float
+    energy_error: float
+    iterations: int
+    method: str
+    reason: str
+    seconds: float
+    solver_bytes: int
+    n_unknowns: int
+
+    def reaction_matrix(self) -> tuple[list[str], Floats]:
+        """All reactions as one matrix.
+
+        Returns
+        -------
+        labels, matrix
+            "NAME Fx" to "NAME Mz" for each reaction, and (n_labels, 10).
+        """
+        labels = [f"{name} {c}" for name in self.reactions for c in COMPONENTS]
+        return labels, np.vstack(list(self.reactions.values()))
+
+    def history(
+        self,
+        name: str,
+        hub_loads: Floats,
+        gearbox_weight: float = 0.0,
+        gravity: float = 0.0,
+    ) -> Floats:
+        """One reaction over any number of load steps.
+
+        Parameters
+        ----------
+        name
+            A key of ``reactions``.
+        hub_loads
+            (..., 6) hub forces [N] and moments [N m].
+        gearbox_weight
+            [N], along -z.
+        gravity
+            Acceleration along -z that gives all parts their self-weight [m/s^2].
+
+        Returns
+        -------
+        reaction
+            (..., 6) [N, N m].
+
+        Raises
+        ------
+        InputError
+            There is no reaction of that name.
+        """
+        if name not in self.reactions:
+            raise InputError(f"no reaction {name!r}: use one of {', '.join(self.reactions)}")
+        R = self.reactions[name]
+        constant = gearbox_weight * R[:, 9] - gravity * R[:, 8]
+        result = hub_loads @ R[:, :6].T
+        result += constant
+        return np.asarray(result)
+
+
+def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Response:
+    """Solve a model for all unit loads, and check the result twice.
+
+    Parameters
+    ----------
+    model
+        The model.
+    method
+        Solver, see `solvers.solve`.
+    seed
+        Of the random load vector of the superposition check.
+
+    Raises
+    ------
+    InputError
+        The system is singular, see `solvers.factorise`; with what the model warned of.
+    """
+    loads = model.unit_loads()
+    n_loads = len(LOADS)
+    # Loads of very different size (1 N, 1 N m, a tonne under 1 m/s^2) count alike in the check.
+    factors = np.random.default_rng(seed).uniform(-1.0, 1.0, n_loads)
+    factors /= np.linalg.norm(loads, axis=0)
+    cases = np.column_stack([np.eye(n_loads), factors])
+    F = loads @ cases
+
+    K = model.stiffness
+    elimination = eliminate(model.constraints, model.n_freedoms)
+    T = elimination.T
+    system = reduce(model.mesh.points, model.mesh.cells, K, elimination)
+    try:
+        solution = solve(system, T.T @ F, method)
+    except InputError as error:
+        if str(error) == SINGULAR and model.warnings:
+            raise InputError(f"{SINGULAR}: {'; '.join(model.warnings)}") from error
+        raise
+    U = T @ solution.x
+    reactions = _reactions(model, elimination.multipliers(K @ U - F), U, cases)
+
+    direct = np.concatenate([r[:, -1] for r in reactions.values()])
+    superposed = np.concatenate([r[:, :-1] @ factors for r in reactions.values()])
+    reactions = {name: r[:, :-1] for name, r in reactions.items()}
+    positions = {
+        name: model.points[
+            "gearbox" if name == "gearbox" else f"{name.split('.')[0]}.seat"
+        ].position
+        for name in reactions
+    }
+    positions["hub"] = model.points["hub"].position
+    U = U[:, :-1]
+    n = len(model.mesh.points)
+    return Response(
+        reactions=reactions,
+        positions=positions,
+        motions={name: point.motion @ U for name, point in model.points.items()},
+        strain_energy={part: U.T @ (k @ U) for part, k in model.part_stiffness.items()},
+        displacements=U[: 3 * n].reshape(n, 3, n_loads),
+        equilibrium_error=_equilibrium_error(model, reactions, positions),
+        superposition_error=float(np.abs(direct - superposed).max() / np.abs(direct).max()),
+        residual=solution.residual,
+        energy_error=solution.energy_error,
+        iterations=solution.iterations,
+        method=solution.method,
+        reason=solution.reason,
+        seconds=solution.seconds,
+        solver_bytes=solution.bytes,
+        n_unknowns=system.n_free,
+    )
+
+
+def resultant(points: Floats, nodes: Ints, forces: Floats, centre: Floats) -> Floats:
+    """Force and moment about a point of nodal forces.
+
+    Parameters
+    ----------
+    points
+        (n_nodes, 3) [m].
+    nodes
+        (n,) the nodes to sum over.
+    forces
+        (n_freedoms, n_loads) nodal forces [N].
+    centre
+        (3,) [m].
+
+    Returns
+    -------
+    resultant
+        (6, n_loads) [N, N m].
+    """
+    f = forces[freedoms(nodes)]
+    r = points[nodes] - centre
+    moment = np.cross(r[:, :, None], f, axis=1).sum(axis=0)
+    return np.vstack([f.sum(axis=0), moment])
+
+
+def _reactions(
+    model: Model, multipliers: Mapping[str, Floats], U: Floats, cases: Floats
+) -> dict[str, Floats]:
+    """Reactions from the residual on constrained freedoms; never from stresses."""
+    mesh = model.mesh
+    reactions: dict[str, Floats] = {}
+    for unit in model.scene.bearing_units:
+        name = unit.bearing.name
+        centre = model.points[f"{name}.seat"].position
+        if unit.bedplate is None:
+            base = mesh.face_nodes(f"{name}.housing.base")
+            forces = np.zeros_like(U)
+            forces[freedoms(base).ravel()] = multipliers[f"{name}.housing.base"]
+            reactions[name] = -resultant(mesh.points, base, forces, centre)
+        else:
+            point = model.points[f"{name}.base"]
+            carried = _carried_at(model, f"{name}.base", multipliers, U)
+            reactions[name] = wrench_transport(point.position - centre) @ carried
+        for key, part, face in (
+            (f"{name}.seat", name, f"shaft.seat.{name}"),
+            (f"{name}.outer", f"{name}.housing", f"{name}.housing.bore"),
+        ):
+            # What a part's neighbour puts on it: its internal forces less the loads inside it.
+            forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
+            reactions[key] = resultant(mesh.points, mesh.face_nodes(face), forces, centre)
+    reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)
+    return reactions
+
+
+def _carried_at(model: Model, point: str, multipliers: Mapping[str, Floats], U: Floats) -> Floats:
+    """(6, n_loads) what springs to ground and rigid holds carry at a reference point."""
+    total = np.zeros((6, U.shape[1]))
+    for at, k in model.springs:
+        if at.name == point:
+            total += k @ (at.motion @ U)
+    if point in model.held:
+        total[list(model.held[point])] -= multipliers[f"{point} reaction"]
+    return total
+
+
+def _equilibrium_error(
+    model: Model, reactions: Mapping[str, Floats], positions: Mapping[str, Floats]
+) -> float:
+    """Largest component of (applied - reacted) about the origin, relative to each load's size."""
+    mesh = model.mesh
+    applied = np.zeros((6, len(LOADS)))
+    applied[:, :6] = _about_origin(np.eye(6), model.points["hub"].position)
+    mass = model.mass
+    first_moment = mass @ mesh.points
+    for axis in range(3):
+        e = np.eye(3)[axis]
+        applied[:3, 6 + axis] = mass.sum() * e
+        applied[3:, 6 + axis] = np.cross(first_moment, e)
+    weight = np.zeros((6, 1))
+    weight[2] = -1.0
+    applied[:, [9]] = _about_origin(weight, model.points["gearbox"].position)
+    reacted = np.zeros_like(applied)
+    for name in (*(unit.bearing.name for unit in model.scene.bearing_units), "gearbox"):
+        reacted += _about_origin(reactions[name], positions[name])
+    return float((np.abs(applied - reacted).max(axis=0) / np.abs(applied).max(axis=0)).max())
+
+
+def _about_origin(forces: Floats, position: Floats) -> Floats:
+    """The same (6, n) forces and moments, with the moments about the origin."""
+    moved = forces.copy()
+    moved[3:] += np.cross(position, forces[:3], axisb=0).T
+    return moved

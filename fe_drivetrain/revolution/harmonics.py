@@ -1,0 +1,661 @@
+"""Bodies of revolution by Fourier harmonics: exact elasticity of a shaft in its meridian alone.
+
+Displacements along x, the radius and the circumference are u_x(x, r) cos(n t), u_r cos(n t) and
+u_t sin(n t), t the angle round the axis: harmonic 0 is tension, and with u_t alone torsion (where
+the sine is replaced by 1), harmonic 1 is bending with shear, harmonic 2 makes rings oval
+(Zienkiewicz and Taylor 2000, The Finite Element Method, vol 2, chapter 9). Harmonics don't mix, so
+each is a problem in the plane. All integrals run over the whole turn: forces are in N, energies
+in J.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy import sparse
+from scipy.linalg import block_diag
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
+from fe_drivetrain.revolution import frontal
+from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
+from fe_drivetrain.scene.materials import Material
+
+COMPONENTS = ("xx", "rr", "tt", "xr", "xt", "rt")
+"""Of stress: the first four go round as cos(n t), the last two as sin(n t)."""
+
+Traction = Callable[[Floats, Floats], Floats]
+"""Of (k, 2) positions [m] and outward normals, each x and radius: (k, 3) amplitudes [Pa]."""
+
+
+@dataclass(frozen=True)
+class HarmonicResponse:
+    """Displacements of a body of revolution in one harmonic.
+
+    Attributes
+    ----------
+    n
+        The harmonic.
+    u
+        (n_nodes, 3, m) amplitudes of u_x, u_r, u_t [m].
+    reactions
+        (n_nodes, 3, m) nodal forces that hold what is held [N], over the whole turn.
+    energy
+        (m,) strain energy [J].
+    """
+
+    n: int
+    u: Floats
+    reactions: Floats
+    energy: Floats
+
+
+def freedoms(nodes: Ints, component: int) -> Ints:
+    """Freedoms of nodes along x (0), the radius (1) or the circumference (2)."""
+    return np.asarray(3 * np.asarray(nodes) + component)
+
+
+def harmonic_response(
+    mesh: Meridian,
+    material: Material,
+    n: int,
+    loads: Floats | None = None,
+    held: tuple[Ints, Floats] | None = None,
+) -> HarmonicResponse:
+    """Solve one harmonic for given forces and displacements.
+
+    Parameters
+    ----------
+    mesh
+        The meridian.
+    material
+        Of the body.
+    n
+        The harmonic, 0 or more.
+    loads
+        (3 n_nodes,) or (3 n_nodes, m) nodal forces over the whole turn [N], as `surface_loads`
+        gives them; none where not given.
+    held
+        Freedoms (k,) and their displacements (k,) or (k, m) [m].
+
+    Raises
+    ------
+    InputError
+        The body is free to move as a rigid one.
+    """
+    _check_order(n)
+    size = 3 * len(mesh.nodes)
+    which = np.empty(0, dtype=np.int64) if held is None else np.asarray(held[0])
+    values = np.zeros((0, 1)) if held is None else np.reshape(held[1], (len(which), -1))
+    F = np.zeros((size, 1)) if loads is None else np.reshape(loads, (size, -1))
+    m = max(F.shape[1], values.shape[1])
+    F, values = np.broadcast_to(F, (size, m)), np.broadcast_to(values, (len(which), m))
+
+    target, coefficient = _on_axis(mesh, n)
+    F = _onto(target, coefficient) @ F
+    q = np.zeros((size, m))
+    kept = coefficient[which] != 0
+    given = target[which[kept]]
+    q[given] = coefficient[which[kept], None] * values[kept]
+    # forces of what is held: of the elements that it belongs to alone
+    moved = np.zeros(size, dtype=bool)
+    moved[given] = True
+    local = _local(mesh)
+    near = np.flatnonzero(moved[target[local]].any(axis=1))
+    matrices = element_matrices(mesh, material.lame, n, near)
+    local = local[near]
+
+    def forces(q: Floats) -> Floats:
+        found = np.zeros((size, m))
+        u = coefficient[local][..., None] * q[target[local]]
+        np.add.at(found, target[local], coefficient[local][..., None] * (matrices @ u))
+        return found
+
+    free = _factored(mesh, material, n, which)(F - forces(q))
+    q[~moved] = free[~moved]
+    held_by = forces(q)[given]
+    reactions = np.zeros((size, m))
+    reactions[given] = held_by - F[given]
+    F[given] = held_by
+    u = coefficient[:, None] * q[target]
+    return HarmonicResponse(
+        n,
+        u.reshape(-1, 3, m),
+        reactions.reshape(-1, 3, m),
+        0.5 * np.einsum("im,im->m", q, F),
+    )
+
+
+def harmonic_solver(
+    mesh: Meridian, material: Material, n: int, held: Ints
+) -> Callable[[Floats], Floats]:
+    """One harmonic factored once, to be solved for any loads.
+
+    Parameters
+    ----------
+    mesh, material, n
+        As for `harmonic_response`.
+    held
+        Freedoms (k,) that don't move.
+
+    Returns
+    -------
+    Of nodal forces (3 n_nodes, m) over the whole turn [N]: amplitudes (3 n_nodes, m) [m].
+
+    Raises
+    ------
+    InputError
+        The body is free to move as a rigid one.
+    """
+    target, coefficient = _on_axis(mesh, n)
+    onto = _onto(target, coefficient)
+    solve = _factored(mesh, material, n, held)
+    return lambda F: np.asarray(coefficient[:, None] * solve(onto @ F)[target])
+
+
+def surface_loads(mesh: Meridian, n: int, sides: Ints, traction: Traction) -> Floats:
+    """Nodal forces (3 n_nodes,) of a traction on sides of the boundary, over the whole turn [N].
+
+    Parameters
+    ----------
+    mesh
+        The meridian.
+    n
+        The harmonic.
+    sides
+        (k, 2) cell and side, as `Meridian.sides` gives them.
+    traction
+        Amplitudes along x, the radius and the circumference.
+    """
+    F = np.zeros((len(mesh.nodes), 3))
+    abscissa, weight = np.polynomial.legendre.leggauss(mesh.element.order + 3)
+    for side, of in _by_side(mesh, sides):
+        values, at, tangents = along_sides(mesh, side, of, (abscissa + 1.0) / 2.0)
+        lengths = np.hypot(tangents[..., 0], tangents[..., 1])
+        normals = np.stack([tangents[..., 1], -tangents[..., 0]], axis=-1) / lengths[..., None]
+        t = traction(at.reshape(-1, 2), normals.reshape(-1, 2)).reshape(*lengths.shape, 3)
+        area = turn(n) * at[..., 1] * lengths * weight / 2.0
+        np.add.at(F, mesh.cells[of], np.einsum("qm,eq,eqi->emi", values, area, t))
+    return F.ravel()
+
+
+def along_sides(
+    mesh: Meridian, side: int, cells: Ints, along: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Shape functions (q, m), positions (k, q, 2) [m] and tangents (k, q, 2) on a side of cells.
+
+    Parameters
+    ----------
+    mesh, side, cells
+        The meridian, the number of the side, and (k,) cells.
+    along
+        (q,) from the side's first end, 0, to its second, 1; tangents are per unit of it.
+    """
+    places = mesh.element.side_places(side, along)
+    values, gradients = mesh.element.at(places)
+    step = np.diff(mesh.element.side_places(side, np.array([0.0, 1.0])), axis=0)[0]
+    nodes = mesh.nodes[mesh.cells[cells]]
+    at = np.einsum("qm,emi->eqi", values, nodes)
+    tangents = np.einsum("qkm,k,emi->eqi", gradients, step, nodes)
+    return values, at, tangents
+
+
+def stresses(
+    mesh: Meridian, material: Material, n: int, u: Floats, at: Floats, cells: Ints | None = None
+) -> Floats:
+    """Amplitudes of stress inside the elements.
+
+    Parameters
+    ----------
+    mesh, material, n
+        As for `harmonic_response`.
+    u
+        (n_nodes, 3) amplitudes [m].
+    at
+        (q, 2) reference places in each element, or (k, q, 2), own ones of each.
+    cells
+        (k,) which; all where not given.
+
+    Returns
+    -------
+    (k, q, 6) in the order of `COMPONENTS` [Pa]; on the axis the limits.
+    """
+    chosen = mesh.cells if cells is None else mesh.cells[cells]
+    places = np.broadcast_to(at, (len(chosen), *np.shape(at)[-2:]))
+    shared = np.ndim(at) == 2
+    values, gradients = mesh.element.at(at if shared else places.reshape(-1, 2))
+    q = places.shape[1]
+    values = np.broadcast_to(values, (len(chosen), *values.shape)) if shared else values
+    values = values.reshape(len(chosen), q, -1)
+    gradients = np.broadcast_to(gradients, (len(chosen), *gradients.shape)) if shared else gradients
+    physical, _ = _physical(mesh.nodes[chosen], gradients.reshape(len(chosen), q, 2, -1))
+    amplitudes = u[chosen]
+    r = np.einsum("eqm,em->eq", values, mesh.nodes[chosen, 1])
+    ux, ur, ut = np.moveaxis(values @ amplitudes, -1, 0)
+    (ux_x, ur_x, ut_x), (ux_r, ur_r, ut_r) = np.moveaxis(
+        physical @ amplitudes[:, None], (2, 3), (0, 1)
+    )
+
+    def over_radius(f: Floats, slope: Floats) -> Floats:
+        on_axis = r < SAME_LENGTH
+        return np.where(on_axis, slope, f / np.where(on_axis, 1.0, r))
+
+    e_tt = over_radius(ur + n * ut, ur_r + n * ut_r)
+    g_xt = ut_x - over_radius(n * ux, n * ux_r)
+    g_rt = ut_r - over_radius(ut + n * ur, ut_r + n * ur_r)
+    lam, mu = material.lame
+    dilatation = lam * (ux_x + ur_r + e_tt)
+    normal = [dilatation + 2.0 * mu * e for e in (ux_x, ur_r, e_tt)]
+    shear = [mu * g for g in (ux_r + ur_x, g_xt, g_rt)]
+    return np.stack([*normal, *shear], axis=-1)
+
+
+def stress_at(mesh: Meridian, material: Material, n: int, u: Floats, places: Floats) -> Floats:
+    """Amplitudes of stress (k, 6) [Pa] at positions (k, 2), x and radius [m].
+
+    Raises
+    ------
+    InputError
+        A position lies outside the meridian.
+    """
+    found = [_located(mesh, place) for place in np.reshape(places, (-1, 2))]
+    cells = np.array([cell for cell, _ in found])
+    at = np.array([[reference] for _, reference in found])
+    return stresses(mesh, material, n, u, at, cells)[:, 0]
+
+
+def end_stiffness(
+    shaft: Shaft,
+    material: Material,
+    size: float | None = None,
+    *,
+    order: int | None = None,
+    layers: int = 4,
+    per_fillet: int = 6,
+) -> Floats:
+    """Stiffness of a shaft between its two end faces, each rigid.
+
+    Parameters
+    ----------
+    shaft, size, order, layers, per_fillet
+        As for `fe_drivetrain.revolution.meridian`. With the default size stiffness is right to some
+        1e-5 where diameters are alike, to 2e-4 where they differ by 2.5 to 1. Of a shaft with
+        fillets 2 per fillet is many times quicker.
+    material
+        Of the shaft.
+
+    Returns
+    -------
+    (12, 12) from displacements [m] and rotations [rad] along and about x, y, z at the middle of the
+    front face, then of the rear face, to the forces [N] and moments [N m] there.
+    """
+    mesh = meridian(shaft, size, order=order, layers=layers, per_fillet=per_fillet)
+    return stiffness_between_ends(mesh, material)
+
+
+def seat_stiffness(
+    shaft: Shaft,
+    material: Material,
+    seats: Sequence[tuple[float, float]],
+    size: float | None = None,
+    *,
+    order: int | None = None,
+    layers: int = 4,
+    per_fillet: int = 6,
+) -> Floats:
+    """Stiffness of a shaft between any of its seats, each rigid.
+
+    Parameters
+    ----------
+    shaft, size, order, layers, per_fillet
+        As for `meridian`. Quadrilaterals are graded towards the seats' ends,
+        triangles are not: of a shaft with fillets give 2 per fillet.
+    material
+        Of the shaft.
+    seats
+        x of both ends of each [m]: the outer surface of one section between them; twice the x of
+        the shaft's front or rear for that end face.
+
+    Returns
+    -------
+    (6 s, 6 s) from displacements [m] and rotations [rad] along and about x, y, z at the middle of
+    each seat, on the axis, to the forces [N] and moments [N m] there.
+
+    Raises
+    ------
+    InputError
+        A seat is not on the shaft, reaches over a step, or meets another.
+    """
+    radii = [_seat(shaft, seat) for seat in seats]
+    wide = [(seat, radius) for seat, radius in zip(seats, radii, strict=True) if _wide(seat)]
+    mesh = meridian(
+        shaft.cut(x for seat, _ in wide for x in seat),
+        size,
+        order=order,
+        layers=layers,
+        per_fillet=per_fillet,
+        corners=[end for seat, radius in wide for end in zip(seat, radius, strict=True)],
+    )
+    x, r = mesh.nodes.T
+    nodes = []
+    for seat, radius in zip(seats, radii, strict=True):
+        low, high = seat[0] - SAME_LENGTH, seat[1] + SAME_LENGTH
+        here = (x > low) & (x < high)
+        if _wide(seat):
+            here &= np.abs(r - np.interp(x, seat, radius)) < SAME_LENGTH
+        nodes.append((np.flatnonzero(here), 0.5 * (seat[0] + seat[1])))
+    return stiffness_between_seats(mesh, material, nodes)
+
+
+def stiffness_between_ends(mesh: Meridian, material: Material) -> Floats:
+    """`end_stiffness` of a meridian, whose ends are its nodes of least and of greatest x."""
+    x = mesh.nodes[:, 0]
+    ends = [(np.flatnonzero(np.abs(x - end) < SAME_LENGTH), end) for end in (x.min(), x.max())]
+    return stiffness_between_seats(mesh, material, ends)
+
+
+def stiffness_between_seats(
+    mesh: Meridian, material: Material, seats: Sequence[tuple[Ints, float]]
+) -> Floats:
+    """Stiffness between rigid sets of nodes of a meridian.
+
+    Parameters
+    ----------
+    mesh, material
+        The meridian and what it is of.
+    seats
+        Nodes (k,) of each, and the x of its reference point on the axis [m].
+
+    Returns
+    -------
+    (6 s, 6 s) as of `seat_stiffness`.
+
+    Raises
+    ------
+    InputError
+        Two seats share a node.
+    """
+    met = np.concatenate([nodes for nodes, _ in seats])
+    if len(np.unique(met)) < len(met):
+        raise InputError("two seats meet: leave some of the shaft's surface between them")
+    order = frontal.dissection(mesh.nodes[mesh.cells].mean(axis=1))
+
+    def between(n: int, components: slice, which: slice) -> Floats:
+        motions = [
+            (nodes, rigid_motions_at(mesh.nodes[nodes] - [x, 0.0], n)[:, components, which])
+            for nodes, x in seats
+        ]
+        law = _law(material.lame, n)[components, components]
+        return turn(n) * _between(mesh, law, order, n, motions, components)
+
+    K = np.zeros((6 * len(seats), 6 * len(seats)))
+    first: Ints = 6 * np.arange(len(seats))
+    K[np.ix_(first, first)] = between(0, slice(0, 2), slice(0, 1))
+    K[np.ix_(first + 3, first + 3)] = between(0, slice(2, 3), slice(1, 2))
+    flexural = between(1, slice(0, 3), slice(0, 2))
+    # along y, and about z
+    rows: Ints = np.add.outer(first, np.array([1, 5])).ravel()
+    K[np.ix_(rows, rows)] = flexural
+    # along z, and about y: a rotation about y lifts z's side the other way
+    rows = np.add.outer(first, np.array([2, 4])).ravel()
+    signs = np.tile([1.0, -1.0], len(seats))
+    K[np.ix_(rows, rows)] = flexural * np.outer(signs, signs)
+    return K
+
+
+def _wide(seat: tuple[float, float]) -> bool:
+    return seat[1] - seat[0] > SAME_LENGTH
+
+
+def _seat(shaft: Shaft, seat: tuple[float, float]) -> tuple[float, float]:
+    """Outer radius of a seat at its ends [m]; of an end face what stands there twice."""
+    low, high = seat
+    if not _wide(seat):
+        if min(abs(low - shaft.front), abs(low - shaft.rear)) > SAME_LENGTH or high < low:
+            raise InputError(
+                f"seat from x = {low:g} m to {high:g} m has no width: give its two ends in "
+                f"ascending order, or twice {shaft.front:g} m or {shaft.rear:g} m for an end face"
+            )
+        return 0.0, 0.0
+    for piece, (start, end) in zip(shaft.pieces, pairwise(shaft.stations), strict=True):
+        if start - SAME_LENGTH <= low and high <= end + SAME_LENGTH:
+            widths = np.interp(seat, [start, end], [piece.outer_diameter, piece.end_diameter])
+            return float(widths[0] / 2), float(widths[1] / 2)
+    raise InputError(
+        f"seat from x = {low:g} m to {high:g} m is not on one section of the shaft, which ends or "
+        f"steps at x = {', '.join(f'{x:g}' for x in shaft.stations)} m: move or shorten it"
+    )
+
+
+def turn(n: int) -> float:
+    """Integral of cos^2(n t) round the axis: that of 1 where n is 0."""
+    return 2.0 * math.pi if n == 0 else math.pi
+
+
+def element_matrices(
+    mesh: Meridian, lame: tuple[float, float], n: int, cells: Ints | None = None
+) -> Floats:
+    """Stiffness (ne, 3 m, 3 m) of each element over the whole turn [N/m], or of those cells.
+
+    Freedoms u_x of all its m nodes, then u_r, then u_t. On the axis entries are large that cancel
+    once its conditions hold.
+    """
+    grams = mesh.grams if cells is None else mesh.grams[cells]
+    return np.asarray(turn(n) * frontal.element_matrices(grams, _law(lame, n)))
+
+
+def rigid_motions(mesh: Meridian, n: int) -> Floats:
+    """(3 n_nodes, k) motions without strain: n = 0 along x, about x; n = 1 along y, about z."""
+    return rigid_motions_at(mesh.nodes, n).reshape(3 * len(mesh.nodes), -1)
+
+
+def rigid_motions_at(places: Floats, n: int) -> Floats:
+    """(p, 3, k) of `rigid_motions` at places (p, 2), x and radius [m]."""
+    x, r = places.T
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    motions = {
+        0: [(one, zero, zero), (zero, zero, r)],
+        1: [(zero, one, -one), (-r, x, -x)],
+    }.get(n, [])
+    return np.array(motions).reshape(len(motions), 3, len(x)).transpose(2, 1, 0)
+
+
+def _physical(nodes: Floats, gradients: Floats) -> tuple[Floats, Floats]:
+    """Gradients (ne, q, 2, m) by x and radius, and determinants (ne, q)."""
+    J = gradients @ nodes[:, None]
+    (a, b), (c, d) = np.moveaxis(J, (2, 3), (0, 1))
+    determinant = a * d - b * c
+    inverse = np.stack([np.stack([d, -b], -1), np.stack([-c, a], -1)], -2)
+    return (inverse / determinant[..., None, None]) @ gradients, determinant
+
+
+def _law(lame: tuple[float, float], n: int) -> Floats:
+    """(3, 3, 3, 3): of components p and q and derivatives s and t, per product of the latter.
+
+    From strains a u_x, b u_r, c (u_r + n u_t), b u_x + a u_r, a u_t - n c u_x and
+    (b - c) u_t - n c u_r.
+    """
+    strains = np.zeros((6, 3, 3))
+    strains[0, 0, 0] = strains[1, 1, 1] = strains[2, 1, 2] = 1.0
+    strains[3, 0, 1] = strains[3, 1, 0] = strains[4, 2, 0] = strains[5, 2, 1] = 1.0
+    strains[2, 2, 2] = n
+    strains[4, 0, 2] = strains[5, 1, 2] = -n
+    strains[5, 2, 2] = -1.0
+    lam, mu = lame
+    elastic = np.diag([2.0 * mu] * 3 + [mu] * 3)
+    elastic[:3, :3] += lam
+    return np.asarray(np.einsum("aps,ab,bqt->pqst", strains, elastic, strains))
+
+
+def _on_axis(mesh: Meridian, n: int) -> tuple[Ints, Floats]:
+    """Freedom (3 n_nodes,) that each one follows, and its share: what the axis allows.
+
+    A solid body stays whole: for n = 0 its axis moves along itself, for n = 1 sideways, u_t = -u_r,
+    for all others not at all.
+    """
+    target = np.arange(3 * len(mesh.nodes))
+    coefficient = np.ones(len(target))
+    axis = np.flatnonzero(mesh.nodes[:, 1] == 0.0)
+    if n == 1:
+        target[freedoms(axis, 2)] = freedoms(axis, 1)
+        coefficient[freedoms(axis, 2)] = -1.0
+    for component in {0: (1, 2), 1: (0,)}.get(n, (0, 1, 2)):
+        coefficient[freedoms(axis, component)] = 0.0
+    return target, coefficient
+
+
+def _check_order(n: int) -> None:
+    if n < 0:
+        raise InputError(f"harmonic is {n} but must be 0 or more: give its order round the axis")
+
+
+def _check_held(mesh: Meridian, n: int, which: Ints) -> None:
+    motions = rigid_motions(mesh, n)
+    if not motions.size:
+        return
+    scaled = motions / np.abs(motions).max(axis=0)
+    grip = np.linalg.svd(scaled[which], compute_uv=False) if len(which) else np.zeros(1)
+    if len(grip) < motions.shape[1] or grip.min() < 1e-9:
+        names = ("along x and about x", "sideways and about its diameter")[n]
+        raise InputError(
+            f"the body of revolution is free to move {names} in harmonic {n}: hold at least "
+            f"{motions.shape[1]} freedoms that stop this"
+        )
+
+
+def _assembled(matrices: Floats, rows: Ints, shares: Floats, size: int) -> sparse.csc_array:
+    """Sum of element matrices (ne, k, k) whose freedoms are shares (ne, k) of rows (ne, k)."""
+    scaled = (
+        matrices if (shares == 1.0).all() else matrices * (shares[:, :, None] * shares[:, None])
+    )
+    i = np.broadcast_to(rows[:, :, None], matrices.shape).ravel()
+    j = np.broadcast_to(rows[:, None, :], matrices.shape).ravel()
+    values = scaled.ravel()
+    if (shares == 0.0).any():
+        kept = (shares != 0.0)[:, :, None] & (shares != 0.0)[:, None, :]
+        i, j, values = i[kept.ravel()], j[kept.ravel()], values[kept.ravel()]
+    return sparse.coo_array((values, (i, j)), shape=(size, size)).tocsc()
+
+
+def _onto(target: Ints, coefficient: Floats) -> sparse.csr_array:
+    """Takes forces on all freedoms to those that they follow."""
+    size = len(target)
+    return sparse.csr_array((coefficient, (target, np.arange(size))), shape=(size, size))
+
+
+def _local(mesh: Meridian) -> Ints:
+    """(ne, 3 m) freedoms of each element, in the order of `element_matrices`."""
+    return np.asarray(
+        3 * np.tile(mesh.cells, 3) + np.repeat(np.arange(3), mesh.cells.shape[1]), dtype=np.int64
+    )
+
+
+def _factored(mesh: Meridian, material: Material, n: int, held: Ints) -> Callable[[Floats], Floats]:
+    """As `harmonic_solver`, in forces and displacements of the freedoms that others follow."""
+    _check_order(n)
+    _check_held(mesh, n, held)
+    target, coefficient = _on_axis(mesh, n)
+    alive = coefficient != 0.0
+    alive[np.isin(target, target[held])] = False
+    local = _local(mesh).reshape(len(mesh.cells), 3, -1)
+    ids, shares = np.where(alive, target, -1)[local], coefficient[local]
+    order = frontal.dissection(mesh.nodes[mesh.cells].mean(axis=1))
+    law = turn(n) * _law(material.lame, n)
+
+    def factor(components: slice) -> frontal.Factor:
+        of = ids[:, components].reshape(len(ids), -1)
+        by = shares[:, components].reshape(len(ids), -1)
+        return frontal.factored(mesh.grams, law[components, components], of, by, order)
+
+    # torsion has nothing to do with tension
+    factors = [factor(c) for c in ((slice(0, 2), slice(2, 3)) if n == 0 else (slice(0, 3),))]
+    return lambda F: np.asarray(sum(one.solve(F) for one in factors))
+
+
+def _between(
+    mesh: Meridian,
+    law: Floats,
+    order: Ints,
+    n: int,
+    seats: Sequence[tuple[Ints, Floats]],
+    components: slice,
+) -> Floats:
+    """Stiffness per radian between rigid motions, all else eliminated.
+
+    Parameters
+    ----------
+    mesh, n
+        The meridian and the harmonic.
+    law, order
+        As for `fronts.condensed`; the law of the components only.
+    seats
+        Nodes (k,) and their motions (k, components, m).
+    components
+        Those that the harmonic has.
+    """
+    # what is kept goes first
+    kept, held, rows = 0, [], []
+    for nodes, motions in seats:
+        follows = motions != 0.0
+        moved = follows.any(axis=2)
+        if (follows.sum(axis=2) <= 1).all():  # each freedom follows one motion
+            number, share, row = follows.argmax(axis=2), motions.sum(axis=2), np.eye(len(motions.T))
+        else:
+            number, share, row = (
+                moved.cumsum().reshape(moved.shape) - 1,
+                1.0 * moved,
+                motions[moved],
+            )
+        held.append((nodes, np.where(moved, kept + number, -1), share))
+        rows.append(row)
+        kept += len(row)
+    _, coefficient = _on_axis(mesh, n)
+    shares = coefficient.reshape(-1, 3)[:, components].copy()
+    ids = np.where(shares != 0.0, kept + np.arange(shares.size).reshape(shares.shape), -1)
+    if n == 1:
+        axis = np.flatnonzero(mesh.nodes[:, 1] == 0.0)
+        ids[axis, 2] = ids[axis, 1]
+    for nodes, number, share in held:
+        ids[nodes], shares[nodes] = number, share
+    ids = ids[mesh.cells].transpose(0, 2, 1).reshape(len(mesh.cells), -1)
+    shares = shares[mesh.cells].transpose(0, 2, 1).reshape(len(mesh.cells), -1)
+    T = block_diag(*rows)
+    return np.asarray(T.T @ frontal.condensed(mesh.grams, law, ids, shares, kept, order) @ T)
+
+
+def _by_side(mesh: Meridian, sides: Ints) -> list[tuple[int, Ints]]:
+    numbers = range(mesh.element.corners)
+    return [
+        (side, sides[sides[:, 1] == side, 0]) for side in numbers if (sides[:, 1] == side).any()
+    ]
+
+
+def _located(mesh: Meridian, place: Floats) -> tuple[int, Floats]:
+    """Cell and reference place of a position, by Newton's method in the cells near it."""
+    nodes = mesh.nodes[mesh.cells]
+    low, high = nodes.min(axis=1), nodes.max(axis=1)
+    room = 0.2 * (high - low)
+    near = np.flatnonzero(((place > low - room) & (place < high + room)).all(axis=1))
+    best, least = (-1, np.zeros(2)), math.inf
+    for cell in near:
+        at = mesh.element.places[: mesh.element.corners].mean(axis=0)
+        for _ in range(30):
+            values, gradients = mesh.element.at(at[None])
+            gap = place - values[0] @ nodes[cell]
+            step = np.linalg.solve((gradients[0] @ nodes[cell]).T, gap)
+            at = at + np.clip(step, -0.5, 0.5)
+            if np.abs(step).max() < 1e-13:
+                break
+        bounds = [-at.min(), at.max() - 1.0 if mesh.element.corners == 4 else at.sum() - 1.0]
+        if np.abs(gap).max() <= 1e-9 * np.ptp(nodes[cell], axis=0).max() and max(bounds) < least:
+            best, least = (int(cell), at), max(bounds)
+    if least > 1e-6:
+        x, r = place
+        raise InputError(f"x = {x:g} m, radius = {r:g} m is outside the meridian: move it inside")
+    return best

@@ -1,0 +1,237 @@
+"""A component: one solid with reference points on its faces, on springs; typed, from YAML.
+
+The second kind of scene, beside the drivetrain of `Scene`. A key of the file's top
+level says which component it is: "gearbox_housing" or "planet_carrier".
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple, TypeVar
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
+from fe_drivetrain.scene.materials import MATERIALS, Material
+from fe_drivetrain.scene.scene import (
+    COMPONENTS,
+    Coupling,
+    Keys,
+    check_material,
+    file_text,
+    library_text,
+    parse_mapping,
+    set_by_key,
+    validated,
+)
+
+
+class Attachment(NamedTuple):
+    """A reference point of a component.
+
+    Attributes
+    ----------
+    name
+        Of the point.
+    face
+        The face that it moves with, by its name in the mesh.
+    position
+        (3,) [m].
+    coupling
+        How it holds the face: "averaged" (RBE3) or "rigid" (RBE2).
+    """
+
+    name: str
+    face: str
+    position: Floats
+    coupling: Coupling
+
+
+class Reference(Keys):
+    """How a reference point holds its face."""
+
+    coupling: Coupling = "averaged"
+
+
+class RigidReference(Keys):
+    """The same, of a face that a stiff neighbour keeps in shape."""
+
+    coupling: Coupling = "rigid"
+
+
+class Bushings(Keys):
+    """The elastic bushing in each eye, to ground, and how its outer sleeve holds the eye.
+
+    Stiffness is along x, y, z [N/m] and about them [N m/rad].
+    """
+
+    stiffness: tuple[Annotated[float, Field(ge=0, le=1e16)], ...] = Field(
+        min_length=6, max_length=6
+    )
+    coupling: Coupling = "rigid"
+
+
+class HousingComponent(Keys):
+    """A gearbox housing's section on two bushings, loaded at the middle of its ring."""
+
+    title: str
+    gearbox_housing: GearboxHousing
+    bushings: Bushings
+    ring: Reference = Reference()
+    weight: float = Field(default=0.0, ge=0, allow_inf_nan=False, description="[N], along -z")
+    materials: Mapping[str, Material] = {}
+    mesh: BodySizes = BodySizes()
+
+    @model_validator(mode="after")
+    def _known_material(self) -> HousingComponent:
+        check_material(self.gearbox_housing.material, self.materials)
+        return self
+
+    @property
+    def body(self) -> GearboxHousing:
+        """The solid."""
+        return self.gearbox_housing
+
+    @property
+    def attachments(self) -> tuple[Attachment, ...]:
+        """The ring, and the left (at +y) and the right bushing."""
+        x, y, z = self.gearbox_housing.eye
+        hold = self.bushings.coupling
+        return (
+            Attachment("ring", "housing.ring", np.zeros(3), self.ring.coupling),
+            Attachment("left", "housing.left", np.array([x, y, z]), hold),
+            Attachment("right", "housing.right", np.array([x, -y, z]), hold),
+        )
+
+    @property
+    def loaded(self) -> tuple[str, ...]:
+        """Names of the points that loads come in by."""
+        return ("ring",)
+
+    @property
+    def supports(self) -> dict[str, Floats]:
+        """(6, 6) stiffness to ground by point; inf on the diagonal where it is rigid."""
+        given = np.diag(self.bushings.stiffness)
+        return {"left": given, "right": given}
+
+
+class CarrierComponent(Keys):
+    """A planet carrier, its flange held, loaded at the middle of each pin."""
+
+    title: str
+    planet_carrier: PlanetCarrier
+    hub: RigidReference = RigidReference()
+    pins: Reference = Reference()
+    materials: Mapping[str, Material] = {}
+    mesh: BodySizes = BodySizes()
+
+    @model_validator(mode="after")
+    def _known_material(self) -> CarrierComponent:
+        check_material(self.planet_carrier.material, self.materials)
+        return self
+
+    @property
+    def body(self) -> PlanetCarrier:
+        """The solid."""
+        return self.planet_carrier
+
+    @property
+    def attachments(self) -> tuple[Attachment, ...]:
+        """The hub, and the pins from the one at the top on."""
+        pins = [
+            Attachment(name, f"carrier.{name}", np.array(centre), self.pins.coupling)
+            for name, centre in zip(self.loaded, self.planet_carrier.pin_centres(), strict=True)
+        ]
+        return (Attachment("hub", "carrier.hub", np.zeros(3), self.hub.coupling), *pins)
+
+    @property
+    def loaded(self) -> tuple[str, ...]:
+        """Names of the points that loads come in by."""
+        return tuple(f"pin_{k + 1}" for k in range(self.planet_carrier.planets))
+
+    @property
+    def supports(self) -> dict[str, Floats]:
+        """(6, 6) stiffness to ground by point; inf on the diagonal where it is rigid."""
+        return {"hub": np.diag(np.full(6, np.inf))}
+
+
+Component = HousingComponent | CarrierComponent
+SomeComponent = TypeVar("SomeComponent", HousingComponent, CarrierComponent)
+
+_KINDS: dict[str, type[HousingComponent] | type[CarrierComponent]] = {
+    "gearbox_housing": HousingComponent,
+    "planet_carrier": CarrierComponent,
+}
+
+
+def material_of(component: Component) -> Material:
+    """What the component is made of."""
+    return {**MATERIALS, **component.materials}[component.body.material]
+
+
+def parse_component(
+    text: str, changes: Mapping[str, Any] | None = None, source: str = "component"
+) -> Component:
+    """A component from YAML text; see `read_component`."""
+    return _validated(parse_mapping(text, changes, source), source)
+
+
+def read_component(path: str | Path, changes: Mapping[str, Any] | None = None) -> Component:
+    """Read a component from a YAML file.
+
+    Parameters
+    ----------
+    path
+        A file of at most 1 MB, plain YAML without anchors, aliases or tags.
+    changes
+        Values by dotted key that replace what the file says, as in
+        ``{"gearbox_housing.arm_z": -0.1}``.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not such YAML, or does not describe a component.
+    """
+    return parse_component(file_text(path), changes, source=str(path))
+
+
+def library_component(name: str) -> Component:
+    """A component that comes with the package: "gearbox_housing" or "planet_carrier"."""
+    return parse_component(library_text(name), source=name)
+
+
+def change_component(component: SomeComponent, changes: Mapping[str, Any]) -> SomeComponent:
+    """A copy with other values by dotted key; see `read_component`."""
+    data = component.model_dump(mode="json")
+    for key, value in changes.items():
+        set_by_key(data, key, value)
+    return validated(type(component), data, "component")
+
+
+def is_component(text: str) -> bool:
+    """Whether YAML text describes a component; False of what is no such text at all."""
+    try:
+        data = parse_mapping(text)
+    except InputError:
+        return False
+    return any(kind in data for kind in COMPONENTS)
+
+
+def component_hash(component: Component) -> str:
+    """SHA-256 of all values of a component, whatever its file looks like."""
+    return hashlib.sha256(component.model_dump_json().encode()).hexdigest()
+
+
+def _validated(data: dict[str, Any], source: str) -> Component:
+    found = [kind for kind in COMPONENTS if kind in data]
+    if len(found) != 1:
+        raise InputError(
+            f"{source} must have one of the keys {', '.join(COMPONENTS)}, not "
+            f"{' and '.join(found) or 'none of them'}: that says which component it is"
+        )
+    return validated(_KINDS[found[0]], data, source)

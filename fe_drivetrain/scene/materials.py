@@ -1,0 +1,47 @@
+"""Linear elastic, isotropic materials."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from fe_drivetrain.common.strict_yaml import no_truth_value
+
+HIGHEST_POISSON_RATIO = 0.499999
+"""Nearer to 1/2 lambda swamps mu, and stiffnesses lose digits without a word
+(``cases/stability/volumetric_locking.py``); and here already they are those of 1/2."""
+
+
+class Material(BaseModel):
+    """A linear elastic, isotropic material."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    _truth = field_validator("*", mode="before")(no_truth_value)
+
+    youngs_modulus: Annotated[
+        float, Field(ge=1e6, le=1e13, description="E [Pa], as in 2.1e11 for steel")
+    ]
+    poisson_ratio: Annotated[float, Field(gt=-1, le=HIGHEST_POISSON_RATIO, description="nu [-]")]
+    density: Annotated[float, Field(ge=0, le=1e5, description="rho [kg/m^3]")]
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lame's constants (lambda, mu) [Pa]."""
+        nu = self.poisson_ratio
+        return (
+            self.youngs_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            self.shear_modulus,
+        )
+
+
+#: The materials that a scene can name without defining them. Ductile iron: EN-GJS-400-15,
+#: EN 1563:2018, Annex (informative) on physical properties.
+MATERIALS: dict[str, Material] = {
+    "steel": Material(youngs_modulus=200e9, poisson_ratio=0.3, density=7850.0),
+    "ductile_iron": Material(youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0),
+}

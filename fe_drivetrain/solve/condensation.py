@@ -1,0 +1,277 @@
+"""A body condensed to its reference points: free stiffness, and what its own weight puts on them.
+
+The body is left free. Unit loads at each point are balanced at the first one, so any way of holding
+the body without constraint gives the same flexibility F of the other points relative to the first,
+and K = B F^-1 B^T with the rigid transport of forces in B (the natural mode method: Argyris 1964,
+Recent Advances in Matrix Methods of Structural Analysis; Guyan 1965 where all of a face moves as
+one). K then keeps its six rigid motions to round-off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A free body at its reference points.
+
+    Attributes
+    ----------
+    names
+        Of the n points.
+    positions
+        (n, 3) [m].
+    stiffness
+        (6 n, 6 n): ux, uy, uz, rx, ry, rz of each point to Fx to Mz there [N/m, N, N m/rad].
+    gravity
+        (6 n, 3) forces and moments that do at the points what the body's mass does under a uniform
+        acceleration of 1 m/s^2 along x, y, z.
+    mass
+        (6 n, 6 n) of the motions that the points force on the body (Guyan 1965) [kg, kg m,
+        kg m^2]; None of a beam.
+    """
+
+    names: tuple[str, ...]
+    positions: Floats
+    stiffness: Floats
+    gravity: Floats
+    mass: Floats | None = None
+
+    def rows(self, name: str) -> slice:
+        """The six rows of a point."""
+        first = 6 * self.names.index(name)
+        return slice(first, first + 6)
+
+    @property
+    def rigid_motions(self) -> Floats:
+        """(6 n, 6) the motions that no force resists, about the first point."""
+        return point_motions(self.positions)
+
+
+def wrench_transport(arm: Floats) -> Floats:
+    """(6, 6) that takes forces and moments at a + arm to the same about a; (3,) arm [m].
+
+    Its transpose takes a rigid motion about a to the motion of a + arm.
+    """
+    x, y, z = arm
+    T = np.eye(6)
+    T[3:, :3] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+    return T
+
+
+def point_motions(positions: Floats) -> Floats:
+    """(6 n, 6) motions of n points (n, 3) that move as one rigid body, about the first."""
+    return np.vstack([wrench_transport(p - positions[0]).T for p in positions])
+
+
+def condense(
+    names: Sequence[str],
+    positions: Floats,
+    loads: Floats,
+    mass: sparse.csr_array,
+    rigid: Floats,
+    solve: Callable[[Floats], Floats],
+    kept: Sequence[int] = (0, 1, 2, 3, 4, 5),
+) -> Condensed:
+    """Condense a free body to reference points.
+
+    Parameters
+    ----------
+    names, positions
+        Of the n points, (n, 3) [m]; at least two.
+    loads
+        (n_freedoms, k n) nodal forces of a unit force or moment at each point; transposed, the
+        points' motions. k components of each point are kept.
+    mass
+        (n_freedoms, n_freedoms) mass matrix of the body [kg].
+    rigid
+        (n_freedoms, k) the body's rigid motions about the first point.
+    solve
+        Displacements (n_freedoms, m) under nodal forces that are in balance; any rigid motion may
+        be in them.
+    kept
+        Which of the six components of each point ``loads`` has; the others stay without stiffness.
+
+    Raises
+    ------
+    InputError
+        There is only one point, or two are one to the body.
+    """
+    n, k = len(names), len(kept)
+    if n < 2:
+        raise InputError(
+            f"a free body at the point {names[0]!r} alone has no stiffness: give two or more"
+        )
+    chosen = np.ix_(kept, kept)
+    carried = [wrench_transport(p - positions[0])[chosen] for p in positions[1:]]
+    B = np.vstack([-np.hstack(carried), np.eye(k * (n - 1))])
+    pairs = loads @ B
+    gravity = np.zeros((len(loads), 3))
+    for column, component in enumerate(kept):
+        if component < 3:
+            gravity[:, component] = mass @ rigid[:, column]
+    weight = rigid.T @ gravity
+    # held at the first point
+    U = solve(np.hstack([pairs, gravity - loads[:, :k] @ weight]))
+    strained, sagged = U[:, : pairs.shape[1]], U[:, pairs.shape[1] :]
+    flexibility = pairs.T @ strained
+    flexibility = 0.5 * (flexibility + flexibility.T)
+    size = np.sqrt(np.abs(flexibility.diagonal()))
+    if np.linalg.cond(flexibility / np.outer(size, size)) > 1e14:
+        raise InputError(
+            f"the points {', '.join(names)} cannot all be kept: two of them move as one; "
+            "leave one out"
+        )
+    inverse = np.linalg.inv(flexibility)
+    inverse = 0.5 * (inverse + inverse.T)
+    on_points = B @ inverse @ (pairs.T @ sagged)
+    on_points[:k] += weight
+    # motions of the body for a unit motion of each point: strained, and turned back into place
+    motions = strained @ inverse @ B.T
+    motions -= rigid @ (loads[:, :k].T @ motions - np.eye(k, k * n))
+    where = (6 * np.arange(n)[:, None] + np.asarray(kept)).ravel()
+
+    def placed(reduced: Floats) -> Floats:
+        full = np.zeros((6 * n, 6 * n))
+        full[np.ix_(where, where)] = reduced
+        return full
+
+    full = np.zeros((6 * n, 3))
+    full[where] = on_points
+    moved = motions.T @ (mass @ motions)
+    return Condensed(
+        tuple(names),
+        np.asarray(positions),
+        placed(B @ inverse @ B.T),
+        full,
+        placed(0.5 * (moved + moved.T)),
+    )
+
+
+def keep_points(body: Condensed, at: Sequence[str]) -> Condensed:
+    """The body at some of its points; the others follow without load (Guyan 1965).
+
+    Raises
+    ------
+    InputError
+        A point is unknown.
+    """
+    for name in at:
+        if name not in body.names:
+            raise InputError(
+                f"point {name!r} is unknown: use one or more of {', '.join(body.names)}"
+            )
+    kept = np.concatenate([np.r_[body.rows(name)] for name in at])
+    left = np.setdiff1d(np.arange(len(body.stiffness)), kept)
+    follow = np.zeros((len(body.stiffness), len(kept)))
+    follow[kept] = np.eye(len(kept))
+    if len(left):
+        K = body.stiffness
+        follow[left] = -np.linalg.solve(K[np.ix_(left, left)], K[np.ix_(left, kept)])
+    stiffness = follow.T @ body.stiffness @ follow
+    mass = None if body.mass is None else follow.T @ body.mass @ follow
+    return Condensed(
+        tuple(at),
+        body.positions[[body.names.index(name) for name in at]],
+        0.5 * (stiffness + stiffness.T),
+        follow.T @ body.gravity,
+        None if mass is None else 0.5 * (mass + mass.T),
+    )
+
+
+def on_supports(
+    points: Sequence[str], stiffness: Floats, supports: Mapping[str, Floats]
+) -> tuple[Floats, Ints]:
+    """Stiffness with that of the supports added, and which freedoms they leave.
+
+    Parameters
+    ----------
+    points
+        Names of n points.
+    stiffness
+        (6 n + m, 6 n + m): six freedoms of each point first, then m of anything.
+    supports
+        (6, 6) by point; inf on the diagonal holds that motion, and nothing else is in its row.
+
+    Returns
+    -------
+    (k, k) stiffness of the freedoms that are left, and their (k,) numbers.
+
+    Raises
+    ------
+    InputError
+        A support is at no point.
+    """
+    K = np.array(stiffness)
+    held = np.zeros(len(K), dtype=bool)
+    for name, k in supports.items():
+        if name not in points:
+            raise InputError(
+                f"support {name!r} is at none of the points {', '.join(points)}: keep its point"
+            )
+        rows = slice(6 * points.index(name), 6 * points.index(name) + 6)
+        held[rows] = np.isinf(np.diag(k))
+        K[rows, rows] += np.where(np.isinf(k), 0.0, k)
+    left = np.flatnonzero(~held)
+    return K[np.ix_(left, left)], left
+
+
+@dataclass(frozen=True)
+class Supported:
+    """A condensed body on supports.
+
+    Attributes
+    ----------
+    motions
+        (6 n, 6 n + 3) of all points, for unit forces and moments at all points and for 1 m/s^2
+        along x, y, z.
+    reactions
+        (6, 6 n + 3) by support: what the body puts on it, at its point.
+    """
+
+    motions: Floats
+    reactions: Mapping[str, Floats]
+
+
+def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
+    """Put a condensed body on springs and rigid supports, and load it.
+
+    Parameters
+    ----------
+    body
+        The free body.
+    supports
+        (6, 6) stiffness to ground of points by name; inf on the diagonal holds that motion rigidly,
+        and nothing else stands in its row then.
+
+    Raises
+    ------
+    InputError
+        The supports leave a motion free.
+    """
+    n = len(body.names)
+    F = np.hstack([np.eye(6 * n), body.gravity])
+    K, free = on_supports(body.names, body.stiffness, supports)
+    # translations and rotations have other units: judged with a unit diagonal
+    size = np.sqrt(K.diagonal())
+    if not (size > 0).all() or np.linalg.eigvalsh(K / np.outer(size, size))[0] < _FREE:
+        raise InputError(
+            f"the supports {', '.join(supports)} leave the body free to move: add a support, or "
+            "stiffness to one"
+        )
+    U = np.zeros((6 * n, F.shape[1]))
+    U[free] = np.linalg.solve(K / np.outer(size, size), F[free] / size[:, None]) / size[:, None]
+    # what is rigidly held carries what the body and the loads leave there
+    carried = F - body.stiffness @ U
+    return Supported(U, {name: carried[body.rows(name)] for name in supports})
+
+
+_FREE = 1e-13  # of a stiffness with a unit diagonal: below it no support holds a motion

@@ -1,0 +1,188 @@
+"""What each solver will take, in seconds and bytes, before it is set up.
+
+Nested dissection of a solid whose cross-section has w nodes, n unknowns in all, fills a factor with
+about n w^(1/2) entries at n w^(3/2) operations (George 1973 for squares and cubes; a slender solid
+is a row of cubes). The width comes from the levels of one breadth-first search, so that slender
+and chunky solids of one size are told apart. The constants were fitted to the grid of
+``cases/performance/solver_grid.py`` on two cores; on other machines their ratios are what counts.
+"""
+
+import math
+import os
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy import sparse
+
+from fe_drivetrain.mesh.facets import local_facets
+from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.operator import kernels
+from fe_drivetrain.solve import direct_solvers
+from fe_drivetrain.solve.reduction import Elements, System
+
+
+class Direct(NamedTuple):
+    """Cost of a direct solver: seconds at once, per entry of K, per operation; bytes per entry of
+    the factor; seconds of a solve per byte, at once and for each right-hand side."""
+
+    start: float
+    per_entry: float
+    per_operation: float
+    bytes: float
+    solve: float
+    each: float
+
+
+DIRECT = {
+    "superlu": Direct(0.0, 5e-7, 4.4e-9, 440.0, 1.5e-10, 1.0e-10),
+    "cholmod": Direct(0.08, 6.4e-7, 6.3e-11, 115.0, 4.4e-10, 1.0e-10),
+    "pardiso": Direct(0.0, 2.5e-7, 8.0e-11, 180.0, 3.1e-10, 2.5e-10),
+}
+
+
+class Multigrid(NamedTuple):
+    """Cost of multigrid: seconds at once, per entry of K, per entry and iteration at once and for
+    each right-hand side; bytes per entry."""
+
+    start: float
+    per_entry: float
+    once: float
+    each: float
+    bytes: float
+
+
+MULTIGRID = Multigrid(0.09, 4.5e-8, 4.8e-9, 5.4e-10, 6.0)
+
+
+class Schwarz(NamedTuple):
+    """Cost of patches with a spectral coarse space: seconds at once, per unknown; iterations, which
+    the threshold of the coarse space bounds; per entry that an iteration reads, at once and for
+    each right-hand side; bytes per unknown, and entries of the factors per unknown, twice."""
+
+    start: float
+    per_unknown: float
+    iterations: float
+    once: float
+    each: float
+    bytes: float
+    entries: float
+
+
+SCHWARZ = Schwarz(0.3, 6e-5, 40.0, 7e-10, 5e-10, 1600.0, 300.0)
+
+_THIN = 4.0  # iterations
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Predicted cost of one solver.
+
+    Attributes
+    ----------
+    method
+        Name of the solver.
+    seconds
+        Set-up and solve.
+    bytes
+        Of the factor or hierarchy.
+    fits
+        Whether there is the memory for it now.
+    """
+
+    method: str
+    seconds: float
+    bytes: float
+    fits: bool
+
+    def __str__(self) -> str:
+        memory = f"{self.bytes / 2**20:.3g} MiB"
+        if self.bytes >= 2**30:
+            memory = f"{self.bytes / 2**30:.3g} GiB"
+        return f"{self.method} about {self.seconds:.2g} s, {memory}" + (
+            "" if self.fits else ", which is not there"
+        )
+
+
+def predict(system: System, n_rhs: int) -> list[Cost]:
+    """Costs of every solver that is installed, cheapest first among those that fit in memory."""
+    n, nnz = system.K.shape[0], system.K.nnz
+    w = width(system.K)
+    memory = available_memory()
+    fill, work = n * w**0.5, n * w**1.5
+    costs = []
+    for method, d in DIRECT.items():
+        if direct_solvers.is_installed(method):
+            held = d.bytes * fill
+            seconds = d.start + d.per_entry * nnz + d.per_operation * work
+            costs.append((method, seconds + held * (d.solve + d.each * n_rhs), held))
+    m = MULTIGRID
+    expected = iterations(system)
+    seconds = m.start + nnz * (m.per_entry + expected * (m.once + m.each * n_rhs))
+    costs.append(("multigrid", seconds, m.bytes * nnz))
+    if system.elements is not None:
+        s = SCHWARZ
+        read = 3 * nnz + s.entries * n
+        seconds = s.start + s.per_unknown * n + s.iterations * read * (s.once + s.each * n_rhs)
+        costs.append(("schwarz", seconds, s.bytes * n))
+    found = [Cost(m, s, b, b < memory) for m, s, b in costs]
+    return sorted(found, key=lambda cost: (not cost.fits, cost.seconds))
+
+
+def iterations(system: System) -> float:
+    """Iterations of multigrid to be expected, from how unlike its elements are, and how thin it is.
+
+    Sixteen to 25 were seen on shafts, whose diagonal blocks differ by four, and 41 to 47 on
+    assemblies of small and large elements of several parts, whose blocks differ by 11 to 17. Thin
+    tubes and slender shafts: see `thinness`.
+    """
+    size = np.asarray(system.K.diagonal()).reshape(-1, 3).sum(axis=1)
+    low, high = np.quantile(size[size > 0.0], (0.01, 0.99))
+    thin = 0.0 if system.elements is None else _THIN * thinness(system.elements)
+    return max(15.0, 18.0 * math.log(high / low) - 5.0, thin)
+
+
+def thinness(elements: Elements) -> float:
+    """Length of an element over the wall, times the root of half the solid's extent over the wall.
+
+    Multigrid took three to five times as many iterations on tubes of a wall of 1/5 to 1/20 of the
+    radius and on shafts of 5 to 100 diameters, ``cases/stability``: soft motions of a wall or a
+    rod are bending, and of that aggregates that move as rigid bodies know less, the longer the
+    elements are. The wall is twice the volume over the surface: half the diameter of a solid shaft.
+    """
+    kind = element_kind(elements.cells.shape[1])
+    corners = elements.cells[:, : kind.n_corners]
+    gradients, weights = element_kind(kind.n_corners).table(2)
+    volume = np.abs(jacobian(elements.points, corners, gradients)[1]) @ weights
+    local = local_facets(kind.n_corners)
+    facets = corners[:, local].reshape(-1, local.shape[1])
+    key = np.sort(facets, axis=1)
+    order = np.lexsort(key.T)
+    same = (np.diff(key[order], axis=0) == 0).all(axis=1)
+    alone = ~(np.append(same, False) | np.append(False, same))
+    outer = elements.points[facets[order[alone]]]
+    diagonal = outer[:, 2] - outer[:, 0]
+    # of a triangle half the product of two sides, of a quadrilateral that of its diagonals
+    beside = outer[:, 1] - outer[:, 0] if outer.shape[1] == 3 else outer[:, 3] - outer[:, 1]
+    area = 0.5 * np.linalg.norm(np.cross(diagonal, beside), axis=1)
+    wall = 2.0 * volume.sum() / area.sum()
+    longest = float(np.median(np.ptp(elements.points[corners], axis=1).max(axis=1)))
+    extent = float(np.linalg.norm(np.ptp(elements.points[corners.ravel()], axis=0)))
+    return float(longest / wall * math.sqrt(extent / (2.0 * wall)))
+
+
+def width(K: sparse.bsr_array) -> float:
+    """Mean number of nodes in a cross-section, of the levels of a breadth-first search."""
+    start = int(np.argmax(np.diff(K.indptr)))  # not one that stands alone
+    far = int(np.argmax(kernels.distances(K.indptr, K.indices, start)))
+    level = kernels.distances(K.indptr, K.indices, far)
+    size = np.bincount(level[level >= 0]).astype(float)
+    return float((size**2).sum() / size.sum())
+
+
+def available_memory() -> float:
+    """Bytes that can be had without swapping; infinite where the system does not say."""
+    try:
+        return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (AttributeError, ValueError, OSError):
+        return float("inf")

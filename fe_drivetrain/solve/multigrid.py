@@ -1,0 +1,380 @@
+"""Conjugate gradients, preconditioned by a hierarchy: quadratic elements, linear ones, aggregates.
+
+The quadratic level is smoothed by Chebyshev polynomials in the block-Jacobi preconditioned
+stiffness, and corrected by the linear elements on the same corners (p-multigrid). Below that,
+smoothed aggregation (Vanek, Mandel, Brezina 1996) with the rigid motions as near-nullspace, made
+by pyamg. All right-hand sides go through together: the matrices are read once for all.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+import pyamg
+from scipy import linalg, sparse
+from threadpoolctl import threadpool_limits
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.operator import kernels
+from fe_drivetrain.solve.reduction import System, diagonal_blocks, in_blocks
+
+MAX_ITERATIONS = 150
+
+_LANCZOS_STEPS = 12
+_LAST_DIGIT = 1e-32
+_RECENT = 1e-2
+_PATIENCE = 40
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a hierarchy is made; the defaults measured best, ``cases/performance/solver_grid.py``.
+
+    Attributes
+    ----------
+    degree
+        Of the Chebyshev smoother.
+    smoothed
+        The smoother works on eigenvalues from here on, relative to the largest.
+    linear_level
+        Whether linear elements come between the quadratic ones and aggregates.
+    strength
+        Threshold of the symmetric strength of connection.
+    prolongation_smoother
+        "jacobi", "energy" or None, as in pyamg.
+    apart
+        Whether bodies that a joint couples keep apart in aggregates.
+    coarsest
+        Nodes or aggregates at which aggregation ends and a dense factor begins.
+    """
+
+    degree: int = 2
+    smoothed: float = 0.05
+    linear_level: bool = True
+    strength: float = 0.0
+    prolongation_smoother: str | None = "jacobi"
+    apart: bool = True
+    coarsest: int = 300
+
+
+@dataclass(frozen=True)
+class Level:
+    """One level and the way to the next coarser one.
+
+    Attributes
+    ----------
+    K
+        Stiffness, 3x3 blocks.
+    inverse
+        (n_blocks, 3, 3) inverses of its diagonal blocks.
+    largest
+        Upper bound of the eigenvalues of diag^-1 K.
+    prolongation, restriction
+        To and from the next level.
+    """
+
+    K: sparse.bsr_array
+    inverse: Floats
+    largest: float
+    prolongation: sparse.csr_array
+    restriction: sparse.csr_array
+
+
+@dataclass(frozen=True)
+class Hierarchy:
+    """All levels, finest first, and the factor of the coarsest."""
+
+    levels: tuple[Level, ...]
+    coarsest: tuple[Floats, bool]
+    options: Options
+
+    @property
+    def bytes(self) -> int:
+        """Memory of everything that the finest stiffness itself does not hold."""
+        matrices = [m for level in self.levels for m in (level.prolongation, level.restriction)]
+        matrices += [level.K for level in self.levels[1:]]
+        held = sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
+        held += sum(level.inverse.nbytes for level in self.levels)
+        return int(held + self.coarsest[0].nbytes)
+
+    def precondition(self, R: Floats) -> Floats:
+        """One V-cycle for all columns of R; symmetric positive definite."""
+        return self._cycle(0, R)
+
+    def _cycle(self, number: int, B: Floats) -> Floats:
+        if number == len(self.levels):
+            return np.asarray(linalg.cho_solve(self.coarsest, B))
+        level = self.levels[number]
+        X = smooth(level, None, B, self.options)
+        R = np.empty_like(B)
+        kernels.residual(level.K.indptr, level.K.indices, level.K.data, X, B, R)
+        X += level.prolongation @ self._cycle(number + 1, level.restriction @ R)
+        return smooth(level, X, B, self.options)
+
+
+def smooth(level: Level, X: Floats | None, B: Floats, options: Options) -> Floats:
+    """Chebyshev iteration for K X = B (Saad 2003, algorithm 12.1); X = 0 where not given."""
+    K = level.K
+    high, low = level.largest, options.smoothed * level.largest
+    centre, half = 0.5 * (high + low), 0.5 * (high - low)
+    momentum, step, rho = 0.0, 1.0 / centre, half / centre
+    D = np.zeros_like(B)
+    for number in range(options.degree):
+        if X is None:
+            blocks = B.reshape(-1, 3, B.shape[1])
+            D = step * np.matmul(level.inverse, blocks).reshape(B.shape)
+            X = D.copy()
+        else:
+            out = np.empty_like(X)
+            kernels.chebyshev_step(
+                K.indptr, K.indices, K.data, level.inverse, X, B, D, out, momentum, step
+            )
+            X = out
+        if number + 1 < options.degree:
+            following = 1.0 / (2.0 * centre / half - rho)
+            momentum, step, rho = following * rho, 2.0 * following / half, following
+    assert X is not None
+    return X
+
+
+DEFAULTS = Options()
+
+
+def build(system: System, options: Options = DEFAULTS) -> Hierarchy:
+    """The hierarchy of a system.
+
+    Raises
+    ------
+    InputError
+        The system is singular.
+    """
+    levels = []
+    K, motions, body = system.K, system.near_nullspace, system.body
+    if system.prolongation is not None and options.linear_level:
+        P = system.prolongation
+        levels.append(_level(K, P))
+        K = in_blocks(P.T.tobsr((3, 3)) @ (K @ P.tobsr((3, 3))))
+    elif system.prolongation is not None:
+        motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
+    threshold = ("symmetric", {"theta": options.strength})
+    apart = [("predefined", {"C": _within_bodies(K, body)}), threshold]
+    with _repeatable():
+        aggregation = pyamg.smoothed_aggregation_solver(
+            K,
+            B=motions,
+            strength=apart if options.apart else threshold,
+            smooth=options.prolongation_smoother,
+            improve_candidates=None,
+            max_coarse=options.coarsest,
+            keep=False,
+        )
+    for coarse in aggregation.levels[:-1]:
+        # Six freedoms an aggregate below the first level: two blocks of three.
+        levels.append(_level(in_blocks(coarse.A), coarse.P))
+    last = aggregation.levels[-1].A.toarray()
+    # Aggregates too small for six motions leave empty rows.
+    empty = np.flatnonzero(last.diagonal() <= 0.0)
+    last[empty, empty] = 1.0
+    try:
+        return Hierarchy(tuple(levels), linalg.cho_factor(last), options)
+    except linalg.LinAlgError as error:
+        raise InputError(SINGULAR) from error
+
+
+def _level(K: sparse.bsr_array, prolongation: sparse.csr_array) -> Level:
+    diagonal = diagonal_blocks(K)
+    block, i = np.nonzero(np.einsum("nii->ni", diagonal) <= 0.0)
+    diagonal[block, i, i] = 1.0
+    inverse = np.linalg.inv(diagonal).astype(np.float64, copy=False)
+
+    P = prolongation.tocsr()
+    return Level(K, inverse, largest_eigenvalue(K, inverse), P, P.T.tocsr())
+
+
+def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
+    """An upper bound of the eigenvalues of diag^-1 K, by a few steps of Lanczos.
+
+    A single flat element has an eigenvalue far above the others, that a power method hardly sees;
+    where the smoother does not know of it, it makes errors larger and is no preconditioner. The
+    last residual of Lanczos is added (Zhou and Li 2011, Linear Algebra Appl. 435, 480-493).
+
+    Parameters
+    ----------
+    K
+        (n, n) symmetric positive semi-definite, 3x3 blocks.
+    inverse
+        (n / 3, 3, 3) inverses of its diagonal blocks.
+    """
+    r = np.random.default_rng(0).standard_normal((K.shape[0], 1))
+    zero, Kp = np.zeros_like(r), np.empty_like(r)
+    z = np.matmul(inverse, r.reshape(-1, 3, 1)).reshape(r.shape)
+    p, rz = z.copy(), float(r.ravel() @ z.ravel())
+    diagonal, beside = [], []
+    alpha, beta = 1.0, 0.0
+    for _ in range(_LANCZOS_STEPS):
+        kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)
+        curvature = -float(p.ravel() @ Kp.ravel())
+        if curvature <= 0.0 or rz <= 0.0:
+            break
+        before, alpha = alpha, rz / curvature
+        diagonal.append(1.0 / alpha + beta / before)
+        r += alpha * Kp
+        z = np.matmul(inverse, r.reshape(-1, 3, 1)).reshape(r.shape)
+        new = float(r.ravel() @ z.ravel())
+        beta, rz = new / rz, new
+        beside.append(math.sqrt(max(beta, 0.0)) / alpha)
+        p = z + beta * p
+    values, vectors = linalg.eigh_tridiagonal(diagonal, beside[:-1])
+    return float(values[-1] + beside[-1] * abs(vectors[-1, -1]))
+
+
+def _within_bodies(K: sparse.bsr_array, body: Ints) -> sparse.csr_matrix:
+    """Connections of nodes, those across a joint left out."""
+    n = len(body)
+    row = np.repeat(np.arange(n), np.diff(K.indptr))
+    a, b = body[row], body[K.indices]
+    kept = (a == b) | (a < 0) | (b < 0)
+    entries = (np.ones(int(kept.sum())), (row[kept], K.indices[kept]))
+    connected = sparse.csr_matrix(entries, shape=(n, n))
+    connected.indices, connected.indptr = (
+        i.astype(np.int32, copy=False) for i in (connected.indices, connected.indptr)
+    )
+    return connected
+
+
+@contextmanager
+def _repeatable() -> Iterator[None]:
+    """pyamg starts its eigenvalue estimates from NumPy's global generator."""
+    state = np.random.get_state()  # noqa: NPY002
+    np.random.seed(0)  # noqa: NPY002
+    try:
+        yield
+    finally:
+        np.random.set_state(state)  # noqa: NPY002
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """What conjugate gradients came to.
+
+    Attributes
+    ----------
+    x
+        (n, m).
+    iterations
+        Number of them.
+    energy_error
+        Largest estimate, over the columns, of the relative error in the energy norm; infinite where
+        stiffness or preconditioner turned out not to be positive.
+    """
+
+    x: Floats
+    iterations: int
+    energy_error: float
+
+
+def conjugate_gradients(
+    K: sparse.bsr_array,
+    F: Floats,
+    precondition: Callable[[Floats], Floats],
+    tolerance: float,
+) -> Iteration:
+    """Solve K x = F for all columns at once, until the energy error is small enough.
+
+    Parameters
+    ----------
+    K
+        (n, n) symmetric positive definite.
+    F
+        (n, m).
+    precondition
+        Symmetric positive definite, of all columns.
+    tolerance
+        Relative error |x - x_k|_K / |x|_K to stop at. Squared, it is the relative error of the
+        stiffness that belongs to a load.
+
+    Returns
+    -------
+    iteration
+        The last one: of `MAX_ITERATIONS`, or of fewer once it is plain that these will not do,
+        where the tolerance is not reached.
+    """
+    errors: list[float] = []
+    # BLAS does next to nothing here, but its idle threads spin, and take the cores from the loops.
+    with threadpool_limits(1, user_api="blas"):
+        for found in iterates(K, F, precondition):
+            errors.append(found.energy_error)
+            too_long = found.iterations == MAX_ITERATIONS or _is_hopeless(errors, tolerance)
+            if found.energy_error <= tolerance or too_long:
+                break
+    return found
+
+
+def iterates(
+    K: sparse.bsr_array, F: Floats, precondition: Callable[[Floats], Floats]
+) -> Iterator[Iteration]:
+    """Conjugate gradients, one step after the other; ``x`` is overwritten by the next step.
+
+    The residual says little about slender solids, whose stiffest and softest motions are ten
+    decades apart. What conjugate gradients add in step k to the squared energy norm is known
+    exactly, Delta_k = alpha_k (r_k, z_k), and the squared error is the sum of what is still to
+    come. It is taken as Delta_k times the largest such ratio seen in the steps before (Meurant,
+    Papez, Tichy 2021, Accurate error estimation in CG, section 4).
+    """
+    R = np.array(F, order="C")
+    X = np.zeros_like(R)
+    P = precondition(R)
+    rz = np.einsum("nm,nm->m", R, P)
+    start = rz
+    KP, zero = np.empty_like(R), np.zeros_like(R)
+    terms: list[Floats] = []
+    alive = np.full(len(rz), True)
+    while alive.any():
+        kernels.residual(K.indptr, K.indices, K.data, P, zero, KP)
+        curvature = -np.einsum("nm,nm->m", P, KP)
+        # Columns that are zero, or solved to the last digit, stand still.
+        alive = np.abs(rz) > _LAST_DIGIT * np.abs(start)
+        if (alive & ((rz < 0.0) | ~(curvature > 0.0))).any():
+            yield Iteration(X, len(terms), math.inf)
+            return
+        alpha = np.divide(rz, curvature, out=np.zeros_like(rz), where=alive)
+        kernels.advance(X, R, P, KP, alpha)
+        terms.append(alpha * rz)
+        yield Iteration(X, len(terms), energy_error(np.array(terms)))
+        Z = precondition(R)
+        new = np.einsum("nm,nm->m", R, Z)
+        kernels.redirect(P, Z, np.divide(new, rz, out=np.zeros_like(rz), where=alive))
+        rz = new
+
+
+def _is_hopeless(errors: Sequence[float], tolerance: float) -> bool:
+    """Whether the rate of the latter half would take twice as long as there is."""
+    k = len(errors)
+    if k < _PATIENCE:
+        return False
+    decades = math.log10(errors[k // 2]) - math.log10(errors[-1])
+    missing = math.log10(errors[-1]) - math.log10(tolerance)
+    needed = missing / max(decades, 1e-3) * (k - k // 2)
+    return k + needed > 2 * MAX_ITERATIONS
+
+
+def energy_error(terms: Floats) -> float:
+    """Estimated relative energy error after the last step, of the worst column.
+
+    Parameters
+    ----------
+    terms
+        (k, m) what each step of conjugate gradients added to the squared energy norm.
+    """
+    last = terms[-1]
+    tails = np.cumsum(terms[::-1], axis=0)[::-1]  # from each step to the last
+    total = tails[0]
+    # At the start convergence is another. A window of 1e-4 fell below half the truth on thin tubes.
+    recent = tails <= _RECENT * total
+    recent |= ~recent.any(axis=0)
+    ratio = np.divide(tails, terms, out=np.ones_like(terms), where=recent & (terms > 0.0))
+    squared = np.divide(ratio.max(axis=0) * last, total, out=np.zeros_like(last), where=total > 0.0)
+    return float(np.sqrt(squared.max()))

@@ -1,0 +1,229 @@
+"""The system that is solved: constraints eliminated, still in 3x3 node blocks.
+
+Eliminated freedoms keep their place, with a diagonal entry and nothing else. So nodes stay blocks,
+whatever an interface took from them, and solvers learn of nodes, rigid motions and corner nodes.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.interfaces.constraints import Elimination
+from fe_drivetrain.mesh.shapes import element_kind
+from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator.elasticity import rigid_motions
+
+
+@dataclass(frozen=True)
+class Elements:
+    """What a system was made of, for methods that cut it up.
+
+    Attributes
+    ----------
+    points
+        (n_nodes, 3) [m].
+    cells
+        (n_cells, k) node numbers in VTK's order.
+    diagonal
+        (n_nodes, 3, 3) diagonal blocks of the stiffness before any constraint [N/m].
+    T, free
+        Of the `fe_drivetrain.interfaces.constraints.Elimination`.
+    """
+
+    points: Floats
+    cells: Ints
+    diagonal: Floats
+    T: sparse.csr_array
+    free: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class System:
+    """K q = T^T f, with what a multigrid method wants to know about it.
+
+    Attributes
+    ----------
+    K
+        (n, n) symmetric positive definite, 3x3 blocks; rows of eliminated freedoms are diagonal.
+    prolongation
+        (n, n_corner) from the linear elements on the same corners to the quadratic ones, in
+        freedoms that fulfil the constraints; None where the elements are linear.
+    near_nullspace
+        (n_corner, 6), or (n, 6) of linear elements: the rigid motions.
+    body
+        (n_corner / 3,), or (n / 3,) of linear elements: which body each node belongs to, -1 of
+        reference points. Bodies that a joint couples must not share an aggregate: each has its own
+        six rigid motions.
+    n_free
+        Number of freedoms that are left.
+    elements
+        What it was made of; None where that is not known.
+    """
+
+    K: sparse.bsr_array
+    prolongation: sparse.csr_array | None
+    near_nullspace: Floats
+    body: Ints
+    n_free: int
+    elements: Elements | None = None
+
+
+def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimination) -> System:
+    """Eliminate the constraints from a stiffness.
+
+    Parameters
+    ----------
+    points
+        (n_nodes, 3) [m].
+    cells
+        (n_cells, k) node numbers in VTK's order.
+    K
+        (n_freedoms, n_freedoms) stiffness before any constraint, three freedoms a node first
+        [N/m].
+    elimination
+        The constraints.
+    """
+    T, free = elimination.T, elimination.free
+    motions = _rigid_motions(points, elimination)
+    body = np.full(len(free) // 3, -1)
+    body[: len(points)] = bodies(cells, len(points))
+    prolongation = None
+    if cells.shape[1] not in (4, 8):
+        prolongation, corners = _prolongation(cells, len(points), T, free)
+        motions, body = motions[corners], body[corners[::3] // 3]
+    reduced = reduced_stiffness(K, elimination)
+    elements = Elements(points, cells, diagonal_blocks(K)[: len(points)], T, free)
+    return System(reduced, prolongation, motions, body, int(free.sum()), elements)
+
+
+def diagonal_blocks(K: sparse.bsr_array) -> Floats:
+    """(n_blocks, 3, 3) diagonal blocks; zero where there are none."""
+    n_blocks = len(K.indptr) - 1
+    here = np.repeat(np.arange(n_blocks), np.diff(K.indptr)) == K.indices
+    diagonal = np.zeros((n_blocks, 3, 3))
+    diagonal[K.indices[here]] = K.data[here]
+    return diagonal
+
+
+def bodies(cells: Ints, n_nodes: int) -> Ints:
+    """(n_nodes,) which body each node belongs to: parts that share nodes are one."""
+    corners = cells[:, : element_kind(cells.shape[1]).n_corners]
+    first = np.repeat(corners[:, 0], corners.shape[1] - 1)
+    shape = (n_nodes, n_nodes)
+    graph = sparse.coo_array((np.ones(first.size), (first, corners[:, 1:].ravel())), shape=shape)
+    body = connected_components(graph, directed=False)[1]
+    middles = cells[:, corners.shape[1] :]
+    body[middles] = body[corners[:, :1]]
+    return np.unique(body, return_inverse=True)[1]
+
+
+def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
+    """T^T K T, with the mean diagonal at eliminated freedoms; K is left as it is."""
+    T, free = elimination.T, elimination.free
+    n = len(free)
+    kept = sparse.bsr_array((K.data.copy(), K.indices, K.indptr), shape=K.shape)
+    mean = float(K.diagonal().mean())
+    mask = free.astype(float).reshape(-1, 3)
+    kernels.keep_freedoms(kept.indptr, kept.indices, kept.data, mask, mean)
+    # What eliminated freedoms pass on to the others: for supports nothing, for joints little.
+    pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
+    # Freedoms of reference points have no block of their own yet.
+    bare = (~free & (kept.diagonal() == 0.0)).astype(float)
+    if len(pivots) == 0 and not bare.any():
+        return kept
+    place = sparse.csr_array(
+        (np.ones(len(pivots)), (np.arange(len(pivots)), pivots)), shape=(len(pivots), n)
+    )
+    dependent = place @ T
+    rows = _rows(K, pivots)
+    across = dependent.T @ rows @ sparse.diags_array(free.astype(float))
+    passed = across + across.T + dependent.T @ (rows @ place.T) @ dependent
+    passed = passed + mean * sparse.diags_array(bare)
+    return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
+
+
+def _rows(K: sparse.bsr_array, chosen: Ints) -> sparse.csr_array:
+    """Some rows of a matrix in blocks; to select them by a product would convert all of it."""
+    nodes, place = np.unique(chosen // 3, return_inverse=True)
+    counts = np.diff(K.indptr)[nodes]
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    entries = np.arange(starts[-1]) + np.repeat(K.indptr[nodes] - starts[:-1], counts)
+    blocks = sparse.bsr_array(
+        (K.data[entries], K.indices[entries], starts), shape=(3 * len(nodes), K.shape[1])
+    )
+    return blocks.tocsr()[3 * place + chosen % 3]
+
+
+def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
+    """The matrix in 3x3 blocks, sorted, with 32-bit indices as `kernels` is compiled for."""
+    blocks = K.tobsr((3, 3))
+    blocks.sort_indices()
+    indices, indptr = (i.astype(np.int32, copy=False) for i in (blocks.indices, blocks.indptr))
+    return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
+
+
+def _rigid_motions(points: Floats, elimination: Elimination) -> Floats:
+    """(n_freedoms, 6) rigid motions; reference points follow through their constraints."""
+    n = 3 * len(points)
+    motions = np.zeros((len(elimination.free), 6))
+    motions[:n] = rigid_motions(points, points.mean(axis=0))
+    if n < len(motions) and elimination.constraints:
+        rows = sparse.vstack([c.rows for c in elimination.constraints], format="csr")
+        own = rows[:, n:]
+        touching = np.flatnonzero(np.diff(own.indptr))
+        right = -(rows[touching][:, :n] @ motions[:n])
+        motions[n:] = np.linalg.lstsq(own[touching].toarray(), right, rcond=None)[0]
+    motions[~elimination.free] = 0.0
+    return motions
+
+
+def _prolongation(
+    cells: Ints, n_nodes: int, T: sparse.csr_array, free: np.ndarray
+) -> tuple[sparse.csr_array, Ints]:
+    """From the freedoms of corner nodes (and reference points) to all, constraints fulfilled.
+
+    Returns
+    -------
+    prolongation, corners
+        (n, n_corner), and which freedoms the columns are.
+    """
+    kind = element_kind(cells.shape[1])
+    weights = kind.corner_weights()
+    # Any cell that has the node will do: on shared nodes all agree.
+    place = np.zeros(n_nodes, dtype=np.int64)
+    place[cells.ravel()] = np.arange(cells.size)
+    cell, local = np.divmod(place, cells.shape[1])
+    from_corners = sparse.csr_array(
+        (
+            weights[local].ravel(),
+            (
+                np.repeat(np.arange(n_nodes), kind.n_corners),
+                cells[cell, : kind.n_corners].ravel(),
+            ),
+        ),
+        shape=(n_nodes, n_nodes),
+    )
+    from_corners.eliminate_zeros()
+    corner = np.unique(cells[:, : kind.n_corners])
+    n = T.shape[0]
+    columns = np.concatenate(
+        [(3 * corner[:, None] + np.arange(3)).ravel(), np.arange(3 * n_nodes, n)]
+    )
+    spread = sparse.block_diag(
+        [
+            sparse.kron(from_corners[:, corner], sparse.eye_array(3)),
+            sparse.eye_array(n - 3 * n_nodes),
+        ],
+        format="csr",
+    )
+    constrained = T[columns][:, columns]
+    keep = sparse.diags_array(free.astype(float))
+    eliminated = np.flatnonzero(~free[columns])
+    diagonal = sparse.csr_array(
+        (np.ones(len(eliminated)), (columns[eliminated], eliminated)), shape=spread.shape
+    )
+    return (keep @ spread @ constrained + diagonal).tocsr(), columns

@@ -1,0 +1,124 @@
+"""One solid or several under given forces and displacements: the shortest way to an answer."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.interfaces.constraints import Constraint, eliminate, held_freedoms
+from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.solvers import Solution, solve
+
+Lame = tuple[float, float]
+
+Assembly = Callable[[Floats, Ints, Lame, int], sparse.bsr_array]
+"""Of points, cells, Lame's constants and n_freedoms, as `elasticity.assemble`."""
+
+
+@dataclass(frozen=True)
+class Static:
+    """Displacements of a solid and what holds it.
+
+    Attributes
+    ----------
+    u
+        (n_freedoms, m) displacements [m], and motions of reference points.
+    reactions
+        (n_freedoms, m) nodal forces [N] that each support or interface puts on the solid, by the
+        name of its constraint; "prescribed" those that displace it as prescribed.
+    energy
+        (m,) strain energy [J].
+    K
+        (n_freedoms, n_freedoms) stiffness before any constraint [N/m].
+    solution
+        Diagnostics of the solve.
+    """
+
+    u: Floats
+    reactions: Mapping[str, Floats]
+    energy: Floats
+    K: sparse.bsr_array
+    solution: Solution
+
+
+def solve_solid(
+    points: Floats,
+    cells: Ints | Sequence[tuple[Ints, Lame]],
+    lame: Lame | None,
+    constraints: Sequence[Constraint],
+    F: Floats,
+    prescribed: tuple[Ints, Floats] | None = None,
+    method: str = "auto",
+    assembly: Assembly = assemble,
+) -> Static:
+    """Solve a solid for one load or several.
+
+    Parameters
+    ----------
+    points
+        (n, 3) node coordinates [m].
+    cells
+        (n_cells, k) node numbers in VTK's order; or of several materials the pairs of cells, all of
+        one kind, and Lame's constants, with ``lame=None``.
+    lame
+        Lame's constants (lambda, mu) [Pa].
+    constraints
+        Supports and interfaces, see `fe_drivetrain.interfaces.constraints`.
+    F
+        (n_freedoms,) or (n_freedoms, m) nodal forces [N].
+    prescribed
+        Freedoms (k,) and their displacements (k,) or (k, m) [m].
+    method
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+    assembly
+        Of the stiffness: that of `elasticity`, or `incompressible.assemble` for solids with nu near
+        1/2, or `incompatible.assemble` for hexahedra of 8 nodes that must bend.
+
+    Raises
+    ------
+    InputError
+        The solid is not held, two constraints hold one freedom, or an element has no volume.
+    """
+    parts = _parts(cells, lame)
+    loads = F.reshape(len(F), -1)
+    n = len(loads)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        K = sum(assembly(points, some, constants, n) for some, constants in parts)
+    if not np.isfinite(K.data).all():
+        raise InputError(
+            "the stiffness has entries that are no numbers: an element of the mesh has no volume; "
+            "find it with fe_drivetrain.mesh.mesh.jacobians, and mesh there anew"
+        )
+    held = list(constraints)
+    if prescribed is not None:
+        held.append(held_freedoms("prescribed", prescribed[0], n))
+        loads = np.broadcast_to(loads, (n, max(loads.shape[1], _columns(prescribed[1]))))
+    elimination = eliminate(held, n)
+    offset = np.zeros_like(loads, dtype=float)
+    if prescribed is not None:
+        values = np.reshape(prescribed[1], (len(prescribed[0]), -1))
+        offset = offset + elimination.particular({"prescribed": values})
+    everything = np.vstack([some for some, _ in parts])
+    system = reduce(points, everything, K, elimination)
+    solution = solve(system, elimination.T.T @ (loads - K @ offset), method)
+    u = elimination.T @ solution.x + offset
+    Ku = K @ u
+    multipliers = elimination.multipliers(Ku - loads)
+    reactions = {c.name: c.rows.T @ multipliers[c.name] for c in held}
+    return Static(u, reactions, 0.5 * np.einsum("nm,nm->m", u, Ku), K, solution)
+
+
+def _parts(cells: Ints | Sequence[tuple[Ints, Lame]], lame: Lame | None) -> list[tuple[Ints, Lame]]:
+    if isinstance(cells, np.ndarray):
+        if lame is None:
+            raise TypeError("solve_solid: give Lame's constants of the cells")
+        return [(cells, lame)]
+    return [(np.asarray(some), constants) for some, constants in cells]
+
+
+def _columns(values: Floats) -> int:
+    return 1 if np.ndim(values) < 2 else np.shape(values)[1]

@@ -1,0 +1,235 @@
+"""Set up once, solve many right-hand sides, and say what it cost and how exact it is.
+
+Symmetric positive definite systems only: interfaces are eliminated before, and mechanisms refused.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.solve import direct_solvers, multigrid, schwarz
+from fe_drivetrain.solve.cost_model import predict
+from fe_drivetrain.solve.reduction import System
+from fe_drivetrain.solve.rounding import round_off
+
+METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz")
+
+ITERATIVE = ("multigrid", "schwarz")
+
+TOLERANCE = 1e-9
+"""Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
+
+_USELESS = 1e-2  # a direct solver's residual; 1e-7 is seen in slender solids whose answer is right
+_DOUBTFUL, _LOST = 1e-4, 0.1
+"""Bounds of what rounding does, above which it is told, and refused: of first order, they bound
+nothing where they are not small. Mostly it does a tenth to a hundredth of that, see
+``cases/stability/slender_shafts.py``."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Solutions of one system and their diagnostics.
+
+    Attributes
+    ----------
+    x
+        (n, n_rhs).
+    residual
+        Largest true relative residual |K x - f| / |f| over the right-hand sides.
+    energy_error
+        Estimate of the largest relative error in the energy norm. Of a direct solver, what one
+        step of refinement changed.
+    round_off
+        What the rounding of the stiffness' own entries may have done to the energy of a solution,
+        relative, at worst: no solver can do better, see `round_off.round_off`.
+    iterations
+        Of conjugate gradients; 0 of a direct solver.
+    method, reason
+        The solver that was used, and why.
+    setup_seconds, solve_seconds
+        Wall time of factorisation or hierarchy, and of the solve.
+    bytes
+        Memory of factor or hierarchy, beside the stiffness matrix.
+    """
+
+    x: Floats
+    residual: float
+    energy_error: float
+    round_off: float
+    iterations: int
+    method: str
+    reason: str
+    setup_seconds: float
+    solve_seconds: float
+    bytes: int
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of set-up and solve."""
+        return self.setup_seconds + self.solve_seconds
+
+
+@dataclass(frozen=True)
+class Solver:
+    """A system with its factor or hierarchy, ready for right-hand sides; made by `factorise`."""
+
+    system: System
+    method: str
+    reason: str
+    tolerance: float
+    setup_seconds: float
+    bytes: int
+    iterate: Callable[[Floats], multigrid.Iteration]
+
+    def solve(self, F: Floats) -> Solution:
+        """Solve for all columns of F at once.
+
+        Parameters
+        ----------
+        F
+            (n, n_rhs); zero at eliminated freedoms.
+
+        Raises
+        ------
+        InputError
+            The system is singular, or so soft that rounding decides, or the iteration stopped short
+            of its tolerance and there is not the memory for what could take its place.
+        """
+        start = time.perf_counter()
+        found = self.iterate(F)
+        seconds = time.perf_counter() - start
+        K = self.system.K
+        size = np.linalg.norm(F, axis=0)
+        size[size == 0.0] = 1.0
+        residual = float((np.linalg.norm(K @ found.x - F, axis=0) / size).max())
+        iterative = self.method in ITERATIVE
+        # A factor of a singular matrix may well come out, by round-off, with anything in it.
+        if not np.isfinite(residual) or (not iterative and residual > _USELESS):
+            raise InputError(SINGULAR)
+        if found.energy_error > self.tolerance and iterative:
+            return self._instead(F, found, residual, seconds)
+        lost = round_off(K, found.x)
+        if lost > _LOST:
+            raise InputError(
+                f"the body is so soft beside its elements, or so softly held, that rounding may "
+                f"change its motion by {100 * lost:.2g} %, with any solver: use longer elements "
+                "along a slender body, or a beam, or stiffer supports"
+            )
+        reason = self.reason
+        if lost > _DOUBTFUL:
+            reason += f"; rounding may change the answer by {100 * lost:.2g} %"
+        return Solution(
+            found.x,
+            residual,
+            found.energy_error,
+            lost,
+            found.iterations,
+            self.method,
+            reason,
+            self.setup_seconds,
+            seconds,
+            self.bytes,
+        )
+
+    def _instead(
+        self, F: Floats, found: multigrid.Iteration, residual: float, seconds: float
+    ) -> Solution:
+        """Another solver's solution in place of an iteration that did not get there."""
+        short = (
+            f"{self.method} stopped after {found.iterations} iterations at an energy error of "
+            f"about {found.energy_error:.1e} (relative residual {residual:.1e}), short of "
+            f"{self.tolerance:.0e}"
+        )
+        tried = ITERATIVE if self.method == "schwarz" else ("multigrid",)
+        costs = [c for c in predict(self.system, F.shape[1]) if c.method not in tried]
+        cost = min(costs, key=lambda c: (not c.fits, c.seconds))
+        if not cost.fits:
+            what = "patches" if cost.method == "schwarz" else "a direct factor"
+            raise InputError(
+                f"{short}, and {what} of {self.system.n_free} unknowns needs about "
+                f"{cost.bytes / 2**30:.1f} GiB of memory, more than there is: use a coarser mesh "
+                "or thicker walls"
+            )
+        other = factorise(self.system, cost.method, F.shape[1], self.tolerance)
+        solution = other.solve(F)
+        return replace(
+            solution,
+            reason=f"{short}; {cost.method} instead" + solution.reason.removeprefix("as asked"),
+            setup_seconds=self.setup_seconds + seconds + solution.setup_seconds,
+        )
+
+
+def factorise(
+    system: System, method: str = "auto", n_rhs: int = 1, tolerance: float = TOLERANCE
+) -> Solver:
+    """Set up a solver: a factor, a hierarchy of coarser levels, or patches.
+
+    Parameters
+    ----------
+    system
+        From `reduction.reduce`.
+    method
+        ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
+        ``schwarz`` (for thin and slender solids of any size), or ``auto``: the one with the least
+        predicted time, see `cost.predict`.
+    n_rhs
+        How many right-hand sides will come, for ``auto``.
+    tolerance
+        Relative error in the energy norm at which an iteration stops.
+
+    Raises
+    ------
+    InputError
+        The method is unknown or not installed, or the matrix is singular.
+    """
+    if method not in METHODS:
+        raise InputError(f"solver {method!r} is unknown: use one of {', '.join(METHODS)}")
+    reason = "as asked"
+    if method == "auto":
+        chosen, *others = predict(system, n_rhs)
+        method = chosen.method
+        reason = f"{chosen}; {', '.join(map(str, others))}" if others else f"{chosen}"
+    if method in direct_solvers.PACKAGES and not direct_solvers.is_installed(method):
+        raise InputError(
+            f"solver {method!r} is not installed: pip install 'fe-drivetrain[{method}]', "
+            "or choose 'multigrid' or 'superlu'"
+        )
+    start = time.perf_counter()
+    if method in ITERATIVE:
+        made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
+        held = made.bytes
+
+        def iterate(F: Floats) -> multigrid.Iteration:
+            return multigrid.conjugate_gradients(system.K, F, made.precondition, tolerance)
+
+    else:
+        factor = direct_solvers.factorise(system.K, method)
+        held = factor.bytes
+
+        def iterate(F: Floats) -> multigrid.Iteration:
+            return _refined(system, factor, F)
+
+    return Solver(system, method, reason, tolerance, time.perf_counter() - start, held, iterate)
+
+
+def _refined(system: System, factor: direct_solvers.Factor, F: Floats) -> multigrid.Iteration:
+    """A direct solution with one step of refinement: slender solids lose digits in the factor."""
+    x = factor.apply(F)
+    residual = F - system.K @ x
+    change = factor.apply(residual)
+    x = x + change
+    energy = np.abs(np.einsum("nm,nm->m", F, x))
+    energy[energy == 0.0] = 1.0
+    moved = np.abs(np.einsum("nm,nm->m", residual, change)) / energy
+    return multigrid.Iteration(x, 0, float(np.sqrt(moved.max())))
+
+
+def solve(
+    system: System, F: Floats, method: str = "auto", tolerance: float = TOLERANCE
+) -> Solution:
+    """Set up and solve once; arguments as of `factorise` and `Solver.solve`."""
+    return factorise(system, method, F.shape[1], tolerance).solve(F)

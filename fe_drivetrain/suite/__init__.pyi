@@ -1,0 +1,9 @@
+from .case import Case as Case
+from .case import Jobs as Jobs
+from .case import Run as Run
+from .case import RunJob as RunJob
+from .case import all_cases as all_cases
+from .case import find_cases as find_cases
+from .case import run_case as run_case
+from .case import run_into as run_into
+from .suite import run_cases as run_cases

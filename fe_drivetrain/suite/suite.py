@@ -1,0 +1,124 @@
+"""Several cases in one go: side by side, but for those that measure; and a page that lists them."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.files import HiddenFolder, sentence_about
+from fe_drivetrain.common.processes import Job, Processes, Report, silent
+from fe_drivetrain.report.results import Problem
+from fe_drivetrain.suite.case import Case, new_folder, put_in_place, run_into
+
+
+def result_folder(out: Path, case: Case) -> Path:
+    """Where the results of a case go below a folder for several."""
+    return out.joinpath(*case.name.split("/"))
+
+
+def run_cases(
+    cases: Sequence[Case],
+    out: Path,
+    settings: Mapping[str, Any] | None = None,
+    quick: bool = False,
+    report: Report = silent,
+) -> dict[str, Problem]:
+    """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
+
+    Independent cases run in processes side by side, as many as the cores allow; those that are to
+    be `alone` come after them, one by one, each in a process that starts afresh. A case that fails
+    does not keep the others from their work. Each result folder appears whole or not at all; when
+    stopped, those of finished cases stay.
+
+    Parameters
+    ----------
+    cases
+        Which, each once.
+    out
+        The folder above theirs.
+    settings, quick, report
+        As for `fe_drivetrain.suite.case.run_case`.
+
+    Returns
+    -------
+    problems
+        Why there are no results, by the name of the case.
+
+    Raises
+    ------
+    InputError
+        A result folder cannot be written or holds something else.
+    """
+    from fe_drivetrain.report.page import write_index
+
+    out = Path(out)
+    problems: dict[str, Problem] = {}
+    folders: dict[str, HiddenFolder] = {}
+
+    finished: list[str] = []
+
+    def finish(case: Case, problem: Problem | None) -> None:
+        if problem:
+            problems[case.name] = problem
+        else:
+            put_in_place(folders[case.name], result_folder(out, case))
+        finished.append(case.name)
+
+    try:
+        for case in cases:
+            folders[case.name] = new_folder(result_folder(out, case))
+        beside = [case for case in cases if not case.alone]
+        with Processes(len(beside), report, each_for_itself=True) as processes:
+            jobs: dict[Job[Problem | None], Case] = {
+                processes.start(
+                    _run, case, folders[case.name].path, dict(settings or {}), quick
+                ): case
+                for case in beside
+            }
+            for job in processes.finished(jobs):
+                finish(jobs[job], _outcome(job))
+        for case in cases:
+            if case.alone:
+                with Processes(1, report, always=True, each_for_itself=True) as processes:
+                    job = processes.start(
+                        _run, case, folders[case.name].path, dict(settings or {}), quick
+                    )
+                    finish(case, _outcome(job))
+    finally:
+        for folder in folders.values():
+            folder.discard()
+        if finished:  # when stopped, those that were done by then
+            write_index(out, problems)
+    return problems
+
+
+def _outcome(job: Job[Problem | None]) -> Problem | None:
+    """What a case's process said of it, or how it died."""
+    try:
+        return job.result()
+    except (InputError, RuntimeError) as error:
+        return Problem(str(error))
+
+
+def _run(
+    report: Report, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool
+) -> Problem | None:
+    """Run a case into a folder; why there are no results, if there are none."""
+
+    def named(step: str, lane: int = 0) -> None:
+        report(f"{case.name}: {step}" if step else "", lane)
+
+    try:
+        run_into(case, folder, settings, quick, named)
+    except InputError as error:
+        return Problem(str(error), isinstance(error, MissingToolError))
+    except Exception as error:
+        sentence = sentence_about(error) if isinstance(error, OSError) else None
+        if sentence is not None:
+            return Problem(sentence)
+        traceback.print_exc()
+        return Problem(f"ended by an error of its own, {type(error).__name__}: {error}")
+    return None

@@ -1,0 +1,430 @@
+"""Torsional drivetrains from a table of inertias, stiffnesses and ratios, as lumped masses.
+
+Rotor, shafts and gear stages by turns, generator; each row holds what belongs to its own axis, as
+data sheets give it. Three models of the same table (Al-Hamadani 2018, chapter 4):
+
+- `two_masses`: the rotor and all the rest, the shafts in series (Eq 4.28-4.30, 4.33-4.35);
+- `stage_masses`: one mass a stage, gear meshes rigid (Eq 4.8-4.21, 4.24-4.26); five of them with
+  three stages;
+- `gear_masses`: a mass each for carriers, planets, suns, gears and pinions, meshes as springs
+  (Eq 4.36-4.37); eleven with one planetary stage of three planets and two parallel ones.
+
+The first two are in angles seen from the rotor's shaft, the third in those of the parts, all about
+the same direction (a planet's about its own centre, in a frame that does not turn): pinions and
+planets go the other way round than what drives them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import yaml
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import PlainLoader, shown
+from fe_drivetrain.geometry.part import Part, dimension
+from fe_drivetrain.torsion.system import Element, Inertia, Torsional, chain
+
+_MAX_BYTES = 1_000_000
+
+GeneratorState = Literal["fixed", "free"]
+"""Generator on the grid, its spring to the ground; or off it, with none (variable speed)."""
+
+ROTOR, GENERATOR, GRID = "rotor", "generator", "grid"
+"""Names of the first and the last inertia, and of the generator's spring."""
+
+STIFFNESS, DAMPING, INERTIA = "N m/rad", "N m s/rad", "kg m^2"
+
+
+class ShaftRow(Part):
+    """A shaft between two stages, or between a stage and the rotor or generator."""
+
+    name: str = Field(description="name of the shaft")
+    stiffness: float = dimension(of="torsional stiffness", unit=STIFFNESS, gt=0)
+    damping: float = dimension(0.0, of="torsional damping", unit=DAMPING, ge=0)
+
+
+class _Stage(Part):
+    ratio: float | None = dimension(None, of="speed ratio", unit="-", gt=1)
+    teeth: tuple[int, int] | None = Field(
+        default=None, description="teeth of ring and sun, or of gear and pinion, for the ratio"
+    )
+
+    @model_validator(mode="after")
+    def _one_ratio(self) -> Self:
+        kind = type(self).__name__
+        if (self.ratio is None) == (self.teeth is None):
+            raise InputError(f"{kind} needs a ratio or the teeth, and not both: give one of them")
+        if self.teeth is not None and not 0 < self.teeth[1] < self.teeth[0]:
+            raise InputError(
+                f"{kind}: teeth are {list(self.teeth)} but must be two numbers above 0, the larger "
+                "first: swap or mend them"
+            )
+        return self
+
+
+class PlanetaryStage(_Stage):
+    """Carrier driven, ring fixed, sun driving the next shaft.
+
+    Mesh stiffnesses are about the planet's axis, r_b^2 k of one planet's mesh [N m/rad].
+    """
+
+    kind: Literal["planetary"] = Field(default="planetary", description="the word planetary")
+    planets: int = Field(default=3, ge=1, description="number of planets")
+    carrier: float = dimension(of="inertia of the carrier, planets as points", unit=INERTIA, gt=0)
+    planet: float = dimension(of="inertia of one planet about its own axis", unit=INERTIA, gt=0)
+    sun: float = dimension(of="inertia of the sun", unit=INERTIA, gt=0)
+    ring_planet: float = dimension(of="mesh stiffness about the planet", unit=STIFFNESS, gt=0)
+    sun_planet: float = dimension(of="mesh stiffness about the planet", unit=STIFFNESS, gt=0)
+    ring_planet_damping: float = dimension(0.0, of="mesh damping", unit=DAMPING, ge=0)
+    sun_planet_damping: float = dimension(0.0, of="mesh damping", unit=DAMPING, ge=0)
+
+    @model_validator(mode="after")
+    def _room_for_planets(self) -> Self:
+        if self.speed_ratio <= 2:
+            raise InputError(
+                f"PlanetaryStage: ratio is {self.speed_ratio:g} but must be greater than 2, or no "
+                "planet fits between sun and ring: raise it"
+            )
+        return self
+
+    @property
+    def speed_ratio(self) -> float:
+        """Of the sun to the carrier: 1 + ring / sun."""
+        return 1 + self.teeth[0] / self.teeth[1] if self.teeth else float(self.ratio or 0.0)
+
+    @property
+    def planet_over_sun(self) -> float:
+        """Radius of a planet over that of the sun: the ring is as wide as the sun and two of it."""
+        return (self.speed_ratio - 2) / 2
+
+    @property
+    def planet_speed(self) -> float:
+        """Of a planet (in a frame that does not turn) to the carrier, negative."""
+        return -self.speed_ratio / (self.speed_ratio - 2)
+
+
+class ParallelStage(_Stage):
+    """A gear that drives a pinion; the mesh stiffness is about the gear's axis, r_b^2 k."""
+
+    kind: Literal["parallel"] = Field(default="parallel", description="the word parallel")
+    gear: float = dimension(of="inertia of the gear", unit=INERTIA, gt=0)
+    pinion: float = dimension(of="inertia of the pinion", unit=INERTIA, gt=0)
+    mesh: float = dimension(of="mesh stiffness about the gear", unit=STIFFNESS, gt=0)
+    mesh_damping: float = dimension(0.0, of="mesh damping about the gear", unit=DAMPING, ge=0)
+
+    @property
+    def speed_ratio(self) -> float:
+        """Of the pinion to the gear."""
+        return self.teeth[0] / self.teeth[1] if self.teeth else float(self.ratio or 0.0)
+
+
+def _kind_of(stage: Any) -> Any:
+    return getattr(stage, "kind", None)
+
+
+Stage = Annotated[
+    Annotated[PlanetaryStage, Tag("planetary")] | Annotated[ParallelStage, Tag("parallel")],
+    Discriminator(_kind_of),
+]
+"""Of either kind; by the time it is one, rows of a file have become stages."""
+_KINDS: dict[str, type[PlanetaryStage] | type[ParallelStage]] = {
+    "planetary": PlanetaryStage,
+    "parallel": ParallelStage,
+}
+
+
+class GeneratorRow(Part):
+    """The generator's rotor, and the spring that the field is when the speed is fixed."""
+
+    inertia: float = dimension(of="inertia of the generator", unit=INERTIA, gt=0)
+    stiffness: float = dimension(0.0, of="electrical stiffness", unit=STIFFNESS, ge=0)
+    damping: float = dimension(0.0, of="electrical damping", unit=DAMPING, ge=0)
+
+
+class Drivetrain(Part):
+    """A table of a drivetrain, from the rotor to the generator."""
+
+    title: str = Field(description="what it is, and whose numbers")
+    rotor: float = dimension(of="inertia of the rotor", unit=INERTIA, gt=0)
+    shafts: tuple[ShaftRow, ...] = Field(min_length=1, description="shafts from the rotor on")
+    stages: tuple[Stage, ...] = Field(default=(), description="gear stages from the rotor on")
+    generator: GeneratorRow = Field(description="the generator")
+
+    @field_validator("shafts", mode="before")
+    @classmethod
+    def _shafts(cls, value: Any) -> Any:
+        return _rows("shaft", value, lambda row: ShaftRow.model_validate(row))
+
+    @field_validator("stages", mode="before")
+    @classmethod
+    def _stages(cls, value: Any) -> Any:
+        return _rows("stage", value, _stage)
+
+    @model_validator(mode="after")
+    def _one_shaft_more(self) -> Self:
+        if len(self.shafts) != len(self.stages) + 1:
+            raise InputError(
+                f"drivetrain {shown(self.title)} has {len(self.shafts)} shafts and "
+                f"{len(self.stages)} stages but must have one shaft more than stages, the first at "
+                "the rotor and the last at the generator: add or remove some"
+            )
+        names = [shaft.name for shaft in self.shafts]
+        taken = {ROTOR, GENERATOR, GRID}
+        for name in names:
+            if names.count(name) > 1 or name in taken or name.startswith("stage "):
+                raise InputError(
+                    f"shaft {shown(name)} must have a name of its own, other than "
+                    f"{', '.join(sorted(taken))} and 'stage ...': rename it"
+                )
+        return self
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """Of each shaft, over the rotor's."""
+        speeds = [1.0]
+        for stage in self.stages:
+            speeds.append(speeds[-1] * stage.speed_ratio)
+        return tuple(speeds)
+
+
+def _rows(kind: str, value: Any, one: Any) -> Any:
+    """Say which row is wrong, counting from one at the rotor."""
+    if not isinstance(value, list | tuple):
+        return value
+    rows = []
+    for number, item in enumerate(value, start=1):
+        try:
+            rows.append(one(item) if isinstance(item, Mapping) else item)
+        except InputError as error:
+            raise InputError(f"{kind} {number}: {error}") from None
+    return rows
+
+
+def _stage(row: Mapping[str, Any]) -> PlanetaryStage | ParallelStage:
+    kind = row.get("kind")
+    if kind not in _KINDS:
+        raise InputError(f"kind is {shown(kind)} but must be one of {', '.join(_KINDS)}: change it")
+    return _KINDS[kind].model_validate(row)
+
+
+def read_drivetrain(path: str | Path) -> Drivetrain:
+    """Read a drivetrain's table from a YAML file of at most 1 MB.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not plain YAML, or does not describe a drivetrain.
+    """
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            content = file.read(_MAX_BYTES + 1)
+        if len(content) > _MAX_BYTES:
+            raise InputError(f"{path} is larger than {_MAX_BYTES} bytes, the most of a drivetrain")
+        text = content.decode("utf-8")
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read drivetrain file {path}: {error}") from error
+    return parse_drivetrain(text, source=str(path))
+
+
+def parse_drivetrain(text: str, source: str = "drivetrain") -> Drivetrain:
+    """A drivetrain from YAML text; see `read_drivetrain`."""
+    try:
+        data = yaml.load(text, Loader=PlainLoader)
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        raise InputError(f"{source} is not plain YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(data, dict):
+        raise InputError(f"{source} must be a mapping with keys such as 'rotor' and 'shafts'")
+    try:
+        return Drivetrain.model_validate(data)
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from error
+
+
+def stage_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:
+    """One mass a stage, beside rotor and generator, on the rotor's side (Eq 4.8-4.21, 4.24-4.26).
+
+    Gear meshes are rigid. As in the source, planets turn with no inertia of their own (Eq 4.9).
+    Masses are called "stage 1" and so on.
+    """
+    speeds = table.speeds
+    parts = [Inertia(ROTOR, table.rotor)]
+    for number, (stage, before, after) in enumerate(
+        zip(table.stages, speeds, speeds[1:], strict=False), start=1
+    ):
+        front, rear = (
+            (stage.carrier, stage.sun)
+            if isinstance(stage, PlanetaryStage)
+            else (stage.gear, stage.pinion)
+        )
+        parts.append(Inertia(f"stage {number}", before**2 * front + after**2 * rear))
+    last = speeds[-1] ** 2
+    parts.append(Inertia(GENERATOR, last * table.generator.inertia))
+    shafts = [
+        (shaft.name, s**2 * shaft.stiffness, s**2 * shaft.damping)
+        for shaft, s in zip(table.shafts, speeds, strict=True)
+    ]
+    field = table.generator
+    ground = (GRID, last * field.stiffness, last * field.damping)
+    return chain(parts, shafts, ground if _on_grid(table, generator) else None)
+
+
+def two_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:
+    """The rotor, and all the rest as one generator (Eq 4.28-4.30, 4.33-4.35).
+
+    Dampers are put in series as springs are (Eq 4.30), which holds for each alone; without any
+    in one shaft there is none. The spring between is called "shafts".
+    """
+    full = stage_masses(table, generator)
+    between = full.elements[: len(table.shafts)]
+    stiffness = 1 / sum(1 / e.stiffness for e in between)
+    dampings = [e.damping for e in between]
+    damping = 1 / sum(1 / c for c in dampings) if all(dampings) else 0.0
+    grid = full.elements[len(table.shafts) :]
+    return chain(
+        [
+            full.inertias[0],
+            Inertia(GENERATOR, sum(part.inertia for part in full.inertias[1:])),
+        ],
+        [("shafts", stiffness, damping)],
+        (GRID, grid[0].stiffness, grid[0].damping) if grid else None,
+    )
+
+
+def gear_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:
+    """A mass for each part of the gearbox, meshes as springs (Eq 4.36-4.37).
+
+    The ring stands still. Each mesh is wound by the sliding of the pitch circles over each other,
+    about the axis that its stiffness is given for: the planet's, or the gear's. (Eq 4.37 writes
+    r_2 cos(alpha) theta_2 for what the carrier adds; with r_2 that of the planets' centres this is
+    the same where the stage turns without load, as it must: no mesh is wound then.)
+    Parts are called "stage 1 carrier", "... planet 1", "... sun", "... gear", "... pinion", meshes
+    "stage 1 ring-planet 1", "... sun-planet 1", "... mesh".
+    """
+    parts, elements = [Inertia(ROTOR, table.rotor)], []
+    shafts = iter(table.shafts)
+    driving = ROTOR
+    for number, stage in enumerate(table.stages, start=1):
+        name = f"stage {number}"
+        if isinstance(stage, PlanetaryStage):
+            front, rear = f"{name} carrier", f"{name} sun"
+            masses, meshes = _planetary(name, front, rear, stage)
+        else:
+            front, rear = f"{name} gear", f"{name} pinion"
+            masses = [Inertia(front, stage.gear), Inertia(rear, stage.pinion)]
+            meshes = [
+                Element(
+                    f"{name} mesh",
+                    {front: 1.0, rear: 1.0 / stage.speed_ratio},
+                    stage.mesh,
+                    stage.mesh_damping,
+                )
+            ]
+        elements += [_shaft(next(shafts), driving, front), *meshes]
+        parts += masses
+        driving = rear
+    field = table.generator
+    parts.append(Inertia(GENERATOR, field.inertia))
+    elements.append(_shaft(next(shafts), driving, GENERATOR))
+    if _on_grid(table, generator):
+        elements.append(Element(GRID, {GENERATOR: 1.0}, field.stiffness, field.damping))
+    return Torsional(tuple(parts), tuple(elements))
+
+
+def gear_speeds(table: Drivetrain) -> dict[str, float]:
+    """Speed of each part of `gear_masses` over the rotor's, where nothing is wound up."""
+    speeds, speed = {ROTOR: 1.0}, 1.0
+    for number, stage in enumerate(table.stages, start=1):
+        name = f"stage {number}"
+        if isinstance(stage, PlanetaryStage):
+            speeds[f"{name} carrier"] = speed
+            for planet in range(1, stage.planets + 1):
+                speeds[f"{name} planet {planet}"] = speed * stage.planet_speed
+            speed *= stage.speed_ratio
+            speeds[f"{name} sun"] = speed
+        else:
+            speeds[f"{name} gear"] = speed
+            speed *= -stage.speed_ratio
+            speeds[f"{name} pinion"] = speed
+    return {**speeds, GENERATOR: speed}
+
+
+def shaft_damping(ratio: float, inertia: float, stiffness: float) -> float:
+    """C = 2 zeta sqrt(J k) [N m s/rad] (Eq 4.5), with J an inertia [kg m^2].
+
+    Of two inertias J_1 and J_2 on the shaft, J_1 J_2 / (J_1 + J_2) makes zeta the damping ratio of
+    the two against each other.
+    """
+    return 2 * ratio * sqrt(inertia * stiffness)
+
+
+def mesh_damping(
+    ratio: float, stiffness: float, driving: float, driven: float, gear: float
+) -> float:
+    """Damping of a gear mesh about the driving gear's axis [N m s/rad], after Eq 4.7.
+
+    C = 2 zeta sqrt(k_mesh J), with J the inertia that the two gears oppose to each other in the
+    mesh, about the driving one: r_1^2 J_1 J_2 / (r_1^2 J_2 + r_2^2 J_1). Eq 4.7 is printed as
+    r_1^2 r_2^2 J_1 J_2 / (r_1^2 J_1 + r_2^2 J_2), which is a length squared more and gives each
+    inertia the other's radius; with one of the two fixed, it must leave the other alone.
+
+    Parameters
+    ----------
+    ratio
+        zeta.
+    stiffness
+        About the driving gear [N m/rad].
+    driving, driven
+        Inertias J_1, J_2 about their own axes [kg m^2].
+    gear
+        r_1 / r_2, the speed ratio.
+    """
+    inertia = gear**2 * driving * driven / (gear**2 * driven + driving)
+    return shaft_damping(ratio, inertia, stiffness)
+
+
+def _planetary(
+    name: str, carrier: str, sun: str, stage: PlanetaryStage
+) -> tuple[list[Inertia], list[Element]]:
+    p = stage.planet_over_sun  # radii over the sun's: planet p, carrier 1 + p, ring 1 + 2 p
+    planets = [f"{name} planet {i + 1}" for i in range(stage.planets)]
+    masses = [
+        Inertia(carrier, stage.carrier),
+        *(Inertia(planet, stage.planet) for planet in planets),
+        Inertia(sun, stage.sun),
+    ]
+    meshes = []
+    for i, planet in enumerate(planets, start=1):
+        meshes += [
+            Element(
+                f"{name} ring-planet {i}",
+                {carrier: (1 + p) / p, planet: 1.0},
+                stage.ring_planet,
+                stage.ring_planet_damping,
+            ),
+            Element(
+                f"{name} sun-planet {i}",
+                {carrier: (1 + p) / p, planet: -1.0, sun: -1 / p},
+                stage.sun_planet,
+                stage.sun_planet_damping,
+            ),
+        ]
+    return masses, meshes
+
+
+def _shaft(row: ShaftRow, front: str, rear: str) -> Element:
+    return Element(row.name, {front: 1.0, rear: -1.0}, row.stiffness, row.damping)
+
+
+def _on_grid(table: Drivetrain, generator: GeneratorState) -> bool:
+    if generator == "fixed" and table.generator.stiffness == 0:
+        raise InputError(
+            f"drivetrain {shown(table.title)} has no electrical stiffness, so that its generator "
+            "cannot be fixed: give generator.stiffness, or ask for the free generator"
+        )
+    return generator == "fixed"

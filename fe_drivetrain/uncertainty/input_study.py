@@ -1,0 +1,271 @@
+"""What uncertain values do to all that is reported of a scene, beside what the model itself is off.
+
+The adviser names the level; sensitivities, samples and shares are of scenes solved anew at that
+level, with bearing units that depend on uncertain values as surfaces (see `unit_surface`), once
+with each of the two bounds of a housing that is solved apart: its face held in shape, and moving on
+average.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.adviser import Advice, Quantity, Rung, advise
+from fe_drivetrain.fidelity.quantities import (
+    Number,
+    Solved,
+    numbers,
+    shaft_numbers,
+    stiffness_names,
+    without_zeros,
+)
+from fe_drivetrain.fidelity.shafts import condensed_shaft, meridian_shaft
+from fe_drivetrain.scene.scene import Coupling, Scene
+from fe_drivetrain.uncertainty.resolver import Resolver
+from fe_drivetrain.uncertainty.response_surface import UnitSurface, touching, unit_surface
+from fe_drivetrain.uncertainty.sampling import (
+    Samples,
+    Shares,
+    check_spreads,
+    sample,
+    sensitivities,
+    sobol_shares,
+)
+
+LEVELS = (1, 2)
+"""Cheap enough to be solved hundreds of times."""
+
+#: What the adviser is asked about where nothing that he knows was asked for.
+DEFAULT = "hub.stiffness.uz"
+
+_BOUNDS: tuple[Coupling, Coupling] = ("rigid", "averaged")
+_SOFT = "soft "
+
+_Report = Callable[[str], object]
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """How far a level is off in one number.
+
+    Attributes
+    ----------
+    share
+        Relative.
+    source
+        What it was found from.
+    """
+
+    share: float
+    source: str
+
+
+@dataclass(frozen=True)
+class Study:
+    """What was found.
+
+    Attributes
+    ----------
+    scene, level
+        What was studied, and at which level.
+    advices
+        Ladders that were climbed to find that level; none where the user named it.
+    numbers
+        All that are reported, those that were asked for first.
+    asked
+        Names of what was asked for.
+    slopes, samples, errors
+        By number: relative change for the relative change of each input, results over the
+        hypercube, and the level's own error.
+    soft_slopes, soft_samples
+        The same with housings whose faces move on average, where that matters.
+    surfaces
+        Of bearing units that depend on uncertain values, two of each.
+    shares
+        Sobol's, of those numbers that vary; empty where not wanted.
+    """
+
+    scene: Scene
+    level: int
+    advices: Sequence[Advice]
+    numbers: Sequence[Number]
+    asked: Sequence[str]
+    slopes: Mapping[str, Mapping[str, float]]
+    samples: Mapping[str, Samples]
+    errors: Mapping[str, ModelError]
+    soft_slopes: Mapping[str, Mapping[str, float]]
+    soft_samples: Mapping[str, Samples]
+    surfaces: Sequence[UnitSurface]
+    shares: Mapping[str, Shares] = field(default_factory=dict)
+
+    def is_asked(self, number: Number) -> bool:
+        """Whether the user asked for it."""
+        return number.name.partition(" of ")[0] in self.asked
+
+
+def study(
+    scene: Scene,
+    asked: Sequence[str] = (),
+    load: Floats | None = None,
+    tolerance: float = 0.05,
+    level: int | None = None,
+    count: int = 128,
+    seed: int = 0,
+    sobol: int = 0,
+    report: _Report = lambda step: None,
+) -> Study:
+    """Propagate a scene's uncertain values to what is reported of it.
+
+    Parameters
+    ----------
+    scene
+        With its `Scene.uncertainty`.
+    asked
+        Names, see `reported.known_names`, before every stiffness that is reported; the adviser
+        answers for these, or for `DEFAULT`.
+    load
+        (10,) factors of `model.LOADS`, for reactions.
+    tolerance
+        Of the level, relative.
+    level
+        1 or 2; where not given, the cheapest of these that the adviser finds good enough for all
+        that was asked, and the better one where neither is.
+    count, seed
+        Of the Latin hypercube.
+    sobol
+        Base samples of Sobol's shares, a power of two; none for 0.
+    report
+        Called with what is being done.
+
+    Raises
+    ------
+    InputError
+        A name is unknown or its number is zero, nothing is uncertain, or there is no such level.
+    """
+    check_spreads(scene)
+    if level is not None and level not in LEVELS:
+        raise InputError(f"--level {level} cannot be sampled: use 1 (beam) or 2 (meridian)")
+    stiffnesses = numbers(scene, [n for n in stiffness_names(scene) if n not in asked])
+    wanted = numbers(scene, asked, load)
+    solver = Resolver(LEVELS[0] if level is None else level)
+    report("nominal values")
+    wanted = without_zeros(wanted, solver(scene))  # before anything that takes long
+    advices: list[Advice] = []
+    if level is None:
+        advices, level = _advised(scene, asked, load, tolerance, report)
+        if level != solver.level:
+            solver = Resolver(level, springs=solver.springs)
+    solved = solver(scene)
+    found = [*wanted, *(n for n in stiffnesses if n.of(solved) > 0.0)]
+    surfaces = []
+    bounds = []
+    for coupling in _BOUNDS:
+        exact = replace(solver, coupling=coupling, units={})
+        known = _surfaces(scene, exact, seed, report)
+        bounds.append(replace(exact, units={surface.name: surface for surface in known}))
+        surfaces += known
+    of_housings = [n for n in found if not n.name.startswith("shaft.")]
+
+    def evaluate(changed: Scene) -> dict[str, float]:
+        stiff, soft = (bound(changed) for bound in bounds)
+        values = {number.name: number.of(stiff) for number in found}
+        return values | {_SOFT + number.name: number.of(soft) for number in of_housings}
+
+    report("sensitivities")
+    slopes = sensitivities(scene, evaluate, list(scene.uncertainty))
+    samples = sample(scene, evaluate, count, seed, report)
+    varying = [n.name for n in found if samples[n.name].varies]
+    shares = sobol_shares(scene, evaluate, varying, sobol, seed, report) if sobol else {}
+    report("error of the level")
+    soft_samples = _soft(samples)
+    return Study(
+        scene,
+        level,
+        advices,
+        found,
+        list(asked),
+        {number.name: slopes[number.name] for number in found},
+        {number.name: samples[number.name] for number in found},
+        _errors(scene, level, solved, found, soft_samples, advices),
+        _soft(slopes),
+        soft_samples,
+        surfaces,
+        shares,
+    )
+
+
+def _surfaces(scene: Scene, solver: Resolver, seed: int, report: _Report) -> list[UnitSurface]:
+    """Of each bearing unit that depends on uncertain values."""
+    found = []
+    for unit in scene.bearing_units:
+        keys = touching(scene, unit.bearing.name, list(scene.uncertainty))
+        if keys:
+            spreads = {key: scene.uncertainty[key] for key in keys}
+            found.append(unit_surface(scene, unit.bearing.name, spreads, solver, seed, report))
+    return found
+
+
+def _soft(values: Mapping[str, _T]) -> dict[str, _T]:
+    return {k.removeprefix(_SOFT): v for k, v in values.items() if k.startswith(_SOFT)}
+
+
+def rung_of(advice: Advice, level: int) -> Rung:
+    """The last rung of a level: that with housings as springs."""
+    return [rung for rung in advice.rungs if rung.model.level == level][-1]
+
+
+def level_error(advice: Advice, level: int) -> float:
+    """What a level may be off: its distance to the top and the top's own band."""
+    return rung_of(advice, level).error + advice.top.estimate
+
+
+def _advised(
+    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, report: _Report
+) -> tuple[list[Advice], int]:
+    """The ladder of each quantity that has one, and the cheapest level that is enough for all."""
+    names = [name for name in asked if name.startswith("hub.") or name[-2] in "FM"] or [DEFAULT]
+    advices = [
+        advise(scene, Quantity(name, load), tolerance, to_the_top=True, report=report)
+        for name in names
+    ]
+    worst = {level: max(level_error(advice, level) for advice in advices) for level in LEVELS}
+    enough = [level for level in LEVELS if worst[level] <= tolerance]
+    return advices, enough[0] if enough else min(worst, key=lambda level: worst[level])
+
+
+def _errors(
+    scene: Scene,
+    level: int,
+    solved: Solved,
+    found: Sequence[Number],
+    soft: Mapping[str, Samples],
+    advices: Sequence[Advice],
+) -> dict[str, ModelError]:
+    """Of each number: distance to the top where that was run, else between bounds."""
+    if level == 1:
+        other, named = condensed_shaft(scene, 2), "the change from beam to meridian"
+    else:
+        filleted = any(piece.fillet > 0 for piece in scene.shaft.pieces)
+        # one order less than `meridian.meridian` takes
+        other, named = meridian_shaft(scene, order=3 if filleted else 5), "elements of lower order"
+    shaft = shaft_numbers(other)
+    errors = {}
+    for number in found:
+        value = number.of(solved)
+        owner, _, part = number.name.partition(".")
+        if owner == "shaft":
+            errors[number.name] = ModelError(abs(shaft[part] / value - 1.0), named)
+        elif number.quantity is not None and advices:
+            top = advices[0].top.model
+            exact = float(number.quantity.of(top, 1.0)[0])
+            away = abs(value - exact) / abs(exact)
+            errors[number.name] = ModelError(away, f"distance to level {top.level}, {top.title}")
+        else:
+            half = abs(soft[number.name].nominal - value) / 2 / abs(value)
+            errors[number.name] = ModelError(half, "half the range of the housing's two bounds")
+    return errors

@@ -1,0 +1,107 @@
+"""A scene solved at a cheap level again and again: only what a change touches is solved anew."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TypeVar
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.fidelity.bearing_units import unit_stiffness
+from fe_drivetrain.fidelity.ladder import shaft_level
+from fe_drivetrain.fidelity.quantities import Solved
+from fe_drivetrain.fidelity.shafts import condensed_shaft, ringed_shaft
+from fe_drivetrain.scene.scene import Coupling, Scene
+from fe_drivetrain.solve.condensation import Condensed
+
+UnitStiffness = Callable[[Scene], Floats]
+"""(6, 6) stiffness of one bearing unit of a scene."""
+
+
+def unit_content(scene: Scene, name: str) -> str:
+    """All that the stiffness of a bearing unit depends on; where it stands is not among it."""
+    unit = scene.bearing_unit(name)
+    bearing = unit.bearing
+    return repr(
+        (
+            unit.model_copy(update={"bearing": bearing.model_copy(update={"x": 0.0})}),
+            scene.shaft.seat_diameter(bearing.x, bearing.width, name),
+            scene.material_of(name),
+            scene.material_of(f"{name}.housing"),
+            scene.mesh,
+        )
+    )
+
+
+def shaft_content(scene: Scene) -> str:
+    """All that a condensed shaft depends on, but for its modulus, which it is proportional to."""
+    rings = ringed_shaft(scene)[1]
+    material = scene.material_of("shaft").model_copy(update={"youngs_modulus": 1.0})
+    bearings = [
+        (u.bearing if u.bearing.name in rings else u.bearing.span, u.bearing.name in rings)
+        for u in scene.bearing_units
+    ]
+    return repr((scene.shaft, bearings, material))
+
+
+@dataclass
+class Resolver:
+    """Solves a scene at level 1 or 2, housings as springs.
+
+    Attributes
+    ----------
+    level
+        1 beam, 2 meridian.
+    units
+        What gives the stiffness of a bearing unit, by its name; solved where not given.
+    coupling
+        Of the units' faces, where solved.
+    springs, bodies
+        What was solved before, by what it depends on; a body with the modulus that it had.
+    """
+
+    level: int
+    units: Mapping[str, UnitStiffness] = field(default_factory=dict)
+    coupling: Coupling = "rigid"
+    springs: dict[str, Floats] = field(default_factory=dict, repr=False)
+    bodies: dict[str, tuple[float, Condensed]] = field(default_factory=dict, repr=False)
+
+    def __call__(self, scene: Scene) -> Solved:
+        """The scene at that level.
+
+        Raises
+        ------
+        InputError
+            See `levels.shaft_level` and `bearing_units.unit_stiffness`.
+        """
+        names = [unit.bearing.name for unit in scene.bearing_units]
+        springs = {name: self.spring(scene, name) for name in names}
+        body = self._body(scene)
+        return Solved(body, springs, shaft_level(scene, self.level, springs, body))
+
+    def spring(self, scene: Scene, name: str) -> Floats:
+        """(6, 6) stiffness of a bearing unit."""
+        known = self.units.get(name)
+        if known is not None:
+            return known(scene)
+        solve = partial(unit_stiffness, scene, name, coupling=self.coupling)
+        return _kept(self.springs, f"{self.coupling} {unit_content(scene, name)}", solve)
+
+    def _body(self, scene: Scene) -> Condensed:
+        modulus = scene.material_of("shaft").youngs_modulus
+        first, body = _kept(
+            self.bodies,
+            shaft_content(scene),
+            lambda: (modulus, condensed_shaft(scene, self.level)),
+        )
+        return replace(body, stiffness=body.stiffness * (modulus / first))
+
+
+_T = TypeVar("_T")
+
+
+def _kept(memory: dict[str, _T], content: str, solve: Callable[[], _T]) -> _T:
+    if content not in memory:
+        memory[content] = solve()
+    return memory[content]

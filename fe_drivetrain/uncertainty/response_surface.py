@@ -1,0 +1,191 @@
+"""Stiffness of a bearing unit over the values that are uncertain in it, from some solid solutions.
+
+A sample of hundreds would be as many meshes and solutions. The logarithm of the stiffness matrix,
+relative to the nominal one, is instead taken as quadratic in the logarithm of each value and
+additive over them: exact in the modulus of a unit of one material, near to that in any power, and
+symmetric and positive definite wherever it is evaluated (log-Euclidean: Arsigny et al. 2007, SIAM
+J. Matrix Anal. Appl. 29(1)). Solutions at values drawn from the distributions say how far it is
+off, and that includes the noise of meshes made anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import qmc
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.quantities import carried_root, unit_numbers
+from fe_drivetrain.scene.scene import Coupling, Scene, Spread
+from fe_drivetrain.uncertainty.resolver import Resolver, unit_content
+from fe_drivetrain.uncertainty.sampling import (
+    distribution,
+    nominal_value,
+    nominal_values,
+    with_values,
+)
+
+#: Least relative step of the design: below it the noise of a mesh made anew, some 1e-4 of the
+#: stiffness, would drown the difference.
+LEAST_REACH = 0.01
+
+#: Values are taken from this quantile to the opposite one.
+EDGE = 0.05
+
+#: Solutions that check the surface.
+CHECKS = 4
+
+
+@dataclass(frozen=True)
+class UnitSurface:
+    """A unit's stiffness as a function of the d uncertain values that it depends on.
+
+    Attributes
+    ----------
+    name, coupling
+        Of the bearing, and of its face.
+    keys, nominal
+        The values by dotted key, and (d,) what the scene gives.
+    reach
+        (d,) how far they were moved at least, relative.
+    root
+        (6, c) square root of the nominal stiffness, see `reported.carried_root`.
+    slopes, bends
+        (d, c, c) coefficients of the logarithm of each value, and of its square.
+    error
+        Largest relative difference to the solutions that check it, over the stiffnesses of
+        `reported.UNIT`.
+    solutions
+        How many solid solutions it took.
+    """
+
+    name: str
+    coupling: Coupling
+    keys: tuple[str, ...]
+    nominal: Floats
+    reach: Floats
+    root: Floats
+    slopes: Floats
+    bends: Floats
+    error: float
+    solutions: int
+
+    @property
+    def slope_error(self) -> float:
+        """How far a sensitivity may be off for ``error``: it over the least step."""
+        return self.error / float(self.reach.min())
+
+    def __call__(self, scene: Scene) -> Floats:
+        """(6, 6) stiffness for the values of a scene that differs in nothing else."""
+        values = np.array(nominal_values(scene, self.keys))
+        if (values / self.nominal <= 0.0).any():
+            raise InputError(
+                f"the stiffness of {self.name!r} is asked for a value of another sign than the "
+                "scene's: make its spread smaller"
+            )
+        t = np.log(values / self.nominal)
+        logarithm = np.tensordot(t, self.slopes, 1) + np.tensordot(t**2, self.bends, 1)
+        return np.asarray(self.root @ _exp(logarithm) @ self.root.T)
+
+
+def touching(scene: Scene, name: str, keys: Sequence[str]) -> list[str]:
+    """Which of these values the stiffness of a bearing unit depends on."""
+    content = unit_content(scene, name)
+    found = []
+    for key in keys:
+        # a small step: it must be a scene
+        changed = with_values(scene, {key: nominal_value(scene, key) * (1 + 1e-9)})
+        if unit_content(changed, name) != content:
+            found.append(key)
+    return found
+
+
+def unit_surface(
+    scene: Scene,
+    name: str,
+    spreads: Mapping[str, Spread],
+    resolver: Resolver,
+    seed: int = 0,
+    report: Callable[[str], object] = lambda step: None,
+) -> UnitSurface:
+    """Solve a bearing unit at two values of each key beside the nominal ones, and check that.
+
+    Parameters
+    ----------
+    scene, name
+        The scene, and the bearing of the unit.
+    spreads
+        By dotted key: of those values that the unit depends on, see `touching`.
+    resolver
+        Solves the unit.
+    seed
+        Of the values that check it.
+    report
+        Called with what is being done.
+
+    Raises
+    ------
+    InputError
+        A value within the spread makes no scene.
+    """
+    keys = tuple(spreads)
+    nominal = np.array(nominal_values(scene, keys))
+    known = [distribution(s, v) for s, v in zip(spreads.values(), nominal.tolist(), strict=True)]
+    count = 1 + 2 * len(keys) + CHECKS
+    done = 0
+
+    def solved(values: Mapping[str, float]) -> Floats:
+        nonlocal done
+        done += 1
+        face = "in shape" if resolver.coupling == "rigid" else "on average"
+        report(f"stiffness of {name}, face {face} ({done} of {count})")
+        return resolver.spring(with_values(scene, values), name)
+
+    base = solved({})
+    root = carried_root(base)
+    inverse = np.linalg.pinv(root, rcond=1e-13)
+
+    def logarithm(stiffness: Floats) -> Floats:
+        relative = inverse @ stiffness @ inverse.T
+        values, vectors = np.linalg.eigh(0.5 * (relative + relative.T))
+        return np.asarray(vectors * np.log(values) @ vectors.T)
+
+    slopes, bends, reach = [], [], []
+    for key, value, spread in zip(keys, nominal.tolist(), known, strict=True):
+        low, high = (math.log(spread.ppf(q) / value) for q in (EDGE, 1.0 - EDGE))
+        t = np.array([min(low, -LEAST_REACH), max(high, LEAST_REACH)])
+        moved = [logarithm(solved({key: value * math.exp(step)})) for step in t]
+        slope, bend = np.tensordot(np.linalg.inv(np.column_stack([t, t**2])), np.array(moved), 1)
+        slopes.append(slope)
+        bends.append(bend)
+        reach.append(np.abs(t).min())
+    surface = UnitSurface(
+        name,
+        resolver.coupling,
+        keys,
+        nominal,
+        np.array(reach),
+        root,
+        np.array(slopes),
+        np.array(bends),
+        0.0,
+        count,
+    )
+    error = 0.0
+    for row in qmc.LatinHypercube(d=len(keys), rng=seed).random(CHECKS):
+        values = {
+            key: float(spread.ppf(q)) for key, spread, q in zip(keys, known, row, strict=True)
+        }
+        exact = unit_numbers(solved(values))
+        found = unit_numbers(surface(with_values(scene, values)))
+        error = max(error, *(abs(found[n] / k - 1.0) for n, k in exact.items() if k > 0))
+    return UnitSurface(**(vars(surface) | {"error": error}))
+
+
+def _exp(symmetric: Floats) -> Floats:
+    values, vectors = np.linalg.eigh(symmetric)
+    return np.asarray(vectors * np.exp(values) @ vectors.T)

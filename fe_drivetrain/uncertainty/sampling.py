@@ -1,0 +1,381 @@
+"""How certain a result is when the inputs are not: sensitivities, samples, shares of variance.
+
+PROTEST's step 4: which inputs are how certain, and what that does to what is reported. Sampling is
+over a cheap level of the ladder; which one is the adviser's to say, see `uncertainty_study`. One
+evaluation of a scene answers every quantity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import stats
+from scipy.stats import qmc
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.scene.scene import Scene, Spread, change_scene
+
+Evaluate = Callable[[Scene], Mapping[str, float]]
+"""Numbers of a scene by name."""
+
+#: Relative step of a central difference: its error is some 1e-6 of a smooth function's.
+STEP = 1e-3
+
+#: Share of the results that a band holds.
+SHARE = 0.95
+
+_RESAMPLES = 999
+_CONSTANT = 1e-9  # relative: below it no input matters to a result
+
+
+@dataclass(frozen=True)
+class Band:
+    """Between which two values a share of the results lies, as much below as above.
+
+    Attributes
+    ----------
+    low, high
+        The two.
+    low_error, high_error
+        Standard errors, of so many samples.
+    """
+
+    low: float
+    high: float
+    low_error: float
+    high_error: float
+
+
+@dataclass(frozen=True)
+class Samples:
+    """One quantity over a Latin hypercube.
+
+    Attributes
+    ----------
+    keys
+        Of the d uncertain values.
+    inputs, values
+        (n, d), and (n,) the result of each sample.
+    nominal
+        The result without uncertainty.
+    """
+
+    keys: tuple[str, ...]
+    inputs: Floats
+    values: Floats
+    nominal: float
+
+    @property
+    def varies(self) -> bool:
+        """Whether any input matters to the quantity."""
+        return bool(np.ptp(self.values) > _CONSTANT * abs(self.nominal))
+
+    def band(self, share: float = SHARE, seed: int = 0) -> Band:
+        """The band, with its errors from resampling the samples (Efron 1979) as if independent.
+
+        Those of a Latin hypercube are about as large or smaller (Owen 1997, Ann. Statist. 25(4)).
+        """
+        outside = (1.0 - share) / 2
+        ends = np.quantile(self.values, [outside, 1.0 - outside])
+        errors = [0.0, 0.0]
+        if self.varies:
+            errors = [
+                float(
+                    stats.bootstrap(
+                        (self.values,),
+                        lambda x, axis, q=q: np.quantile(x, q, axis=axis),
+                        n_resamples=_RESAMPLES,
+                        vectorized=True,
+                        method="percentile",
+                        rng=seed,
+                    ).standard_error
+                )
+                for q in (outside, 1.0 - outside)
+            ]
+        return Band(float(ends[0]), float(ends[1]), errors[0], errors[1])
+
+    @property
+    def linear_share(self) -> float:
+        """Share of the variance that a plane through the samples explains, R^2."""
+        return float(1.0 - np.var(self._residual()) / np.var(self.values))
+
+    def contributions(self) -> Floats:
+        """(d,) squared standardised coefficients of that plane: shares of the variance, where it
+        holds and inputs are independent (Saltelli et al. 2008, Global Sensitivity Analysis, 1.2.5).
+        """
+        return np.asarray((self._plane() * self.inputs.std(axis=0) / self.values.std()) ** 2)
+
+    def _plane(self) -> Floats:
+        centred = self.inputs - self.inputs.mean(axis=0)
+        size = centred.std(axis=0)
+        found = np.linalg.lstsq(centred / size, self.values - self.values.mean(), rcond=None)[0]
+        return np.asarray(found / size)
+
+    def _residual(self) -> Floats:
+        centred = self.inputs - self.inputs.mean(axis=0)
+        return np.asarray(self.values - self.values.mean() - centred @ self._plane())
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Sobol's shares of the variance of one quantity.
+
+    Attributes
+    ----------
+    keys
+        Of the d uncertain values.
+    first, total
+        (d,) what each value does alone, and with all in which it has a part.
+    first_error, total_error
+        (d,) standard errors from resampling.
+    """
+
+    keys: tuple[str, ...]
+    first: Floats
+    total: Floats
+    first_error: Floats
+    total_error: Floats
+
+
+def nominal_value(scene: Scene, key: str) -> float:
+    """The number that a dotted key leads to; a bearing unit goes by its bearing's name.
+
+    Raises
+    ------
+    InputError
+        There is none, or it is no number.
+    """
+    return nominal_values(scene, [key])[0]
+
+
+def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
+    """The numbers that dotted keys lead to; see `nominal_value`."""
+    data = _with_materials(scene).model_dump(mode="json")
+    return [_number(data, key) for key in keys]
+
+
+def _number(data: Any, key: str) -> float:
+    for part in key.split("."):
+        if isinstance(data, list):
+            named = {
+                u["bearing"]["name"]: u for u in data if isinstance(u, dict) and "bearing" in u
+            }
+            data = named.get(part) or (
+                data[int(part)] if part.isdecimal() and int(part) < len(data) else None
+            )
+        else:
+            data = data.get(part) if isinstance(data, dict) else None
+    if isinstance(data, bool) or not isinstance(data, int | float):
+        raise InputError(
+            f"uncertainty of {key!r}: the scene has no number there: name a value that it gives"
+        )
+    return float(data)
+
+
+def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
+    """The scene with other values by dotted key, materials that come with the program included."""
+    return change_scene(_with_materials(scene), values)
+
+
+def check_spreads(scene: Scene) -> None:
+    """Refuse a scene that calls nothing uncertain, or something that cannot be.
+
+    Raises
+    ------
+    InputError
+        Nothing is uncertain; a key leads to no number, or to zero, of which no share is anything.
+    """
+    if not scene.uncertainty:
+        raise InputError(
+            f"scene {scene.title!r} says of no value how certain it is: add some under "
+            "'uncertainty', as in shaft.sections.0.outer_diameter: {uniform: 0.01}"
+        )
+    for key in scene.uncertainty:
+        if nominal_value(scene, key) == 0.0:
+            raise InputError(
+                f"uncertainty of {key!r}: the value is 0, and a spread is relative to it: leave it "
+                "out, or move the frame so that it is not"
+            )
+
+
+def sensitivities(
+    scene: Scene, evaluate: Evaluate, keys: Sequence[str], step: float = STEP
+) -> dict[str, dict[str, float]]:
+    """Relative change of each result for the relative change of each value: central differences.
+
+    Parameters
+    ----------
+    scene, evaluate
+        What is varied, and its results.
+    keys
+        Values other than zero.
+    step
+        Relative.
+
+    Returns
+    -------
+    By result, and by key.
+
+    Raises
+    ------
+    InputError
+        A value, or a result, is zero: it has no relative change.
+    """
+    base = evaluate(scene)
+    for name, result in base.items():
+        if result == 0.0:
+            raise InputError(f"{name} is zero, and has no relative change: ask for another")
+    found: dict[str, dict[str, float]] = {name: {} for name in base}
+    for key in keys:
+        value = nominal_value(scene, key)
+        if value == 0.0:
+            raise InputError(f"{key} is zero and has no relative change: leave it out")
+        low, high = (evaluate(with_values(scene, {key: value * (1 + s)})) for s in (-step, step))
+        for name, result in base.items():
+            found[name][key] = (high[name] - low[name]) / (2 * step * result)
+    return found
+
+
+def sample(
+    scene: Scene,
+    evaluate: Evaluate,
+    count: int = 128,
+    seed: int = 0,
+    report: Callable[[str], object] = lambda step: None,
+) -> dict[str, Samples]:
+    """Results over a Latin hypercube of the scene's uncertain values, by name.
+
+    Parameters
+    ----------
+    scene, evaluate
+        What is varied, and its results.
+    count
+        Samples.
+    seed
+        Of the hypercube.
+    report
+        Called with what is being done.
+
+    Raises
+    ------
+    InputError
+        Nothing is uncertain, or a sample is no scene.
+    """
+    check_spreads(scene)
+    keys = tuple(scene.uncertainty)
+    quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
+    inputs = np.column_stack([d.ppf(q) for d, q in zip(_spreads(scene), quantiles.T, strict=True)])
+    rows = []
+    for number, row in enumerate(inputs):
+        report(f"samples ({number + 1} of {count})")
+        rows.append(_evaluated(scene, evaluate, keys, row))
+    return {
+        name: Samples(keys, inputs, np.array([row[name] for row in rows]), nominal)
+        for name, nominal in evaluate(scene).items()
+    }
+
+
+def sobol_shares(
+    scene: Scene,
+    evaluate: Evaluate,
+    names: Sequence[str],
+    count: int = 64,
+    seed: int = 0,
+    report: Callable[[str], object] = lambda step: None,
+) -> dict[str, Shares]:
+    """First-order and total shares of the variance (Sobol 2001; Saltelli et al. 2010), by name.
+
+    Parameters
+    ----------
+    scene, evaluate
+        What is varied, and its results.
+    names
+        Of results that vary.
+    count
+        Base samples, a power of two; (d + 2) times as many evaluations of d values.
+    seed
+        Of the samples.
+    report
+        Called with what is being done.
+    """
+    check_spreads(scene)
+    keys = tuple(scene.uncertainty)
+    d = len(keys)
+    total = count * (d + 2)
+    done = 0
+
+    def results(rows: Floats) -> Floats:
+        """(s, n) of (n, d) values."""
+        nonlocal done
+        found = []
+        for row in rows:
+            done += 1
+            report(f"samples of Sobol's shares ({done} of {total})")
+            values = _evaluated(scene, evaluate, keys, row)
+            found.append([values[name] for name in names])
+        return np.array(found).T
+
+    quantiles = qmc.Sobol(d=2 * d, rng=seed).random(count)
+    spreads = _spreads(scene)
+    A, B = (
+        np.column_stack([spread.ppf(q) for spread, q in zip(spreads, half.T, strict=True)])
+        for half in (quantiles[:, :d], quantiles[:, d:])
+    )
+    f_A, f_B = results(A), results(B)
+    f_AB = np.array([results(np.where(np.arange(d) == k, B, A)) for k in range(d)])
+
+    def shares(chosen: Ints) -> Floats:
+        """(2, s, d) first and total."""
+        known = {"f_A": f_A[:, chosen], "f_B": f_B[:, chosen], "f_AB": f_AB[..., chosen]}
+        found = stats.sobol_indices(func=known, n=count)
+        return np.reshape([found.first_order, found.total_order], (2, len(names), d))
+
+    draws = np.random.default_rng(seed).integers(count, size=(_RESAMPLES, count))
+    errors = np.std([shares(draw) for draw in draws], axis=0, ddof=1)
+    first, whole = shares(np.arange(count))
+    return {
+        name: Shares(keys, first[k], whole[k], errors[0, k], errors[1, k])
+        for k, name in enumerate(names)
+    }
+
+
+def distribution(spread: Spread, nominal: float) -> Any:
+    """scipy's distribution of a value."""
+    if spread.uniform is not None:
+        half = spread.uniform * abs(nominal)
+        return stats.uniform(nominal - half, 2 * half)
+    if spread.normal is not None:
+        return stats.norm(nominal, spread.normal * abs(nominal))
+    # of the median: the mean of what is positive and may be off by a factor
+    return stats.lognorm(np.sqrt(np.log1p(float(spread.lognormal or 0.0) ** 2)), scale=nominal)
+
+
+def _spreads(scene: Scene) -> list[Any]:
+    nominal = nominal_values(scene, list(scene.uncertainty))
+    return [distribution(s, v) for s, v in zip(scene.uncertainty.values(), nominal, strict=True)]
+
+
+def _evaluated(
+    scene: Scene, evaluate: Evaluate, keys: Sequence[str], row: Floats
+) -> Mapping[str, float]:
+    values = dict(zip(keys, row.tolist(), strict=True))
+    try:
+        return evaluate(with_values(scene, values))
+    except InputError as error:
+        raise InputError(
+            f"within its uncertainty the scene cannot be: {error} (or make the spread of "
+            f"{', '.join(keys)} smaller)"
+        ) from error
+
+
+def _with_materials(scene: Scene) -> Scene:
+    used = {scene.shaft.material}
+    for unit in scene.bearing_units:
+        used |= {unit.bearing.material, unit.housing.material}
+    own = {name: MATERIALS[name] for name in used if name in MATERIALS}
+    return scene.model_copy(update={"materials": own | dict(scene.materials)})
