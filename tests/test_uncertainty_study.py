@@ -288,11 +288,11 @@ def test_the_model_error_of_a_level_without_a_top_is_half_its_bounds(found: Stud
 
 def test_the_page_has_every_number(found: Study) -> None:
     sections = {section.title: section for section in (bands(found), inputs(found))}
-    (table,) = (i for i in sections["How certain the results are"].items if i.kind == "table")
+    (table,) = (i for i in sections["Uncertainty of the results"].items if i.kind == "table")
     assert [row[0] for row in table.rows] == stiffness_names(found.scene)
-    values, surfaces = (i for i in sections["What is uncertain"].items if i.kind == "table")
+    values, surfaces = (i for i in sections["Uncertain values"].items if i.kind == "table")
     assert [row[1] for row in values.rows] == list(SPREADS)
-    assert [row[1] for row in surfaces.rows] == ["in shape", "on average"]
+    assert [row[1] for row in surfaces.rows] == ["rigid", "averaged"]
     numbers = figures(found)["quantities"]
     assert numbers["main_bearing.tilt"]["half_band"] > 0
     assert len(numbers["main_bearing.tilt"]["samples"]) == COUNT
