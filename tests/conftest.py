@@ -12,7 +12,8 @@ from fe_drivetrain.common import cache, processes
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.scene import Scene, change_scene, library_scene
+from fe_drivetrain.scene.reading import change_scene, library_scene
+from fe_drivetrain.scene.scene import Scene
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.

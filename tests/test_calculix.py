@@ -25,7 +25,7 @@ from fe_drivetrain.mesh.shapes import is_straight
 from fe_drivetrain.operator.elasticity import assemble, rigid_motions
 from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.scene.reading import change_scene
 
 FORMS = ["bonded", "sliding", "averaged", "rigid", "spring", "rollers"]
 

@@ -28,18 +28,16 @@ from fe_drivetrain.fidelity.component_solid import component_mesh
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
 from fe_drivetrain.mesh import mesh as meshes
 from fe_drivetrain.mesh.symmetry import meshed, mirror, repeated, turns
-from fe_drivetrain.scene.component import (
-    Bushings,
-    CarrierComponent,
-    HousingComponent,
+from fe_drivetrain.scene.component import Bushings, CarrierComponent, HousingComponent
+from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.scene.reading import (
     change_component,
     is_component,
     library_component,
+    library_scene,
     parse_component,
     read_component,
 )
-from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.scene.scene import library_scene
 from fe_drivetrain.solve.condensation import point_motions, wrench_transport
 
 ROOT = Path(__file__).parents[1]
@@ -90,7 +88,7 @@ def test_the_examples_of_the_documentation_are_valid() -> None:
         ("title: a\ngearbox_housing: {arm_height: 0.5}\n" + (b := "bushings: {stiffness: "
          "[1, 1, 1, 1, 1, 1]}"), "arm_height is 0.5 m but must be less than eye_diameter"),
         (f"title: a\ngearbox_housing: {{arm_x: 0.2}}\n{b}", "arm_width"),
-        (f"title: a\ngearbox_housing: {{}}\n{b}\nwheight: 1", "wheight: unknown key; known here"),
+        (f"title: a\ngearbox_housing: {{}}\n{b}\nwheight: 1", "'wheight' (did you mean 'weight'?)"),
         ("title: a\ngearbox_housing: {}\nbushings: {stiffness: [1, 1]}", "at least 6 values"),
     ],
 )  # fmt: skip

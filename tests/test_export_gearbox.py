@@ -16,7 +16,7 @@ from fe_drivetrain.export.formats.elastodyn import Torsion
 from fe_drivetrain.export.from_scene import unit_superelement
 from fe_drivetrain.export.seat_superelements import seats_superelement
 from fe_drivetrain.export.superelement import Origin, Superelement
-from fe_drivetrain.scene.scene import library_scene
+from fe_drivetrain.scene.reading import library_scene
 
 TURBINE = """\
 # a turbine, with a comment

@@ -29,7 +29,8 @@ from fe_drivetrain.hub_loads.histories import LARGEST_LOAD, read_hub_loads
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.report.results import Environment, Results, judge
 from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.scene.scene import Scene, change_scene, parse_scene, read_scene
+from fe_drivetrain.scene.reading import change_scene, parse_scene, read_scene
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case, Run
 

@@ -6,7 +6,7 @@ from conftest import coarse_scene
 
 from fe_drivetrain.cases.main_bearing import bands
 from fe_drivetrain.cases.main_bearing.bands import FACTORS, LEAST_ORDER, Series
-from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite.case import Run
 
 

@@ -5,7 +5,8 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.scene.scene import Scene, change_scene
+from fe_drivetrain.scene.reading import change_scene
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.uncertainty.sampling import (
     Samples,
     nominal_value,

@@ -654,17 +654,17 @@ def _run_on_scene(
 
 def _component_of(scene: str, changes: Mapping[str, Any]) -> Component | None:
     """The component in a file, or the library's of that name, with changes; None of a scene."""
-    from fe_drivetrain.scene.component import is_component, parse_component
-    from fe_drivetrain.scene.scene import file_text, library_text
+    from fe_drivetrain.common.reading import read_text
+    from fe_drivetrain.scene.reading import is_component, library_text, parse_component
 
     is_file = Path(scene).suffix != "" or Path(scene).exists()
-    text = file_text(scene) if is_file else library_text(scene)
+    text = read_text(scene, "scene") if is_file else library_text(scene)
     return parse_component(text, changes, scene) if is_component(text) else None
 
 
 def _scene_of(scene: str, changes: Mapping[str, Any]) -> Scene:
     """The scene in a file, or the library's of that name, with the user's changes."""
-    from fe_drivetrain.scene.scene import change_scene, library_scene, read_scene
+    from fe_drivetrain.scene.reading import change_scene, library_scene, read_scene
 
     if Path(scene).suffix != "" or Path(scene).exists():
         return read_scene(scene, changes)

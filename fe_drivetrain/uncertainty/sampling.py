@@ -17,8 +17,10 @@ from scipy.stats import qmc
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.scene.scene import Scene, Spread, change_scene
+from fe_drivetrain.scene.reading import change_scene
+from fe_drivetrain.scene.scene import Scene, Spread
 
 Evaluate = Callable[[Scene], Mapping[str, float]]
 """Numbers of a scene by name."""
@@ -160,21 +162,12 @@ def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
 
 
 def _number(data: Any, key: str) -> float:
-    for part in key.split("."):
-        if isinstance(data, list):
-            named = {
-                u["bearing"]["name"]: u for u in data if isinstance(u, dict) and "bearing" in u
-            }
-            data = named.get(part) or (
-                data[int(part)] if part.isdecimal() and int(part) < len(data) else None
-            )
-        else:
-            data = data.get(part) if isinstance(data, dict) else None
-    if isinstance(data, bool) or not isinstance(data, int | float):
+    value = value_by_key(data, key)
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(
             f"uncertainty of {key!r}: the scene has no number there: name a value that it gives"
         )
-    return float(data)
+    return float(value)
 
 
 def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
