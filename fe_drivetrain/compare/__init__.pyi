@@ -4,13 +4,13 @@ from .calibration import calibrated as calibrated
 from .calibration import fitted as fitted
 from .calibration import hypercube as hypercube
 from .calibration import nearest as nearest
+from .comparison import Comparison as Comparison
+from .comparison import compare as compare
+from .comparison import compare_streamed as compare_streamed
 from .convergence import DOUBTFUL as DOUBTFUL
 from .convergence import GridConvergence as GridConvergence
 from .convergence import grid_convergence as grid_convergence
 from .convergence import observed_order as observed_order
 from .convergence import richardson as richardson
-from .statistics import Comparison as Comparison
-from .statistics import compare as compare
+from .moments import moments as moments
 from .statistics import resultant as resultant
-from .streaming import compare_streamed as compare_streamed
-from .streaming import moments as moments
