@@ -17,7 +17,7 @@ from test_superelement import random_element
 from fe_drivetrain import export
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.export.calculix_deck import ROUNDING, read_dat, run_calculix
+from fe_drivetrain.export.calculix_results import ROUNDING, read_dat
 from fe_drivetrain.export.formats import nastran
 from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
 from fe_drivetrain.export.formats.dmig import double
@@ -28,6 +28,7 @@ from fe_drivetrain.export.programs.calculix_runs import (
     frequencies_by_calculix,
     held,
 )
+from fe_drivetrain.export.programs.ccx import run_calculix
 from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement, scaled
 from fe_drivetrain.fidelity.ladder import shaft_level
 

@@ -25,7 +25,8 @@ from hypothesis import strategies as st
 from fe_drivetrain.commands import app
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry.part import LARGEST, SMALLEST
-from fe_drivetrain.hub_loads.histories import LARGEST_LOAD, read_hub_loads
+from fe_drivetrain.hub_loads.files import read_hub_loads
+from fe_drivetrain.hub_loads.histories import LARGEST_LOAD
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.report.results import Environment, Results, judge
 from fe_drivetrain.response.model import mesh_scene

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import validated
-from fe_drivetrain.mesh.mesh import Mesh, inverted_cells, quality, volume
+from fe_drivetrain.mesh.measures import inverted_cells, quality, volume
+from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import GRAVITY, Response, unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS

@@ -325,7 +325,7 @@ def _export(
 def _export_model(scene: Scene, out: Path) -> str:
     """Write the whole model, or its mesh; what that is."""
     from fe_drivetrain.export.calculix_deck import write_inp
-    from fe_drivetrain.mesh.mesh import write
+    from fe_drivetrain.mesh.files import write
     from fe_drivetrain.response.model import build_model, mesh_scene
 
     with _progress() as report:
@@ -390,7 +390,7 @@ def _export_component(
     from fe_drivetrain import export
     from fe_drivetrain.export.from_component import BODY, component_superelement
     from fe_drivetrain.fidelity.component_solid import component_mesh
-    from fe_drivetrain.mesh.mesh import write
+    from fe_drivetrain.mesh.files import write
 
     if format is None and out.suffix == ".inp":
         raise InputError(f"--out {out}: a component is written as .vtu or .msh, or with --format")

@@ -223,11 +223,11 @@ class _Harmonic:
     def __init__(
         self, mesh: Meridian, material: Material, n: int, places: Floats, sides: Sequence[Ints]
     ) -> None:
-        target, share = harmonics._on_axis(mesh, n)
+        target, share = harmonics.on_axis(mesh, n)
         size = len(target)
         local = 3 * np.tile(mesh.cells, 3) + np.repeat(np.arange(3), mesh.cells.shape[1])
         matrices = harmonics.element_matrices(mesh, material.lame, n)
-        K = harmonics._assembled(matrices, target[local], share[local], size)
+        K = harmonics.assembled(matrices, target[local], share[local], size)
         follow = sparse.csr_array((share, (np.arange(size), target)), shape=(size, size))
         M = follow.T @ harmonic_mass(mesh, material.density, n) @ follow
         x, r = mesh.nodes.T

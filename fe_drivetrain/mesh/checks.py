@@ -12,7 +12,8 @@ from scipy.sparse.csgraph import connected_components
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import WIDEST, refuse_millimetres
-from fe_drivetrain.mesh.mesh import FACETS, Mesh, inverted_cells, part_of
+from fe_drivetrain.mesh.measures import inverted_cells
+from fe_drivetrain.mesh.mesh import FACETS, Mesh, part_of
 
 FLATTEST = 1e-6
 """Height over longest edge of the flattest element that is solved: flatter ones make solvers fail,

@@ -1,0 +1,71 @@
+"""CalculiX's solver ccx, run on a deck."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from fe_drivetrain.common.errors import MissingToolError
+
+INSTALL = "apt-get install calculix-ccx"
+
+
+def find_calculix(executable: str = "ccx") -> str:
+    """Path of CalculiX's solver.
+
+    Raises
+    ------
+    MissingToolError
+        There is no such program.
+    """
+    found = shutil.which(executable)
+    if found is None:
+        raise MissingToolError(
+            f"CalculiX: there is no program {executable!r} on the path: install it with {INSTALL}"
+        )
+    return found
+
+
+def run_calculix(path: str | Path, executable: str = "ccx", threads: int = 1) -> Path:
+    """Run ccx on a deck; its output stands beside it.
+
+    Parameters
+    ----------
+    path
+        The deck.
+    executable
+        Name or path of CalculiX's solver.
+    threads
+        That it may use.
+
+    Returns
+    -------
+    dat
+        The .dat file, for `read_dat` and `read_response`.
+
+    Raises
+    ------
+    MissingToolError
+        There is no such program.
+    RuntimeError
+        It did not come to its end; the message has what it said last.
+    """
+    found = find_calculix(executable)
+    deck = Path(path).resolve()
+    dat = deck.with_suffix(".dat")
+    dat.unlink(missing_ok=True)
+    wanted = {name: str(threads) for name in ("OMP_NUM_THREADS", "CCX_NPROC_EQUATION_SOLVER")}
+    done = subprocess.run(
+        [found, "-i", deck.stem],
+        cwd=deck.parent,
+        env=os.environ | wanted,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        check=False,
+    )
+    if done.returncode != 0 or "*ERROR" in done.stdout or not dat.is_file():
+        said = " ".join(line.strip() for line in done.stdout.splitlines()[-12:] if line.strip())
+        raise RuntimeError(f"ccx ended with status {done.returncode}: {said}")
+    return dat
