@@ -32,7 +32,7 @@ from fe_drivetrain.common.errors import InputError
 
 Behaviour = Literal["monotone", "oscillatory", "divergent", "converged"]
 
-#: Orders that are looked for: below, a series as good as stands still; above, the last difference
+#: Orders that are looked for: below, a series hardly changes; above, the last difference
 #: is small by chance.
 ORDERS = 0.2, 8.0
 

@@ -1,4 +1,4 @@
-"""How far a model is from a reference, over load histories.
+"""Error of a model against a reference, over load histories.
 
 Every statistic takes `reference` and `model` of one shape and works along the last axis, the
 samples; the axes before it are histories, quantities or whatever they are. The difference is
@@ -61,7 +61,7 @@ def relative_scatter(reference: ArrayLike, model: ArrayLike) -> Floats:
 def relative_error(reference: ArrayLike, model: ArrayLike) -> Floats:
     """Mean absolute difference over mean absolute reference, a fraction, (..., n) -> (...).
 
-    The robust neighbour of `mean_percentage_error`: every newton counts alike, zero crossings do
+    The robust neighbour of `mean_percentage_error`: every newton counts equally, zero crossings do
     no harm. NaN for a reference that is zero throughout.
     """
     r, m = _pair(reference, model)

@@ -47,7 +47,7 @@ def write_inp(
     path
         The file, which appears whole or not at all; CalculiX wants it to end in ``.inp``.
     loads
-        Which of `model.LOADS`, a step each: ccx factorises anew for every step.
+        Which of `model.LOADS`, a step each: ccx factorises again for every step.
     solver
         Of CalculiX, as in "SPOOLES"; its own choice where not given.
     fields

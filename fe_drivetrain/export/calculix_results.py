@@ -54,7 +54,7 @@ class Printed:
 
 @dataclass(frozen=True)
 class DeckResponse:
-    """What ccx answers to the m unit loads of a deck, one load a column.
+    """Response of ccx to the m unit loads of a deck, one load a column.
 
     As in `response.Response`, in the digits of the .dat file.
 
@@ -82,7 +82,7 @@ class DeckResponse:
 
 
 def read_dat(path: str | Path) -> list[Printed]:
-    """Displacements, forces and energies of a .dat file, in the order in which they stand there."""
+    """Displacements, forces and energies of a .dat file, in the order of the file."""
     text = Path(path).read_text("ascii")
     headers = list(_PRINTED.finditer(text))
     starts = [*(header.start() for header in headers), len(text)]
@@ -101,7 +101,7 @@ def read_dat(path: str | Path) -> list[Printed]:
 
 
 def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) -> DeckResponse:
-    """What a .dat file says about a model, for comparison with `response.unit_load_response`.
+    """Response of a model from a .dat file, for comparison with `response.unit_load_response`.
 
     Parameters
     ----------

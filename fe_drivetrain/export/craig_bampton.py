@@ -1,4 +1,4 @@
-"""The free shaft with modes of its own: Craig-Bampton in the meridian.
+"""The free shaft with fixed-interface modes: Craig-Bampton in the meridian.
 
 To the points' motions, which follow statically (Guyan 1965), come the lowest modes that the shaft
 has while all its points stand still (Craig and Bampton 1968, "Coupling of substructures for dynamic
@@ -9,7 +9,7 @@ those of
     K u + P^T f = omega^2 M u,  P u = 0.
 
 Stiffness has no coupling between the two kinds; mass has. Modes without motion of any mean, of
-harmonics 2 and above (the shaft's wall made oval), are left out: nothing at the points excites
+harmonics 2 and above (the shaft's wall becoming oval), are left out: nothing at the points excites
 them, nor do these feel them.
 """
 

@@ -21,7 +21,7 @@ COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 LARGEST_LOAD = 1e12
-"""A hub load beyond this (N, N m) is a slip of the pen or of the unit."""
+"""A hub load beyond this (N, N m) is a typing or unit error."""
 
 MIN_SAMPLES = 3
 """Two samples of any two signals correlate perfectly, so three is the fewest for which a mean
@@ -33,7 +33,7 @@ often printed with three decimals (a step of 0.00625 s shows as 0.006 and 0.007,
 missing sample is a departure of 100 %."""
 
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e9
-"""Time steps [s] beyond these are a slip of the pen or of the unit."""
+"""Time steps [s] beyond these are a typing or unit error."""
 
 Attribute = float | int | str
 
@@ -168,8 +168,8 @@ def require_variation(source: str, loads: Floats) -> None:
     largest = np.abs(loads).max(axis=0)
     if largest.any() and (np.ptp(loads, axis=0) <= CONSTANT * largest).all():
         raise InputError(
-            f"{source}: all {len(loads)} samples are the same load, so that nothing can be said "
-            "about how two models vary with it; give a history whose loads vary"
+            f"{source}: all {len(loads)} samples are the same load, so that a correlation of "
+            "two models is undefined; give a history whose loads vary"
         )
 
 

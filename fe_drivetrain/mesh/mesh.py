@@ -39,7 +39,7 @@ class Mesh:
     named_points
         Node id of each named point.
     kept
-        Whether it was taken from the cache instead of made.
+        Whether it was taken from the cache instead of generated.
     """
 
     points: Floats

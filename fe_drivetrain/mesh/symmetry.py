@@ -30,7 +30,7 @@ def meshed(build: Callable[[BodySizes], None], sizes: BodySizes) -> tuple[Mesh, 
 
     Returns
     -------
-    The mesh, and the sizes that it was made with.
+    The mesh, and the sizes that it was generated with.
 
     Raises
     ------

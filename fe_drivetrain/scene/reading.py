@@ -29,7 +29,8 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
         A file of at most 1 MB, plain YAML without anchors, aliases or tags.
     changes : mapping, optional
         Values by dotted key that replace those of the file, as in
-        ``{"shaft.sections.0.inner_diameter": 0.2}``; a bearing unit goes by its bearing's name.
+        ``{"shaft.sections.0.inner_diameter": 0.2}``; a bearing unit is addressed by its
+        bearing's name.
 
     Returns
     -------

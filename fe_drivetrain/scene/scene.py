@@ -39,7 +39,7 @@ class Keys(BaseModel):
 
 def _no_booleans(value: Any) -> Any:
     if isinstance(value, list | tuple) and any(isinstance(k, bool) for k in value):
-        raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
+        raise ValueError("each stiffness must be a number of at least 0, or 'rigid'")
     return value
 
 
@@ -125,7 +125,7 @@ class Rollers(Keys):
 class BearingUnit(Keys):
     """A bearing, its housing, and the interface between the two.
 
-    What stands on the ground is the housing's base, or a bedplate that gives, as springs at the
+    What rests on the ground is the housing's base, or an elastic bedplate, as springs at the
     centre of the base.
     """
 
@@ -183,8 +183,8 @@ def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:
             raise ValueError(f"stiffness of bearing {name!r} must be six symmetric rows of numbers")
         if np.linalg.eigvalsh(scaled)[0] < -1e-9:
             raise ValueError(
-                f"stiffness of bearing {name!r} must resist every motion or leave it free; it "
-                "drives one: check its signs"
+                f"stiffness of bearing {name!r} must be positive semidefinite, but it "
+                "drives a motion: check its signs"
             )
 
 

@@ -1,4 +1,4 @@
-"""What CalculiX makes of an exported superelement: it is included in a deck, and ccx runs that."""
+"""Results of CalculiX for an exported superelement: a deck includes it, and ccx runs the deck."""
 
 from __future__ import annotations
 

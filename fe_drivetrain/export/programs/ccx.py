@@ -18,16 +18,16 @@ def find_calculix(executable: str = "ccx") -> str:
     MissingToolError
         There is no such program.
     """
-    found = shutil.which(executable)
-    if found is None:
+    program = shutil.which(executable)
+    if program is None:
         raise MissingToolError(
             f"CalculiX: there is no program {executable!r} on the path: install it with {INSTALL}"
         )
-    return found
+    return program
 
 
 def run_calculix(path: str | Path, executable: str = "ccx", threads: int = 1) -> Path:
-    """Run ccx on a deck; its output stands beside it.
+    """Run ccx on a deck; its output is written beside it.
 
     Parameters
     ----------
@@ -48,15 +48,15 @@ def run_calculix(path: str | Path, executable: str = "ccx", threads: int = 1) ->
     MissingToolError
         There is no such program.
     RuntimeError
-        It did not come to its end; the message has what it said last.
+        It did not finish; the message has its last output.
     """
-    found = find_calculix(executable)
+    program = find_calculix(executable)
     deck = Path(path).resolve()
     dat = deck.with_suffix(".dat")
     dat.unlink(missing_ok=True)
     wanted = {name: str(threads) for name in ("OMP_NUM_THREADS", "CCX_NPROC_EQUATION_SOLVER")}
-    done = subprocess.run(
-        [found, "-i", deck.stem],
+    process = subprocess.run(
+        [program, "-i", deck.stem],
         cwd=deck.parent,
         env=os.environ | wanted,
         stdout=subprocess.PIPE,
@@ -65,7 +65,8 @@ def run_calculix(path: str | Path, executable: str = "ccx", threads: int = 1) ->
         errors="replace",
         check=False,
     )
-    if done.returncode != 0 or "*ERROR" in done.stdout or not dat.is_file():
-        said = " ".join(line.strip() for line in done.stdout.splitlines()[-12:] if line.strip())
-        raise RuntimeError(f"ccx ended with status {done.returncode}: {said}")
+    if process.returncode != 0 or "*ERROR" in process.stdout or not dat.is_file():
+        last = process.stdout.splitlines()[-12:]
+        last_words = " ".join(line.strip() for line in last if line.strip())
+        raise RuntimeError(f"ccx ended with status {process.returncode}: {last_words}")
     return dat
