@@ -173,6 +173,6 @@ def test_a_sample_that_is_no_scene_names_what_is_wrong() -> None:
         },
     )
     with pytest.raises(
-        InputError, match=r"a value within its uncertainty gives no valid scene: .*inner_di"
+        InputError, match=r"within its uncertainty gives no valid scene: .*inner_di"
     ):
         sample(scene, torsion)

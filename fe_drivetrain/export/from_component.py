@@ -64,14 +64,14 @@ def component_superelement(
             raise InputError(f"point {name!r} is unknown: use {', '.join(names)}")
     if level == 1:
         bodies = [_frame(component)]
-        level, mesh = "1 frame of beams", "none"
+        level_title, mesh = "1 frame of beams", "none"
     else:
         if solids is None:
             coarse = component.model_copy(update={"mesh": component.mesh.scaled(COARSER)})
             solids = solid_component(component), solid_component(coarse)
         found = solids[0]
         bodies = [solid.body for solid in solids]
-        level = "3 solid"
+        level_title = "3 solid"
         mesh = (
             f"curved tetrahedra of second order, {found.unknowns:,} unknowns, "
             f"{found.sizes.edge:.3g} m along inner edges"
@@ -83,7 +83,7 @@ def component_superelement(
         if ratio > 1.0:  # else the coarser mesh had to be made finer
             band = difference(others[0].stiffness, fine.stiffness) / (ratio**ORDER - 1.0)
     program = f"fe-drivetrain {version('fe-drivetrain')}"
-    origin = Origin(component.title, component_hash(component), level, mesh, program)
+    origin = Origin(component.title, component_hash(component), level_title, mesh, program)
     kind = "gearbox_housing" if isinstance(component, HousingComponent) else "planet_carrier"
     return Superelement(
         kind,

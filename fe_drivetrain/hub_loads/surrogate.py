@@ -8,8 +8,8 @@ turned into loads by `aero_rotor`, whose docstrings state what is left out.
 Repeatability: a history depends on its condition, the rotor, the duration and the rate alone, not
 on what else is computed, in which order, or from where (computed again or kept on disk).
 The random numbers come from a NumPy ``SeedSequence`` of all parts of the condition, so equal seed
-numbers under different conditions share nothing, and no two of the histories share a wind field.  On another
-machine the linear algebra may round differently, in single precision in the wind.
+numbers under different conditions share nothing, and no two of the histories share a wind field.
+On another machine the linear algebra may round differently, in single precision in the wind.
 """
 
 from __future__ import annotations
