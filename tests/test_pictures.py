@@ -159,7 +159,8 @@ def test_a_curved_surface_has_the_area_of_the_mesh(bonded_model: Model) -> None:
         surface = curved_surface(mesh.faces[face], mesh.points)
         # flat triangles inscribed in curved ones lose a little area
         assert surface.area == pytest.approx(area(mesh, face), rel=5e-3)
-        assert surface.area <= area(mesh, face) * (1 + 1e-9)
+        # and VTK keeps the points that it adds in single precision, to 6e-8 of their coordinates
+        assert surface.area <= area(mesh, face) * (1 + 2e-7)
 
 
 def test_a_curved_surface_is_closed_and_carries_vectors_exactly(bonded_model: Model) -> None:

@@ -120,7 +120,8 @@ class Sheet:
         """Straight lines between pixels (2 n, 2), two by two."""
         import pyvista
 
-        lines: Any = pyvista.line_segments_from_points(self.view.in_front(pixels))
+        ends: Any = self.view.in_front(pixels)
+        lines = pyvista.line_segments_from_points(ends)
         self.plotter.add_mesh(lines, color=colour, line_width=width, lighting=False)
 
     def area(self, corners: npt.ArrayLike, colour: str) -> None:
