@@ -84,7 +84,8 @@ class Sheet:
         bar.SetTextPositionToPrecedeScalarBar()
         bar.SetTextPad(6)
         bar.SetTitle("")
-        self.text((SIZE[0] / 2, 138), title, size=18)
+        low, high = limits
+        self.text((SIZE[0] / 2, 138), f"{title}, {low:.3g} to {high:.3g}", size=18)
 
     def text(
         self,
