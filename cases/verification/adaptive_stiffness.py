@@ -83,7 +83,9 @@ def run(run: Run, page: Page) -> None:
     last = int(np.flatnonzero(adaptive[0] <= uniform[0, -1]).max())
     unknowns, error = int(adaptive[0, last]), adaptive[1, last]
     same = float(np.exp(np.interp(np.log(unknowns), *np.log(uniform))))
-    slope = {kind: np.polyfit(*np.log(curve), 1)[0] for kind, curve in curves.items()}
+    slope = {
+        kind: np.polyfit(np.log(curve[0]), np.log(curve[1]), 1)[0] for kind, curve in curves.items()
+    }
 
     check_balance(page, imbalances)
     page.at_most(

@@ -287,10 +287,16 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
         page.table(
             f"{one.label}: load on the main bearing for unit loads, here and by CalculiX",
             [
-                [load, *(float(r[c, k]) for c in (1, 2, 4) for r in one.reactions)]
+                {
+                    "load": load,
+                    **{
+                        f"{component} {who}": float(reaction[row, k])
+                        for component, row in (("Fy", 1), ("Fz", 2), ("My", 4))
+                        for who, reaction in zip(("here", "ccx"), one.reactions, strict=True)
+                    },
+                }
                 for k, load in enumerate(one.loads)
             ],
-            ["load", *(f"{c} {who}" for c in ("Fy", "Fz", "My") for who in ("here", "ccx"))],
         )
     page.section("How it was compared")
     page.text(

@@ -12,7 +12,7 @@ from fe_drivetrain.mesh import FACES, Block, brick
 from fe_drivetrain.operator import traction_loads
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Run, column, grouped
+from fe_drivetrain.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.validation.plane_rings import plane_strain
 from fe_drivetrain.validation.ring_solids import node_at
 
@@ -112,7 +112,8 @@ def cantilever(nodes: int, n: int) -> float:
 def run(run: Run, page: Page) -> None:
     """Energy of three fields with every element."""
     fields = {"shear": sheared, "bending": bent}
-    displaced, rows = [], []
+    displaced: list[Record] = []
+    rows: list[Record] = []
     for nodes, name in NAMES.items():
         with run.step("shear and bending"):
             over = {
@@ -125,8 +126,8 @@ def run(run: Run, page: Page) -> None:
         with run.step(f"cantilever, {name}"):
             for n in DIVISIONS[nodes]:
                 energy = cantilever(nodes, n)
-                missed = max(1.0 - energy / EXACT["cantilever"], 1e-12)
-                rows.append({"element": name, THROUGH: n, ENERGY: energy, MISSED: missed})
+                share = max(1.0 - energy / EXACT["cantilever"], 1e-12)
+                rows.append({"element": name, THROUGH: n, ENERGY: energy, MISSED: share})
 
     for (nodes, name), row in zip(NAMES.items(), displaced, strict=True):
         for field, source in SOURCES.items():

@@ -3,7 +3,7 @@
 from fe_drivetrain.cases import case
 from fe_drivetrain.compare import DOUBTFUL, richardson
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation import fillet_factors, solid_fillet
 
 #: D/d, r/d.
@@ -35,7 +35,7 @@ def run(run: Run, page: Page) -> None:
         for n in meshes
     ]
     page.section("Result")
-    rows = []
+    rows: list[Record] = []
     for load, f in flat.items():
         values = [solid.factor(load, DEGREE) for solid in solids]
         limit = richardson([1.0 / n for n in meshes], values, ORDER)
@@ -76,7 +76,7 @@ def run(run: Run, page: Page) -> None:
         page.chart(
             f"Stress along the fillet in {load}",
             [
-                trace(name, *shown, points=True, marker={"size": 4}),
+                trace(name, shown[0], shown[1], points=True, marker={"size": 4}),
                 trace("meridian", angle[::4], factor[::4]),
             ],
             "angle on the arc, from the thinner shaft [deg]",

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.report import Chart, Table, Verdict, chart, judge, trace
+from fe_drivetrain.report import Cell, Chart, Table, Verdict, chart, judge, trace
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.manufactured import Series, three_waves
 
@@ -125,7 +125,7 @@ def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Char
 
 def convergence_table(series: Sequence[Series], size: str) -> Table:
     """Errors and observed orders mesh by mesh."""
-    rows = []
+    rows: list[list[Cell]] = []
     for one in series:
         for name, values in one.errors.items():
             slopes = [None, *(float(s) for s in one.slopes(name))]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.interfaces import freedoms
 from fe_drivetrain.mesh import element_kind
 from fe_drivetrain.operator import COMPONENTS, tensor, traction_loads
@@ -47,7 +47,7 @@ def errors(run: Run, patch: Patch) -> tuple[float, ...]:
     points, cells, n = block.points, block.cells, 3 * len(block.points)
     exact = np.einsum("kij,nj->nik", STRAINS, points).reshape(n, 6)
 
-    def solve(F: Floats, columns: Floats) -> tuple[Floats, Floats]:
+    def solve(F: Floats, columns: Ints) -> tuple[Floats, Floats]:
         given = columns, exact[columns]
         found = solve_solid(points, cells, LAME, [], F, prescribed=given, method="superlu")
         return found.u, found.reactions["prescribed"]

@@ -224,7 +224,7 @@ def _spheres(divisions: int) -> tuple[Bodies, Ints, Ints]:
             across = np.tan(np.radians(70.0) * (x[:, :2] - 0.5))
             direction = np.column_stack([across, np.ones(len(x))])
             direction /= np.linalg.norm(direction, axis=1)[:, None]
-            return (bottom + 0.4 * x[:, 2:]) * direction
+            return np.asarray((bottom + 0.4 * x[:, 2:]) * direction)
 
         return brick((divisions, divisions, max(divisions // 2, 1)), 10, shape)
 
