@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from fe_drivetrain.mesh.mesh import Mesh, area, boundary
+from fe_drivetrain.mesh.measures import area
+from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.report import pictures
 from fe_drivetrain.report.pictures import SIZE, NoPictureError
 from fe_drivetrain.response.model import Model

@@ -25,7 +25,8 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.mesh.mesh import EIGHTHS, Mesh, boundary
+from fe_drivetrain.mesh.measures import EIGHTHS
+from fe_drivetrain.mesh.mesh import Mesh, boundary
 
 if TYPE_CHECKING:
     from fe_drivetrain.response.model import Model
