@@ -66,6 +66,28 @@ def safe_range(
     return low, high
 
 
+def last_within(x: ArrayLike, error: ArrayLike, criterion: float) -> float | None:
+    """The last point of a sweep up to which all errors stay within a criterion.
+
+    Parameters
+    ----------
+    x : (n,) array
+        In the order of the sweep.
+    error : (n,) array
+        With or without signs; not a number where there is no answer, which is not within.
+    criterion : float
+        Largest size of an error that is accepted.
+
+    Returns
+    -------
+    last : float or None
+        None where not even the first error is within.
+    """
+    within = np.abs(np.asarray(error, dtype=float)) <= criterion
+    count = len(within) if within.all() else int(np.argmin(within))
+    return float(np.asarray(x, dtype=float)[count - 1]) if count else None
+
+
 def slope(x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)) -> float:
     """The exponent of `fitted_exponent` alone."""
     return fitted_exponent(x, y, within)[0]
