@@ -25,7 +25,7 @@ from fe_drivetrain.commands import app
 from fe_drivetrain.common import files
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
 from fe_drivetrain.common.files import HiddenFolder, atomic_path
-from fe_drivetrain.common.processes import CORES_VARIABLE as CORES
+from fe_drivetrain.common.threads import CORES_VARIABLE as CORES
 from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.mesh import cached
 from fe_drivetrain.report.results import Environment, Results, judge, read_results
@@ -464,14 +464,13 @@ def test_a_mesh_leaves_the_terminate_signal_to_python() -> None:
 # --- a real scene, killed from outside ------------------------------------------------------------
 
 SCRIPT = """
-from fe_drivetrain.case import Case
-from fe_drivetrain.cli import main_of_case
+from fe_drivetrain.commands import main_of_case
+from fe_drivetrain.suite import Case
 
 def run(run):
     from conftest import coarse_scene
     from fe_drivetrain.mesh import write
-    from fe_drivetrain.model import build_model, mesh_scene
-    from fe_drivetrain.response import unit_load_response
+    from fe_drivetrain.response import build_model, mesh_scene, unit_load_response
     from test_faults import results
     with run.step("mesh"):
         mesh = mesh_scene(coarse_scene("bonded"))

@@ -14,11 +14,9 @@ def run(run: Run) -> Any:
     """Let each fault happen to a small case, in processes of their own, and see what is left."""
     import json
     import os
-    import subprocess
-    import sys
     import tempfile
 
-    from fe_drivetrain.common import CORES_VARIABLE, MissingToolError
+    from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     if not hasattr(os, "fork"):
@@ -31,15 +29,10 @@ def run(run: Run) -> Any:
         run.step("kills and other faults"),
         tempfile.TemporaryDirectory() as folder,
     ):
-        program = "fe_drivetrain.cases.stability.fault_moments"
-        done = subprocess.run(
-            [sys.executable, "-P", "-m", program, folder, str(moments)],
-            env={**os.environ, **dict.fromkeys(threads, "1"), CORES_VARIABLE: "1"},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
+        done = run_python(
+            *("-m", "fe_drivetrain.cases.stability.fault_moments", folder, str(moments)),
+            environment={**dict.fromkeys(threads, "1"), CORES_VARIABLE: "1"},
             timeout=600,
-            check=False,
         )
     if done.returncode != 0:
         raise RuntimeError(f"the experiment ended with status {done.returncode}: {done.stderr}")

@@ -7,14 +7,14 @@ that the environment gives.
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fe_drivetrain.common import run_python
 
 Arrays = Mapping[str, NDArray[np.float64]]
 
@@ -109,10 +109,10 @@ def elsewhere(
     file: Path, slenderness: Iterable[float], threads: int
 ) -> dict[str, NDArray[np.float64]]:
     """Both of the above in a process of its own, with so many threads and no cache."""
-    environment = {**os.environ, **dict.fromkeys(_THREADS, str(threads))}
-    environment["FE_DRIVETRAIN_CACHE"] = "off"
-    command = [sys.executable, "-m", __spec__.name, str(file), json.dumps(list(slenderness))]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = run_python(
+        *("-m", __spec__.name, str(file), json.dumps(list(slenderness))),
+        environment={**dict.fromkeys(_THREADS, str(threads)), "FE_DRIVETRAIN_CACHE": "off"},
+    )
     if done.returncode:
         raise RuntimeError(f"a process that should repeat a run failed: {done.stderr[-2000:]}")
     with np.load(file) as archive:

@@ -22,14 +22,14 @@ import typer
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import sentence_about
-from fe_drivetrain.common.processes import hold_threads
+from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
     from types import FrameType
 
     from rich.progress import TaskID
 
-    from fe_drivetrain.common.processes import Report
+    from fe_drivetrain.common.progress import Progress
     from fe_drivetrain.report.results import Problem, Results, Verdict
     from fe_drivetrain.scene.component import Component
     from fe_drivetrain.scene.scene import Scene
@@ -881,7 +881,7 @@ def _line(verdict: Verdict) -> str:
 
 
 @contextmanager
-def _progress() -> Iterator[Report]:
+def _progress() -> Iterator[Progress]:
     """Show steps as they begin: live lines on a terminal, plain lines elsewhere."""
     shown = _live_steps() if sys.stderr.isatty() else _plain_steps()
     with shown as report:
@@ -894,19 +894,19 @@ def _without_count(step: str) -> str:
 
 
 @contextmanager
-def _live_steps() -> Iterator[Report]:
+def _live_steps() -> Iterator[Progress]:
     """A live line for each lane; the line of a step that has ended stays above them."""
+    from rich import progress as rich_progress
     from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     console = Console(stderr=True, highlight=False)
     columns = (
-        SpinnerColumn(),
-        TextColumn("{task.description}", markup=False),
-        TimeElapsedColumn(),
+        rich_progress.SpinnerColumn(),
+        rich_progress.TextColumn("{task.description}", markup=False),
+        rich_progress.TimeElapsedColumn(),
     )
     lock = threading.Lock()  # steps come from the threads of other processes, too
-    with Progress(*columns, console=console, transient=True) as display:
+    with rich_progress.Progress(*columns, console=console, transient=True) as display:
         tasks: dict[int, TaskID] = {}
 
         def finish(lane: int) -> None:
@@ -934,7 +934,7 @@ def _live_steps() -> Iterator[Report]:
 
 
 @contextmanager
-def _plain_steps() -> Iterator[Report]:
+def _plain_steps() -> Iterator[Progress]:
     """A line for each step: begun at once for this process, at its end for others beside it."""
     lock = threading.Lock()  # steps come from the threads of other processes, too
     current: dict[int, tuple[str, float]] = {}

@@ -12,7 +12,6 @@ from __future__ import annotations
 import functools
 import math
 import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,6 +24,7 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.interpreter import run_python
 from fe_drivetrain.mesh.mesh import EIGHTHS, Mesh, boundary
 
 if TYPE_CHECKING:
@@ -88,9 +88,7 @@ def _refusal() -> str:
         "window.Render()\n"
     )
     try:
-        tried = subprocess.run(
-            [sys.executable, "-c", trial], capture_output=True, text=True, timeout=60, check=False
-        )
+        tried = run_python("-c", trial, timeout=60)
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"a trial of off-screen rendering did not end well ({error})"
     if tried.returncode == 0:
