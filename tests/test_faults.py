@@ -461,6 +461,19 @@ def test_a_mesh_leaves_the_terminate_signal_to_python() -> None:
     assert len(got) == 2
 
 
+def test_after_a_mesh_a_pipe_that_nobody_reads_is_an_error_and_no_sudden_end() -> None:
+    def write() -> int:
+        with gmsh_session():
+            pass
+        read, write_end = os.pipe()
+        os.close(read)
+        with pytest.raises(BrokenPipeError):
+            os.write(write_end, b"1")
+        return 0
+
+    assert in_child(write) == 0
+
+
 # --- a real scene, killed from outside ------------------------------------------------------------
 
 SCRIPT = """

@@ -27,6 +27,7 @@ from fe_drivetrain.common.threads import CORES_VARIABLE
 _SPAWN = multiprocessing.get_context("spawn")
 _STARTING = threading.Lock()
 _LAST_LINES = 5
+_HELD_BACK = {number for number in signal.Signals if number.name in ("SIGINT", "SIGPIPE")}
 
 
 class Worker:
@@ -99,7 +100,8 @@ def _inherited() -> Iterator[None]:
     """Prepare what a process that starts in here inherits, before it can prepare anything itself.
 
     A module in the user's current folder hides none of ours, the user's script is not run again,
-    and Ctrl-C does not reach it.
+    and Ctrl-C does not reach it. Threads of the executor inherit, too: writing to a process that
+    has died must not end this one, even where a library has changed what SIGPIPE does.
     """
     with _STARTING:
         main, before = sys.modules["__main__"], os.environ.get("PYTHONSAFEPATH")
@@ -108,7 +110,7 @@ def _inherited() -> Iterator[None]:
         os.environ["PYTHONSAFEPATH"] = "1"
         try:
             ensure_running()  # multiprocessing's own process, at whose start SIGINT is let in again
-            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            signal.pthread_sigmask(signal.SIG_BLOCK, _HELD_BACK)
             yield
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
@@ -132,7 +134,7 @@ def _begin(environment: dict[str, str], output: str, steps: Connection) -> None:
     os.environ.update(environment)
     os.setsid()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _HELD_BACK)
     file = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(file, 1)
