@@ -2,13 +2,11 @@
 
 import json
 import os
-import subprocess
-import sys
 import tempfile
 from typing import Any
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import CORES_VARIABLE, MissingToolError
+from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python
 from fe_drivetrain.report import chart, trace
 from fe_drivetrain.suite import Page, Record, Run, column
 
@@ -38,15 +36,10 @@ def experiment(moments: int) -> Any:
             "this system cannot fork processes, to which the faults happen: run it on Linux"
         )
     with tempfile.TemporaryDirectory() as folder:
-        program = "fe_drivetrain.cases.stability.fault_moments"
-        done = subprocess.run(
-            [sys.executable, "-P", "-m", program, folder, str(moments)],
-            env={**os.environ, **dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
+        done = run_python(
+            *("-m", "fe_drivetrain.cases.stability.fault_moments", folder, str(moments)),
+            environment={**dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
             timeout=600,
-            check=False,
         )
     if done.returncode != 0:
         raise RuntimeError(f"the experiment ended with status {done.returncode}: {done.stderr}")
