@@ -1,5 +1,6 @@
 from . import bar_sections as bar_sections
 from . import bracket_plane as bracket_plane
+from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
 from . import distorted_blocks as distorted_blocks
 from . import exact_blocks as exact_blocks
@@ -25,6 +26,7 @@ from . import seat_couplings as seat_couplings
 from . import shaft_ends as shaft_ends
 from . import shaft_theory as shaft_theory
 from . import slivers as slivers
+from . import soft_springs as soft_springs
 from . import solid_fillet as solid_fillet
 from . import solid_shafts as solid_shafts
 from . import spherical_shells as spherical_shells
