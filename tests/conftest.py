@@ -17,7 +17,8 @@ from fe_drivetrain.common import cache, threads
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.scene import Scene, change_scene, library_scene
+from fe_drivetrain.scene.reading import change_scene, library_scene
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import OldCase as Case
 

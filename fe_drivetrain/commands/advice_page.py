@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.fidelity.ablation import Effect, effects
-from fe_drivetrain.fidelity.adviser import Advice, Quantity, Rung, advise
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, Text, judge
 from fe_drivetrain.scene.scene import Scene
@@ -31,7 +31,7 @@ def ladder(advice: Advice) -> Section:
     Section
     """
     rows: list[list[Cell]] = []
-    for number, rung in enumerate(advice.rungs):
+    for number, rung in enumerate(advice.results):
         model = rung.model
         rows.append(
             [
@@ -131,7 +131,7 @@ _EACH_LOAD = (
 
 
 def _against_time(advice: Advice) -> Chart:
-    known = [rung for rung in advice.rungs if np.isfinite(rung.error)]
+    known = [rung for rung in advice.results if np.isfinite(rung.error)]
     traces: list[Any] = [
         trace(
             f"level {rung.model.level}, {rung.model.title}",
@@ -157,11 +157,11 @@ def _against_time(advice: Advice) -> Chart:
     )
 
 
-def _chosen(advice: Advice) -> Rung | None:
-    return None if advice.chosen is None else advice.rungs[advice.chosen]
+def _chosen(advice: Advice) -> LevelResult | None:
+    return None if advice.chosen is None else advice.results[advice.chosen]
 
 
-def _value(rung: Rung) -> Cell:
+def _value(rung: LevelResult) -> Cell:
     value = float(rung.values[0]) if len(rung.values) == 1 else float(np.linalg.norm(rung.values))
     return value if np.isfinite(value) else None
 
@@ -202,15 +202,15 @@ def advised(
     with run.step("model levels"):
         advice = advise(scene, quantity, tolerance, to_the_top, run.report)
     sections = [ladder(advice)]
-    level = 2 if advice.chosen is not None and advice.rungs[advice.chosen].model.level == 2 else 1
+    level = 2 if advice.chosen is not None and advice.results[advice.chosen].model.level == 2 else 1
     if advice.springs:
         with run.step("details"):
             found = effects(scene, quantity, level, advice.springs, run.report)
         sections.append(tornado(advice, f"{level} with housings as springs", found))
     summary = [advice.sentence()]
-    if advice.chosen is not None and advice.rungs[advice.chosen].model.neglects:
-        summary.append(f"It neglects {', '.join(advice.rungs[advice.chosen].model.neglects)}.")
-    known = advice.top if advice.chosen is None else advice.rungs[advice.chosen]
+    if advice.chosen is not None and advice.results[advice.chosen].model.neglects:
+        summary.append(f"It neglects {', '.join(advice.results[advice.chosen].model.neglects)}.")
+    known = advice.top if advice.chosen is None else advice.results[advice.chosen]
     uncertain = (
         known.estimate
         if known.estimate == 0.0 or known is advice.top
@@ -240,7 +240,7 @@ def advised(
                     "estimate": None if np.isnan(rung.estimate) else rung.estimate,
                     "error": None if np.isnan(rung.error) else rung.error,
                 }
-                for rung in advice.rungs
+                for rung in advice.results
             ]
         },
     )
