@@ -461,7 +461,7 @@ def work(run, name):
 """
 SCRIPT = """
 from fe_drivetrain.commands import main_of_case
-from fe_drivetrain.suite import Case
+from fe_drivetrain.suite import OldCase as Case
 import jobs_of_script
 
 def run(run):
