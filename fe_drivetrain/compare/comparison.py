@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -127,9 +128,10 @@ def compare(
     settings = (names, units, negligible, exclude_below)
     each = [compare_streamed(partial(_whole, a, b), *settings) for a, b in zip(r, m, strict=True)]
     arrays = [f.name for f in fields(Comparison) if f.name not in ("names", "units", "samples")]
-    return replace(
-        each[0], **{name: np.concatenate([getattr(c, name) for c in each]) for name in arrays}
-    )
+    joined: dict[str, Any] = {
+        name: np.concatenate([getattr(c, name) for c in each]) for name in arrays
+    }
+    return replace(each[0], **joined)
 
 
 def compare_streamed(
