@@ -83,7 +83,9 @@ def run(run: Run, page: Page) -> None:
             f"{name}: width of the bounds, relative",
             width,
             1e-6 if run.quick else CLAIM,
-            why="coarse bounds of a quick run" if run.quick else "what is to be shown",
+            why="coarse bounds of a quick run"
+            if run.quick
+            else "a comparison to 1e-8 needs bounds that are no farther apart",
             source="exact stiffness lies between them",
             measure="identity",
         )
