@@ -34,7 +34,7 @@ from fe_drivetrain.fidelity import (
     shaft_level,
 )
 from fe_drivetrain.fidelity import Quantity as SceneQuantity
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import Cell, trace
 from fe_drivetrain.scene import (
     HousingComponent,
     change_component,
@@ -176,7 +176,7 @@ def _show_reactions(page: Page, ladder: Ladder, component: HousingComponent) -> 
     loads[1, 2] = -component.weight
     loads[1, -1] = -9.81
     columns = ("level", "torque: Fz [N]", "torque: Mx [N m]", "weight: Fz [N]", "weight: Fy [N]")
-    rows: list[list[str | float | None]] = [
+    rows: list[list[Cell]] = [
         ["statics: torque over span", TORQUE / component.gearbox_housing.arm_span, None, None, None]
     ]
     for model in ladder.models:
@@ -232,14 +232,11 @@ def _put_in_a_scene(page: Page, springs: GearboxSprings, component: HousingCompo
     )
     along = [f"along {axis} [N/m]" for axis in "xyz"]
     about = [f"about {axis} [N m/rad]" for axis in "xyz"]
+    both = zip(along + about, scene.gearbox.stiffness, springs.stiffness, strict=True)
+    compared: list[list[Cell]] = [[name, str(given), value] for name, given, value in both]
     page.table(
         "gearbox.stiffness",
-        [
-            [name, str(given), value]
-            for name, given, value in zip(
-                along + about, scene.gearbox.stiffness, springs.stiffness, strict=True
-            )
-        ],
+        compared,
         ["", f"in {SCENE}", "of the housing on its bushings, solid"],
     )
     page.table(f"Stiffness at the hub of {SCENE}, level 1, rigid housings", rows)
@@ -328,7 +325,8 @@ def _check_solid(page: Page, component: HousingComponent, ladder: Ladder) -> Non
 def _on_all_bushings(component: HousingComponent, model: LevelModel) -> Floats:
     """Forces and moments about the origin that all bushings take, under each unit load."""
     places = {a.name: a.position for a in component.attachments}
-    return np.sum(
+    total: Floats = np.sum(
         [wrench_transport(places[name]) @ R for name, R in model.reaction_matrices.items()],
         axis=0,
     )
+    return total

@@ -10,7 +10,7 @@ from fe_drivetrain.compare import grid_convergence, richardson
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.mesh import shaft_hexahedra
 from fe_drivetrain.operator import rigid_motions
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import Cell, trace
 from fe_drivetrain.revolution import seat_stiffness
 from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.suite import Page, Run
@@ -90,7 +90,8 @@ def rigid_motion_error(K: Floats, where: list[tuple[float, float]]) -> float:
 def run(run: Run, page: Page) -> None:
     """Two shafts, each with a rigid seat between its rigid ends."""
     cuts = QUICK_CUTS if run.quick else CUTS
-    rows, traces, milliseconds, errors = [], [], [], []
+    rows: list[list[Cell]] = []
+    traces, milliseconds, errors = [], [], []
     for name, seat in SEATS.items():
         shaft = SHAFTS[name]
         where = [(shaft.front, shaft.front), seat, (shaft.rear, shaft.rear)]

@@ -7,7 +7,7 @@ from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import trace
 from fe_drivetrain.revolution import meridian, stiffness_between_ends
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Run, column, grouped
+from fe_drivetrain.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
 LARGE, SMALL, LENGTH = 0.6, 0.4, 0.6
@@ -32,7 +32,8 @@ STIFFNESS, ERROR = "stiffness [N m/rad]", "from the bounds' middle, relative"
 def run(run: Run, page: Page) -> None:
     """The bounds closed in on, and the meridian's 12 x 12 between them."""
     steel = MATERIALS["steel"]
-    rows, widths = [], []
+    rows: list[Record] = []
+    widths: list[Record] = []
     for name, bore in BORES.items():
         sections = tuple(
             Section(length=LENGTH, outer_diameter=outer, inner_diameter=bore)

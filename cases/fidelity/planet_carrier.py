@@ -170,7 +170,8 @@ def _compare_walls(
 
 def _row(found: PinMotions, bands: Sequence[GridConvergence] = ()) -> list[Cell]:
     tilt = RATED * found.tilt
-    known = [100 * band.relative_uncertainty for band in bands] or [None, None]
+    known: list[Cell] = [100 * band.relative_uncertainty for band in bands]
+    known = known or [None, None]
     return [found.wind_up, 1e6 * tilt, 1e6 * tilt * FACE_WIDTH, *known]
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fe_drivetrain.beam import Beam, BeamSection, shaft_stiffness
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.mesh import SAME_LENGTH
+from fe_drivetrain.report import Cell
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import Material, Scene
 from fe_drivetrain.suite import Page
@@ -77,13 +78,14 @@ def beside_published(page: Page, scene: Scene, published: Published) -> None:
         + "."
     )
     page.section("Beside the published stiffness")
+    rows: list[list[Cell]] = [
+        [published.name, published.value, published.half_digit, 1.0],
+        ["G J / L of the sections in series", summed, None, summed / published.value],
+        ["finite elements, ends rigid", found, band, found / published.value],
+    ]
     page.table(
         f"Torsional stiffness from the {where}",
-        [
-            [published.name, published.value, published.half_digit, 1.0],
-            ["G J / L of the sections in series", summed, None, summed / published.value],
-            ["finite elements, ends rigid", found, band, found / published.value],
-        ],
+        rows,
         ["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
     )
 

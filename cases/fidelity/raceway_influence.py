@@ -10,7 +10,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import band_of
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.operator import traction_loads
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import Cell, trace
 from fe_drivetrain.revolution import (
     InfluenceFunctions,
     Meridian,
@@ -471,11 +471,12 @@ def _show_influence(page: Page, free: FreeRing, count: int, levels: tuple[int, .
         "left out [-]",
         "xy",
     )
+    rows: list[list[Cell]] = [
+        [place, *(values[k] for values in free.solids), free.flat[k]]
+        for k, place in enumerate(("under a push", "across"))
+    ]
     page.table(
         "Free ring under two opposite pushes of 1 N [m]",
-        [
-            [place, *(values[k] for values in free.solids), free.flat[k]]
-            for k, place in enumerate(("under a push", "across"))
-        ],
+        rows,
         ["", *(f"solid, cut {level}" for level in levels), "meridian"],
     )
