@@ -11,7 +11,9 @@ from conftest import coarse_scene
 from scipy.linalg import eigh
 
 from fe_drivetrain import export
-from fe_drivetrain.cases.export.sample_elastodyn import TEXT
+from fe_drivetrain.cases.export.sample_elastodyn import (
+    TEXT,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.formats import extptfm, subdyn
 from fe_drivetrain.export.formats.elastodyn import (

@@ -19,24 +19,19 @@ from fe_drivetrain.geometry import (
     build,
     gmsh_session,
 )
-from fe_drivetrain.mesh.mesh import (
+from fe_drivetrain.mesh.files import write
+from fe_drivetrain.mesh.generation import GMSH_TO_VTK, generate, relax_flat_cells
+from fe_drivetrain.mesh.measures import (
     CUBIC,
-    EDGES,
-    GMSH_TO_VTK,
-    Mesh,
     area,
     area_vectors,
-    boundary,
-    generate,
     inverted_cells,
     jacobians,
-    part_of,
     quality,
-    relax_flat_cells,
     scaled_jacobians,
     volume,
-    write,
 )
+from fe_drivetrain.mesh.mesh import EDGES, Mesh, boundary, part_of
 
 COARSE = MeshSizes(shaft=0.2, bearing=0.1, housing=0.12)
 TURN = COARSE.elements_per_turn
@@ -572,7 +567,7 @@ def test_relaxing_leaves_seats_and_joints_exactly_where_they_are():
 
 
 def test_elements_that_stay_inverted_are_refused_with_their_place(monkeypatch):
-    monkeypatch.setattr("fe_drivetrain.mesh.mesh.inverted_cells", lambda mesh: np.array([0]))
+    monkeypatch.setattr("fe_drivetrain.mesh.generation.inverted_cells", lambda mesh: np.array([0]))
     with pytest.raises(InputError, match=r"part 'shaft': 1 of its .* near \(.*\) m.*reduce"):
         generate(plain_shaft(), sizes=COARSE)
 

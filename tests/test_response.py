@@ -8,7 +8,7 @@ from fe_drivetrain.beam.closed_forms import pinned_model
 from fe_drivetrain.beam.of_scene import main_bearing_beam
 from fe_drivetrain.response.model import LOADS, build_model
 from fe_drivetrain.response.unit_loads import GRAVITY, unit_load_response
-from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.scene.reading import change_scene
 
 FORMS = ("sliding", "averaged", "rigid")
 

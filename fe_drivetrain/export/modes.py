@@ -23,7 +23,7 @@ def natural_frequencies(
     """
     K, left = on_supports(points, stiffness, supports or {})
     M = np.asarray(mass)[np.ix_(left, left)]
-    # lengths and angles, points and modes alike: a unit diagonal keeps the digits of all
+    # lengths and angles, points and modes equally: a unit diagonal keeps the digits of all
     size = np.sqrt(M.diagonal())
     values = linalg.eigh(K / np.outer(size, size), M / np.outer(size, size), eigvals_only=True)
     return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))

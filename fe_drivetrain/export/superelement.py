@@ -148,7 +148,7 @@ class Superelement:
 
 
 def scaled(matrix: Floats) -> Floats:
-    """The matrix with a unit diagonal: lengths and angles count alike."""
+    """The matrix with a unit diagonal: lengths and angles count equally."""
     size = np.sqrt(np.where(matrix.diagonal() > 0, matrix.diagonal(), 1.0))
     return np.asarray(matrix / np.outer(size, size))
 

@@ -1,0 +1,398 @@
+"""Exact and independent answers for shafts: Saint-Venant fields, Michell's cone, beams on springs.
+
+Nothing here uses the finite elements or the frame of the library; a shaft lies along x, z is up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from fe_drivetrain.beam import cowper_shear_coefficient
+from fe_drivetrain.common import Floats
+from fe_drivetrain.scene import Material
+
+
+@dataclass(frozen=True)
+class Tube:
+    """A uniform circular shaft.
+
+    Attributes
+    ----------
+    outer, inner
+        Diameters [m]; inner 0 where solid.
+    length
+        [m].
+    material
+        Of the shaft.
+    """
+
+    outer: float
+    inner: float
+    length: float
+    material: Material
+
+    @property
+    def area(self) -> float:
+        """[m^2]."""
+        return float(np.pi / 4 * (self.outer**2 - self.inner**2))
+
+    @property
+    def inertia(self) -> float:
+        """Second moment of area about a diameter [m^4]."""
+        return float(np.pi / 64 * (self.outer**4 - self.inner**4))
+
+    @property
+    def polar(self) -> float:
+        """J [m^4]."""
+        return 2 * self.inertia
+
+    @property
+    def EI(self) -> float:
+        """Bending rigidity [N m^2]."""
+        return self.material.youngs_modulus * self.inertia
+
+    @property
+    def GJ(self) -> float:
+        """Torsional rigidity [N m^2]."""
+        return self.material.shear_modulus * self.polar
+
+    @property
+    def EA(self) -> float:
+        """Axial rigidity [N]."""
+        return self.material.youngs_modulus * self.area
+
+    @property
+    def kGA(self) -> float:
+        """Shear rigidity with Cowper's coefficient [N]."""
+        nu, m = self.material.poisson_ratio, self.inner / self.outer
+        return float(cowper_shear_coefficient(nu, m)) * self.material.shear_modulus * self.area
+
+
+def evenly_loaded_shear(tube: Tube) -> float:
+    """Shear rigidity [N] of a beam whose loads and supports act evenly over its sections.
+
+    Cowper's beam is that of Saint-Venant's tractions. Evenly spread shear has no resultant beside
+    theirs, but works on the anticlastic part of a bending field, and so (by reciprocity) turns a
+    section where the shear force changes: 1 / k'GA is 1 / kGA less `extra_curvature`. Of a solid
+    circle k' is 6 (1 + nu)^2 / (7 + 12 nu + 4 nu^2): Hutchinson 2001, J. Appl. Mech. 68, 87-92, as
+    quoted by Stephen 2001 (discussion, J. Appl. Mech. 68, 959-960), whose own earlier expression is
+    the same; derived again here.
+    """
+    return 1.0 / (1.0 / tube.kGA - extra_curvature(tube))
+
+
+def recovery_error(per_turn: int) -> float:
+    """Error of stress recovered at the skin of a shaft in bending or torsion, over the stress.
+
+    A straight line through the two Gauss points of an element of arc h misses a function of unit
+    second derivative by h^2 / 12 at its end; the same again for the radius.
+    """
+    return float((2 * np.pi / per_turn) ** 2 / 6)
+
+
+def anticlastic_error(per_turn: int) -> float:
+    """Error of a displacement that goes as sin 2t round the shaft, over its amplitude.
+
+    Interpolated by parabolas of arc h: 8 h^3 / (72 sqrt 3).
+    """
+    return float(8 * (2 * np.pi / per_turn) ** 3 / (72 * np.sqrt(3)))
+
+
+def polar_moment(outer: float, inner: float = 0.0) -> float:
+    """J = pi/32 (D^4 - d^4) [m^4] of diameters [m]."""
+    return float(np.pi / 32 * (outer**4 - inner**4))
+
+
+def solid_diameter(polar: float) -> float:
+    """Diameter [m] of the solid circle of polar moment J [m^4]."""
+    return float((32 * polar / np.pi) ** 0.25)
+
+
+def parabola_shortfall(per_turn: int) -> float:
+    """Mean shortfall of the radius, relative, of a circle of so many parabolic arcs.
+
+    The parabola through three points of an arc of half angle t lies at r^2 / R^2 = 1 -
+    (1 - cos t)^2 s^2 (1 - s^2), s from -1 to 1; the mean of s^2 (1 - s^2) is 2/15. Areas fall short
+    by twice, second moments of area by four times as much.
+    """
+    return float((1 - np.cos(np.pi / per_turn)) ** 2 / 15)
+
+
+def parabola_slope(per_turn: int) -> float:
+    """Largest angle [rad] between such a parabola and the circle: (1 - cos t)^2 / t."""
+    half = np.pi / per_turn
+    return float((1 - np.cos(half)) ** 2 / half)
+
+
+def pure_bending_field(points: Floats, curvature: float, poisson_ratio: float) -> Floats:
+    """Displacements (n, 3) [m] of a bar bent to a curvature [1/m] in the plane of x and z.
+
+    u_x = -k x z, u_y = nu k y z, u_z = k (x^2 + nu (z^2 - y^2)) / 2: Timoshenko and Goodier,
+    Theory of Elasticity, article 102 (3rd edition), in this frame. The stress is sigma_x = -E k z
+    and nothing else, so the field is exact for a prism of any section.
+    """
+    x, y, z = np.asarray(points).T
+    k, nu = curvature, poisson_ratio
+    return np.column_stack([-k * x * z, nu * k * y * z, 0.5 * k * (x**2 + nu * (z**2 - y**2))])
+
+
+def flexure_field(points: Floats, force: float, tube: Tube) -> Floats:
+    """Displacements (n, 3) [m] of Saint-Venant's flexure by a force along z at x = L.
+
+    Love 1927, A Treatise on the Mathematical Theory of Elasticity, articles 229-231, with the
+    flexure function of a circle or of two concentric circles (recalled, not re-read; the tests
+    check equilibrium, the free surfaces and the resultant of the field).
+    """
+    x, y, z = np.asarray(points).T
+    nu, L = tube.material.poisson_ratio, tube.length
+    c = force / tube.EI
+    chi = _flexure_function(y, z, tube)[0]
+    return np.column_stack(
+        [
+            -c * (z * (L * x - 0.5 * x**2) + chi + z * y**2),
+            c * (L - x) * nu * y * z,
+            c * (0.5 * (L - x) * nu * (z**2 - y**2) + 0.5 * L * x**2 - x**3 / 6),
+        ]
+    )
+
+
+def flexure_stress(points: Floats, force: float, tube: Tube) -> Floats:
+    """(n, 6) stresses xx, yy, zz, xy, yz, zx [Pa] of `flexure_field`."""
+    x, y, z = np.asarray(points).T
+    nu = tube.material.poisson_ratio
+    _, chi_y, chi_z = _flexure_function(y, z, tube)
+    scale = -force / (2 * (1 + nu) * tube.inertia)
+    zero = np.zeros_like(x)
+    return np.column_stack(
+        [
+            -force / tube.inertia * (tube.length - x) * z,
+            zero,
+            zero,
+            scale * (chi_y + (2 + nu) * y * z),
+            zero,
+            scale * (chi_z + 0.5 * nu * z**2 + (1 - 0.5 * nu) * y**2),
+        ]
+    )
+
+
+def _flexure_function(y: Floats, z: Floats, tube: Tube) -> tuple[Floats, Floats, Floats]:
+    """chi [m^3] and its derivatives along y and z."""
+    a, b = tube.outer / 2, tube.inner / 2
+    A = 0.75 + 0.5 * tube.material.poisson_ratio
+    chi = -A * (a**2 + b**2) * z + 0.25 * (z**3 - 3 * z * y**2)
+    along_y = -1.5 * y * z
+    along_z = -A * (a**2 + b**2) + 0.75 * (z**2 - y**2)
+    if b > 0:
+        r2 = y**2 + z**2
+        chi = chi - A * a**2 * b**2 * z / r2
+        along_y = along_y + A * a**2 * b**2 * 2 * y * z / r2**2
+        along_z = along_z - A * a**2 * b**2 * (y**2 - z**2) / r2**2
+    return chi, along_y, along_z
+
+
+def extra_curvature(tube: Tube) -> float:
+    """Curvature [1/m] that a load along z of 1 N per metre adds to M / EI, in its own direction.
+
+    Cross-sections that carry their own weight are also stressed sideways: with moments z and
+    (z^2 - y^2) / 2 of equilibrium in the section, ``integral z (sigma_y + sigma_z) dA`` is that of
+    ``(z^2 - y^2) / 2 d(tau_xz)/dx + y z d(tau_xy)/dx``, where tau is Saint-Venant's for a shear
+    force that falls by 1 N/m; and sigma_x / E lacks nu times as much. Exact for a uniform load.
+    """
+    a, b = tube.outer / 2, tube.inner / 2
+    t, w = np.polynomial.legendre.leggauss(12)
+    r = 0.5 * (a - b) * (t + 1) + b
+    angle = 2 * np.pi * np.arange(24) / 24
+    y, z = r[:, None] * np.sin(angle), r[:, None] * np.cos(angle)
+    points = np.column_stack([np.zeros(y.size), y.ravel(), z.ravel()])
+    s = flexure_stress(points, 1.0, tube).reshape(*y.shape, 6)
+    weight = (w * 0.5 * (a - b) * r)[:, None] * (2 * np.pi / 24)
+    moment = (weight * (0.5 * (z**2 - y**2) * s[..., 5] + y * z * s[..., 3])).sum()
+    return float(-tube.material.poisson_ratio * moment / tube.EI)
+
+
+def michell_torque(half_angle: float, shear_modulus: float) -> float:
+    """Torque [N m] of the field u_t = -r / R^3 on a cone: 2 pi G (2 - 3 cos a + cos^3 a).
+
+    u_t / r is constant on spheres about the apex, where R is the distance to it: Michell 1899;
+    Timoshenko and Goodier, article 119 (3rd edition; recalled, not re-read: it solves
+    div(r^3 grad(u_t / r)) = 0, and the torque is the integral of the stress over such a sphere).
+    """
+    c = np.cos(half_angle)
+    return float(2 * np.pi * shear_modulus * (2 - 3 * c + c**3))
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A support in the plane of x and z.
+
+    Attributes
+    ----------
+    x
+        Station [m].
+    force
+        Stiffness against u_z [N/m], inf is rigid.
+    moment
+        Stiffness against the slope [N m/rad].
+    """
+
+    x: float
+    force: float
+    moment: float = 0.0
+
+
+@dataclass(frozen=True)
+class Bent:
+    """Answer of `macaulay`.
+
+    Attributes
+    ----------
+    deflection, slope
+        At the stations asked for: u_z [m] and the rotation of the section, positive as u_z'
+        where there is no shear [rad].
+    forces, moments
+        That the supports put on the beam, along z and in the sense of the slope [N, N m].
+    """
+
+    deflection: Floats
+    slope: Floats
+    forces: Floats
+    moments: Floats
+
+
+def macaulay(
+    length: float,
+    EI: float,
+    kGA: float,
+    supports: Sequence[Spring],
+    loads: Sequence[tuple[float, float, float]],
+    at: ArrayLike,
+    load_per_length: float = 0.0,
+) -> Bent:
+    """A uniform Timoshenko beam from 0 to L on any springs, by Macaulay's brackets.
+
+    With F and m the forces along z and the moments in the sense of the slope at stations a,
+    ``phi = c1 + sum F <x-a>^2 / 2EI - m <x-a> / EI + q x^3 / 6EI`` and
+    ``w = c0 + c1 x + sum F (<x-a>^3 / 6EI - <x-a> / kGA) - m <x-a>^2 / 2EI + q (x^4 / 24EI -
+    x^2 / 2kGA)``: the reactions and c0, c1 follow from the springs and from equilibrium.
+
+    Parameters
+    ----------
+    length, EI, kGA
+        [m], [N m^2], [N]; kGA may be infinite.
+    supports
+        The springs.
+    loads
+        Station [m], force [N] and moment [N m].
+    at
+        Stations where the answer is wanted [m].
+    load_per_length
+        q along z [N/m].
+    """
+    x = np.atleast_1d(np.asarray(at, dtype=float))
+
+    def force_at(a: float, x: Floats) -> tuple[Floats, Floats]:
+        d = np.maximum(x - a, 0.0)
+        return d**3 / (6 * EI) - d / kGA, d**2 / (2 * EI)
+
+    def moment_at(a: float, x: Floats) -> tuple[Floats, Floats]:
+        d = np.maximum(x - a, 0.0)
+        return -(d**2) / (2 * EI), -d / EI
+
+    unknowns = [(s.x, force_at, s.force, 0) for s in supports if s.force > 0]
+    unknowns += [(s.x, moment_at, s.moment, 1) for s in supports if s.moment > 0]
+    n = len(unknowns)
+    matrix, right = np.zeros((n + 2, n + 2)), np.zeros(n + 2)
+
+    def given(x: Floats) -> tuple[Floats, Floats]:
+        w = load_per_length * (x**4 / (24 * EI) - x**2 / (2 * kGA))
+        phi = load_per_length * x**3 / (6 * EI)
+        for a, force, moment in loads:
+            (wf, pf), (wm, pm) = force_at(a, x), moment_at(a, x)
+            w, phi = w + force * wf + moment * wm, phi + force * pf + moment * pm
+        return w, phi
+
+    for row, (station, _, stiffness, kind) in enumerate(unknowns):
+        here = np.array([station])
+        for column, (a, effect, _, _) in enumerate(unknowns):
+            matrix[row, column] = effect(a, here)[kind][0]
+        matrix[row, row] += 0.0 if np.isinf(stiffness) else 1.0 / stiffness
+        matrix[row, n:] = (1.0, station) if kind == 0 else (0.0, 1.0)
+        right[row] = -given(here)[kind][0]
+    for column, (a, _, _, kind) in enumerate(unknowns):
+        matrix[n:, column] = (1.0, a) if kind == 0 else (0.0, 1.0)
+    right[n] = -load_per_length * length - sum(load[1] for load in loads)
+    right[n + 1] = -load_per_length * length**2 / 2
+    right[n + 1] -= sum(load[0] * load[1] + load[2] for load in loads)
+    # forces are many times what deflections are
+    rows = np.abs(matrix).max(axis=1)
+    columns = np.abs(matrix / rows[:, None]).max(axis=0)
+    found = np.linalg.solve(matrix / rows[:, None] / columns, right / rows) / columns
+    w, phi = given(x)
+    for value, (a, effect, _, _) in zip(found, unknowns, strict=False):
+        more = effect(a, x)
+        w, phi = w + value * more[0], phi + value * more[1]
+    w, phi = w + found[n] + found[n + 1] * x, phi + found[n + 1]
+    forces, moments = np.zeros(len(supports)), np.zeros(len(supports))
+    forces[[i for i, s in enumerate(supports) if s.force > 0]] = [
+        v for v, u in zip(found, unknowns, strict=False) if u[3] == 0
+    ]
+    moments[[i for i, s in enumerate(supports) if s.moment > 0]] = [
+        v for v, u in zip(found, unknowns, strict=False) if u[3] == 1
+    ]
+    return Bent(w, phi, forces, moments)
+
+
+def two_mass_frequencies(stiffness: float, rotor: float, generator: float) -> tuple[float, float]:
+    """Natural frequencies [Hz]: both masses free, and the generator held.
+
+    Parameters
+    ----------
+    stiffness
+        k [N m/rad] on the rotor's side.
+    rotor, generator
+        Moments of inertia on the rotor's side [kg m^2].
+    """
+    free = np.sqrt(stiffness * (1 / rotor + 1 / generator))
+    return float(free / (2 * np.pi)), float(np.sqrt(stiffness / rotor) / (2 * np.pi))
+
+
+def chain_frequencies(inertias: ArrayLike, springs: ArrayLike, ground: float = 0.0) -> Floats:
+    """Natural frequencies [Hz] of inertias in a row, ascending.
+
+    Parameters
+    ----------
+    inertias
+        (n,) [kg m^2].
+    springs
+        (n - 1,) between neighbours [N m/rad].
+    ground
+        Of the last inertia to the ground [N m/rad].
+    """
+    J, k = np.asarray(inertias, dtype=float), np.asarray(springs, dtype=float)
+    K = np.diag(np.concatenate([k, [ground]]) + np.concatenate([[0.0], k]))
+    K -= np.diag(k, 1) + np.diag(k, -1)
+    root = np.sqrt(J)
+    squares = np.linalg.eigvalsh(K / np.outer(root, root))
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi))
+
+
+def rod_frequency(stiffness: float, inertia: float, rotor: float, generator: float) -> float:
+    """Lowest free-free frequency [Hz] of two inertias on a shaft that has one of its own.
+
+    ``tan(b) (b^2 m M - 1) = b (m + M)`` with m, M the end inertias over the shaft's and b = 2 pi f
+    sqrt(I / k): a uniform rod in torsion (Rao, Mechanical Vibrations; derived again).
+    """
+    m, M = rotor / inertia, generator / inertia
+
+    def excess(b: float) -> float:
+        return float(np.sin(b) * (b**2 * m * M - 1) - b * np.cos(b) * (m + M))
+
+    # without the rod's own inertia b is this, with it a little less
+    b0 = float(np.sqrt(1 / m + 1 / M))
+    b = brentq(excess, 0.5 * b0, min(1.5 * b0, np.pi), xtol=1e-15, rtol=1e-14)
+    return float(b * np.sqrt(stiffness / inertia) / (2 * np.pi))
