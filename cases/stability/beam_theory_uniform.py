@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import beam_maps as maps
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.mesh import SAME_LENGTH
 from fe_drivetrain.revolution import (
     along_sides,
@@ -395,6 +395,6 @@ def flexure_tip(tube: Tube, order: int) -> float:
     return float(means[1] - means[0] - slopes[0] * tube.length)
 
 
-def is_at(end: float, x: Floats, r: Floats) -> np.ndarray:
+def is_at(end: float, x: Floats, r: Floats) -> Bools:
     """Whether places are at an end."""
     return np.asarray(abs(x - end) < 1e-9)

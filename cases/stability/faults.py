@@ -2,13 +2,11 @@
 
 import json
 import os
-import subprocess
-import sys
 import tempfile
 from typing import Any
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import CORES_VARIABLE, MissingToolError
+from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python
 from fe_drivetrain.report import chart, trace
 from fe_drivetrain.suite import Page, Record, Run, column
 
@@ -38,15 +36,10 @@ def experiment(moments: int) -> Any:
             "this system cannot fork processes, to which the faults happen: run it on Linux"
         )
     with tempfile.TemporaryDirectory() as folder:
-        program = "fe_drivetrain.cases.stability.fault_moments"
-        done = subprocess.run(
-            [sys.executable, "-P", "-m", program, folder, str(moments)],
-            env={**os.environ, **dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
+        done = run_python(
+            *("-m", "fe_drivetrain.cases.stability.fault_moments", folder, str(moments)),
+            environment={**dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
             timeout=600,
-            check=False,
         )
     if done.returncode != 0:
         raise RuntimeError(f"the experiment ended with status {done.returncode}: {done.stderr}")
@@ -61,20 +54,7 @@ def run(run: Run, page: Page) -> None:
     """Let each fault happen to a small case, in processes of their own, and see what is left."""
     with run.step("kills and other faults"):
         found = experiment(QUICK_MOMENTS if run.quick else MOMENTS)
-    seconds = found["seconds"]
-    killed, in_place = (
-        [
-            {
-                "moment [s]": kill["moment"],
-                "share of a run [-]": kill["moment"] / seconds,
-                "during the step": kill["step"],
-                "results on disk": kill["found"],
-                "hidden beside them, until the next run": kill["hidden"],
-            }
-            for kill in sorted(kills, key=lambda kill: kill["moment"])
-        ]
-        for kills in (found["killed"], found["killed_in_place"])
-    )
+    killed, in_place = kills_of(found, "killed"), kills_of(found, "killed_in_place")
     check_kills(page, killed, in_place, found["left"])
     for fault in found["faults"]:
         status, whose = EXPECTED[fault["fault"]]
@@ -96,7 +76,21 @@ def run(run: Run, page: Page) -> None:
     show(page, killed, in_place, found)
     page.data("killed", killed)
     page.data("killed in place", in_place)
-    page.data("duration [s]", seconds)
+    page.data("duration [s]", found["seconds"])
+
+
+def kills_of(found: Any, way: str) -> list[Record]:
+    """Kills in the order of their moments."""
+    return [
+        {
+            "moment [s]": kill["moment"],
+            "share of a run [-]": kill["moment"] / found["seconds"],
+            "during the step": kill["step"],
+            "results on disk": kill["found"],
+            "hidden beside them, until the next run": kill["hidden"],
+        }
+        for kill in sorted(found[way], key=lambda kill: kill["moment"])
+    ]
 
 
 def broken(kills: list[Record]) -> list[bool]:

@@ -7,15 +7,13 @@ that the environment gives.
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats, InputError, run_python
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.mesh import shaft_hexahedra
@@ -101,10 +99,10 @@ def methods() -> list[str]:
 
 def elsewhere(file: Path, slenderness: Iterable[float], threads: int) -> dict[str, Floats]:
     """`scene_arrays` and `tube_answers` in a process of its own, with so many threads, no cache."""
-    environment = {**os.environ, **dict.fromkeys(_THREADS, str(threads))}
-    environment["FE_DRIVETRAIN_CACHE"] = "off"
-    command = [sys.executable, "-m", __spec__.name, str(file), json.dumps(list(slenderness))]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = run_python(
+        *("-m", __spec__.name, str(file), json.dumps(list(slenderness))),
+        environment={**dict.fromkeys(_THREADS, str(threads)), "FE_DRIVETRAIN_CACHE": "off"},
+    )
     if done.returncode:
         raise RuntimeError(f"a process that should repeat a run failed: {done.stderr[-2000:]}")
     with np.load(file) as archive:

@@ -85,7 +85,7 @@ def run(run: Run, page: Page) -> None:
         exact = rigid_ended_shafts.exact(shaft, 0.1, 10)["torsion"]
         wide, thin = (shaft.sections[k].outer_diameter for k in (0, -1))
         factor = fillet_factors.peak("torsion", wide / thin, folded_meshes.RADIUS / thin, 8).factor
-    rows = []
+    rows: list[Record] = []
     for per_turn in QUICK_PER_TURN if run.quick else PER_TURN:
         run.report(f"{per_turn:g} elements to a turn of the fillet")
         with run.step("meshes"):

@@ -80,7 +80,7 @@ def cracked(depth: int, rows: int) -> Record:
 def doubled_nodes(run: Run, page: Page) -> None:
     """Nodes doubled from the top of a section downwards."""
     number = QUICK_ROWS if run.quick else ROWS
-    rows = []
+    rows: list[Record] = []
     with run.step("cracked bars"):
         for depth in QUICK_DEPTHS if run.quick else DEPTHS:
             run.report(f"crack through {depth} of {number} rows of elements")
@@ -229,7 +229,7 @@ def wrong_units(run: Run, page: Page) -> None:
 
 def every_kind(run: Run, page: Page) -> list[Record]:
     """Each kind of fault put into an assembly, and what the program reports."""
-    rows = []
+    rows: list[Record] = []
     with run.step("assembly with faults"):
         sound = faulty_meshes.sound()
         clean = find_faults(sound, faulty_meshes.NEEDED)

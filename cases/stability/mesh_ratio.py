@@ -64,7 +64,7 @@ def largest(rows: list[Record], what: str, *ties: str) -> float:
 )
 def run(run: Run, page: Page) -> None:
     """Each tie at each ratio, either side the slave."""
-    rows = []
+    rows: list[Record] = []
     with run.step("tied strips"):
         for ratio in QUICK_RATIOS if run.quick else RATIOS:
             for side in SIDES:

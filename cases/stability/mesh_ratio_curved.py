@@ -39,7 +39,7 @@ def reports(tie: Tie, words: str) -> bool:
 
 def settled_ties(run: Run, coarse: int, ratios: Sequence[int]) -> list[Record]:
     """Twisted rings of curved tetrahedra, either one the finer, their nodes settled."""
-    rows = []
+    rows: list[Record] = []
     for side in SIDES:
         for ratio in ratios:
             own, other = (coarse * ratio, coarse) if side == "finer" else (coarse, coarse * ratio)
@@ -63,7 +63,7 @@ def settled_ties(run: Run, coarse: int, ratios: Sequence[int]) -> list[Record]:
 
 def ties_as_meshed(run: Run, turns: Sequence[int]) -> list[Record]:
     """Twisted rings of ever more facets, the slave twice as fine; refused ones without a torque."""
-    rows = []
+    rows: list[Record] = []
     for nodes, name in NODES.items():
         for kind in ("standard", "node by node"):
             for turn in turns:

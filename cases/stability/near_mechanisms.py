@@ -44,7 +44,7 @@ def solve(loose: Sprung, held: Sprung, targets: list[float]) -> list[Record]:
         for motion in loose.weakest([AXIAL, 1.0, 1.0, 1.0, 0, 0])
     }
     arm = loose.model.scene.shaft.rear
-    rows = []
+    rows: list[Record] = []
     for ratio in targets:
         spin, radial = ratio / unit["x"], ratio / unit["y"]
         springs = [AXIAL, radial, radial, spin, 0, 0]
@@ -190,7 +190,7 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
     page.text(f"At {targets[at]:.0e} the program warns: {warned[0] if warned else ''}")
     shown_keys = [key for key in rows[0] if key not in ("warned", "remedy")]
     page.data(joint, [{key: row[key] for key in shown_keys[:3]} for row in rows])
-    return [{"joint": joint, "least safe": low} | row for row in rows]
+    return [{"joint": joint, "least safe": low, **row} for row in rows]
 
 
 @case(

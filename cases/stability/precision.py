@@ -60,7 +60,7 @@ def solve(L_over_D: float, turn: int, along: int) -> Record:
 def run(run: Run, page: Page) -> None:
     """Assemble and solve tubes in 32, 64 and 80 bits."""
     turn, along = (4, 10) if run.quick else (8, 10)
-    rows = []
+    rows: list[Record] = []
     for value in 10.0 ** np.arange(0.0, 3.34, 1.0 / (1.5 if run.quick else 3.0)):
         with run.step("tubes of 32, 64 and 80 bits"):
             run.report(f"L/D = {value:.3g}")

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.decades import last_within
@@ -34,7 +35,7 @@ MESH_ERROR = 0.01
 TILT = "MN m/rad"
 SAME_MESH = "the first harmonic on the same mesh of the meridian"
 
-Tilts = Mapping[str, seat.Tilted]
+Tilts = dict[str, seat.Tilted]
 """The band's motions by coupling."""
 
 
@@ -126,7 +127,7 @@ def over_rigid(found: Sequence[Tilts], coupling: str) -> Floats:
     return stiffness(found, coupling) / stiffness(found, "rigid")
 
 
-def extrapolated(sizes: Sequence[float], values: Sequence[float]) -> GridConvergence:
+def extrapolated(sizes: Sequence[float], values: ArrayLike) -> GridConvergence:
     """Limit of ever finer meshes of a rigid band, whose edges are singular."""
     return grid_convergence(sizes, values, expected_order=1.0, least_order=0.5)
 
@@ -348,7 +349,7 @@ def show_lengths(page: Page, found: Found) -> None:
         program="takes K_R only of bonded seats",
         remedy="M^2 / 2U",
     )
-    curves = {
+    curves: dict[str, ArrayLike] = {
         "averaged": over_rigid(found.whole, "averaged"),
         "sliding, by energy (remedy)": over_rigid(found.whole, "sliding"),
         "sliding, by its mean rotation": found.sliding_by_mean,

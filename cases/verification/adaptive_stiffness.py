@@ -108,6 +108,7 @@ def run(run: Run, page: Page) -> None:
         f"uncertain by {abs(rough / exact - 1):.1g}",
         unit="N m/rad",
         measure="stiffness",
+        basis="self-consistency",
         band=estimate.band(k),
     )
     page.answer(

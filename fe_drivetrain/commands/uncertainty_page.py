@@ -203,15 +203,15 @@ def ladder(found: Study) -> Section:
     """
     rows: list[list[Cell]] = []
     for advice in found.advices:
-        for rung in advice.results:
+        for result in advice.results:
             rows.append(
                 [
                     advice.quantity.name,
-                    f"{rung.model.level} {rung.model.title}",
-                    _percent(rung.error),
-                    _percent(rung.estimate),
-                    rung.seconds,
-                    "sampled" if rung is result_at(advice, found.level) else "",
+                    f"{result.model.level} {result.model.title}",
+                    _percent(result.error),
+                    _percent(result.estimate),
+                    result.seconds,
+                    "sampled" if result is result_at(advice, found.level) else "",
                 ]
             )
     table = Table(
@@ -540,9 +540,9 @@ def _summary(found: Study) -> list[str]:
 
 
 def _verdict(advice: Advice, level: int, tolerance: float) -> Verdict:
-    rung = result_at(advice, level)
+    result = result_at(advice, level)
     return judge(
-        f"{advice.quantity.name}: error of level {level}, {rung.model.title}",
+        f"{advice.quantity.name}: error of level {level}, {result.model.title}",
         level_error(advice, level),
         0.0,
         tolerance=tolerance,
