@@ -5,10 +5,10 @@ import pytest
 from skfem import Basis, BilinearForm, ElementQuad2, ElementVector, MeshQuad
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions as solid_motions
 from fe_drivetrain.geometry import Flange, Section, Shaft
 from fe_drivetrain.geometry.meridian import outline
 from fe_drivetrain.mesh.hexahedra import shaft_hexahedra
-from fe_drivetrain.operator.elasticity import rigid_motions as solid_motions
 from fe_drivetrain.revolution.harmonics import (
     COMPONENTS,
     along_sides,

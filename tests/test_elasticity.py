@@ -18,9 +18,10 @@ from skfem.models.elasticity import linear_elasticity
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.mesh.facets import face_weights
 from fe_drivetrain.mesh.shapes import element_kind, is_straight
-from fe_drivetrain.operator.elasticity import assemble, rigid_motions, sparsity, volume_weights
+from fe_drivetrain.operator.elasticity import assemble, sparsity, volume_weights
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
 STEEL = MATERIALS["steel"]

@@ -6,11 +6,11 @@ from conftest import coarse_scene
 from pydantic import ValidationError
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import held_nodes
 from fe_drivetrain.mesh.blocks import Block, brick
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import elasticity, incompatible, incompressible, stress
-from fe_drivetrain.operator.elasticity import rigid_motions
 from fe_drivetrain.operator.loads import pressure, traction_loads
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.scene.materials import HIGHEST_POISSON_RATIO, Material

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.cases.fidelity.published_torsion import front_part
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.geometry import build, gmsh_session
 from fe_drivetrain.revolution.harmonics import end_stiffness
 from fe_drivetrain.scene.scene import COMPONENTS, library_scene
-from fe_drivetrain.solve.condensation import wrench_transport
 
 TEXTS = {
     file.name.removesuffix(".yaml"): file.read_text("utf-8")

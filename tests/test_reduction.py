@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import eliminate
-from fe_drivetrain.operator.elasticity import rigid_motions
 from fe_drivetrain.solve.reduction import bodies, reduce, reduced_stiffness
 
 FORMS = ("sliding", "averaged", "rigid")

@@ -248,10 +248,10 @@ def _checks(ladder: Any, component: Any) -> list[Any]:
 
     from fe_drivetrain.beam import rectangle
     from fe_drivetrain.cases.fidelity.component_page import SOLVED, SOLVED_REASON
+    from fe_drivetrain.common import wrench_transport
     from fe_drivetrain.fidelity import frame_level
     from fe_drivetrain.report import judge
     from fe_drivetrain.scene import change_component, material_of
-    from fe_drivetrain.solve import wrench_transport
 
     top = ladder.top
     places = {a.name: a.position for a in component.attachments}

@@ -30,9 +30,9 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.cases.verification import shaft_ends
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.compare import grid_convergence, richardson
     from fe_drivetrain.mesh import shaft_hexahedra
-    from fe_drivetrain.operator import rigid_motions
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.revolution import seat_stiffness
     from fe_drivetrain.solve import solve_solid

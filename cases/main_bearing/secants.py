@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, shaft
 from fe_drivetrain.cases.main_bearing import bands, loads, study
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats, InputError, stiffness_transport
 from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, hub_load_set
 from fe_drivetrain.response import (
     COMPONENTS,
@@ -153,11 +153,11 @@ def springs(unit: Reacted) -> dict[str, Floats]:
     for a in (4, 5):
         by_secant[a] = secant_stiffness.secant(unit.loads, unit.motions, a).stiffness
     arm = np.array([0.0, 0.0, secant_stiffness.elastic_centre(stiffness)])
-    there = secant_stiffness.moved_spring(stiffness, -arm)
+    there = stiffness_transport(stiffness, -arm)
     return {
         SINGLE: np.diag(single),
         SECANT: np.diag(by_secant),
-        LEAN: secant_stiffness.moved_spring(np.diag(there.diagonal()), arm),
+        LEAN: stiffness_transport(np.diag(there.diagonal()), arm),
         FULL: stiffness,
     }
 

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.cases.verification import two_bodies
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats, InputError, rigid_motions
 from fe_drivetrain.interfaces import (
     Constraint,
     freedoms,
@@ -21,7 +21,7 @@ from fe_drivetrain.interfaces import (
     settled,
 )
 from fe_drivetrain.mesh import Block, brick, element_kind, joined, shape_functions
-from fe_drivetrain.operator import rigid_motions, stresses, tensor
+from fe_drivetrain.operator import stresses, tensor
 
 BORE, TIED, OUTSIDE = 0.5, 1.0, 1.5  # m: radii
 WIDTH = 0.2  # m

@@ -299,7 +299,7 @@ def _between_rigid_ends(mesh: Any, material: Any) -> Any:
     """(2, 2) stiffness of the rear face against u_z and rotation about y, the front held."""
     import numpy as np
 
-    from fe_drivetrain.operator import rigid_motions
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.solve import solve_solid
 
     rear = mesh.section_nodes(mesh.rear)

@@ -14,10 +14,10 @@ def run(run: Run) -> Any:
 
     from fe_drivetrain.cases.verification import condensed
     from fe_drivetrain.cases.verification import manufactured as m
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.geometry import Section as ShaftSection
     from fe_drivetrain.geometry import Shaft
     from fe_drivetrain.mesh import brick, shaft_hexahedra
-    from fe_drivetrain.operator import rigid_motions
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
 
     shaft = Shaft(

@@ -266,8 +266,9 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     import numpy as np
 
     from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import held_freedoms, held_nodes
-    from fe_drivetrain.operator import rigid_motions, traction_loads
+    from fe_drivetrain.operator import traction_loads
 
     points, n = bodies.points, bodies.points.size
     K = bodies.stiffness(lame())

@@ -292,8 +292,8 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     import numpy as np
 
     from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import freedoms, held_freedoms
-    from fe_drivetrain.operator import rigid_motions
 
     points, n = bodies.points, bodies.points.size
     K = bodies.stiffness(lame())
@@ -319,7 +319,7 @@ def rigid_energy(bodies: Any, tie: Any) -> float:
     """
     import numpy as np
 
-    from fe_drivetrain.operator import rigid_motions
+    from fe_drivetrain.common import rigid_motions
 
     K = bodies.stiffness(lame())
     motions = rigid_motions(bodies.points)

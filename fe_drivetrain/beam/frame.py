@@ -15,9 +15,9 @@ from scipy import sparse
 
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.common.spatial import along_x, point_motions, rigid_motions, wrench_transport
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.solve.condensation import Condensed, condense, wrench_transport
+from fe_drivetrain.solve.condensation import Condensed, condense
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def beam_stiffness(section: CrossSection, length: float, material: Material) -> 
     F[1, 5] = F[5, 1] = L**2 / (2 * about_z)
     F[2, 4] = F[4, 2] = -(L**2) / (2 * about_y)
     end = np.linalg.inv(F)
-    balance = np.vstack([-wrench_transport(np.array([L, 0.0, 0.0])), np.eye(6)])
+    balance = np.vstack([-wrench_transport(along_x(L)), np.eye(6)])
     K = balance @ end @ balance.T
     return np.asarray(0.5 * (K + K.T))
 
@@ -252,7 +252,7 @@ class SpatialFrame:
 
         loads = np.hstack([self._spread(f) for f in followers])
         positions = np.array([f.position for f in followers])
-        rigid = np.vstack([wrench_transport(p - positions[0]).T for p in self.positions])
+        rigid = point_motions(self.positions, positions[0])
         mass = sparse.csr_array(self.mass)
         names = [f.name for f in followers]
         found = condense(names, positions, loads, mass, rigid, solved)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.scene.materials import Material
 
 
@@ -252,18 +253,6 @@ def element_integrals(
     return result
 
 
-def transport(distance: Floats) -> Floats:
-    """Matrix that takes a force (6 components) at x + distance to its equal at x, (..., 6, 6).
-
-    Its transpose takes a rigid motion at x to the one at x + distance.
-    """
-    matrix = np.zeros((*distance.shape, 6, 6))
-    matrix[...] = np.eye(6)
-    matrix[..., 4, 2] = -distance
-    matrix[..., 5, 1] = distance
-    return matrix
-
-
 def _integrate(
     section: Section, material: Material, shear: bool, begin: float, end: float, points: int
 ) -> ElementIntegrals:
@@ -271,7 +260,7 @@ def _integrate(
     s = begin + (end - begin) * (abscissa + 1.0) / 2.0
     compliance, _ = _properties(section, material, shear, s)
     weighted = compliance * (weight * (end - begin) / 2.0)[:, None]
-    carried = transport(end - s)
+    carried = wrench_transport(along_x(end - s))
 
     # The weight to the right of s. Three points are exact: mass is at most a quadratic, times arm.
     inner_abscissa, inner_weight = np.polynomial.legendre.leggauss(3)
@@ -279,7 +268,7 @@ def _integrate(
     t = left + (end - left) * (inner_abscissa + 1.0) / 2.0
     _, mass = _properties(section, material, shear, t.ravel())
     piece = mass.reshape(t.shape) * inner_weight * (end - left) / 2.0
-    beyond = np.einsum("ij,ijab->iab", piece, transport(t - left))[:, :, :3]
+    beyond = np.einsum("ij,ijab->iab", piece, wrench_transport(along_x(t - left)))[:, :, :3]
     return ElementIntegrals(
         flexibility=np.einsum("iab,ia,iac->bc", carried, weighted, carried),
         sag=np.einsum("iab,ia,iac->bc", carried, weighted, beyond[:-1]),

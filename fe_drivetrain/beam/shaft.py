@@ -24,9 +24,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fe_drivetrain.beam.sections import Section, element_integrals, transport
+from fe_drivetrain.beam.sections import Section, element_integrals
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
 # Stations closer than this share of the beam's length are one station.
@@ -320,7 +321,7 @@ def unit_load_response(
     vectors, compliance, owner = _held_directions(beam, _nearest(nodes, held))
     directions = np.zeros((nodes.size, 6, owner.size))
     directions[_nearest(nodes, held)[owner], :, np.arange(owner.size)] = vectors
-    rigid_body = np.swapaxes(transport(nodes - nodes[0]), -1, -2)
+    rigid_body = np.swapaxes(wrench_transport(along_x(nodes - nodes[0])), -1, -2)
     grip = np.einsum("nca,ncq->aq", directions, rigid_body)
     _refuse_mechanism(grip, nodes[0], beam.length)
 
@@ -437,7 +438,7 @@ def shaft_stiffness(beam: Beam, first: float, second: float) -> Floats:
         )
     stiffness = np.linalg.inv(compliance)
     stiffness = (stiffness + stiffness.T) / 2.0
-    balance = np.vstack([-transport(np.array(second - first)), np.eye(6)])
+    balance = np.vstack([-wrench_transport(along_x(second - first)), np.eye(6)])
     return np.asarray(balance @ stiffness @ balance.T)
 
 
@@ -468,7 +469,7 @@ def _clamped_displacements(
     `forces` (n, 6, c) act at the nodes; `free` (n - 1, 6, c) is what each element's right end
     moves of itself.
     """
-    carry = transport(np.diff(nodes))
+    carry = wrench_transport(along_x(np.diff(nodes)))
     inside = np.array(forces[1:], dtype=float)
     for e in range(len(carry) - 2, -1, -1):
         inside[e] += carry[e + 1] @ inside[e + 1]

@@ -10,3 +10,9 @@ from .processes import CORES_VARIABLE as CORES_VARIABLE
 from .processes import Report as Report
 from .processes import cores as cores
 from .processes import silent as silent
+from .spatial import along_x as along_x
+from .spatial import point_motions as point_motions
+from .spatial import resultant as resultant
+from .spatial import rigid_motions as rigid_motions
+from .spatial import stiffness_transport as stiffness_transport
+from .spatial import wrench_transport as wrench_transport

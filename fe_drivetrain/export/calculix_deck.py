@@ -26,6 +26,7 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.export.superelement import FRAME
 from fe_drivetrain.interfaces.constraints import Constraint, eliminate
 from fe_drivetrain.mesh.shapes import element_kind
@@ -33,8 +34,6 @@ from fe_drivetrain.operator import kernels
 from fe_drivetrain.operator.elasticity import sparsity
 from fe_drivetrain.operator.incompressible import warn_of_averaging
 from fe_drivetrain.response.model import LOADS, Model
-from fe_drivetrain.response.unit_loads import resultant
-from fe_drivetrain.solve.condensation import wrench_transport
 
 INSTALL = "apt-get install calculix-ccx"
 
@@ -329,7 +328,7 @@ def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) 
         if unit.bedplate is None:
             base = model.mesh.face_nodes(f"{name}.housing.base")
             base_forces[name] = forces[base]
-            reactions[name] = -resultant(model.mesh.points, base, flat, centre)
+            reactions[name] = -resultant(model.mesh.points[base], forces[base], centre)
         else:
             arm = model.points[f"{name}.base"].position - centre
             carried = _carried_at(model, plan, f"{name}.base", motions, flat)

@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.solve.condensation import point_motions
+from fe_drivetrain.common.spatial import point_motions
 
 FRAME = (
     "x downwind along the shaft, z up, y = z cross x; origin at the main bearing's centre where "
@@ -123,7 +123,7 @@ class Superelement:
     @property
     def rigid_motions(self) -> Floats:
         """(6 n, 6) unit motions of the whole about the first point."""
-        return point_motions(self.positions)
+        return point_motions(self.positions, self.positions[0])
 
     def rigid_error(self) -> float:
         """Largest force against a rigid motion, of those that its terms would have one by one."""

@@ -12,13 +12,13 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, joint_stiffness, roller_joint
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.operator.incompressible import assemble_unlocked
 from fe_drivetrain.scene.scene import Coupling, Scene, as_numbers
-from fe_drivetrain.solve.condensation import wrench_transport
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import solve
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
 from fe_drivetrain.fidelity.ladder import Cost, LevelModel
@@ -25,13 +26,7 @@ from fe_drivetrain.scene.component import (
     HousingComponent,
     material_of,
 )
-from fe_drivetrain.solve.condensation import (
-    Condensed,
-    on_supports,
-    point_motions,
-    supported,
-    wrench_transport,
-)
+from fe_drivetrain.solve.condensation import Condensed, on_supports, supported
 
 #: Couplings of a spring matrix below this share of its diagonal are not worth a name.
 NAMED_FROM = 1e-3
@@ -48,7 +43,7 @@ def rigid_level(component: Component) -> LevelModel:
     start = time.perf_counter()
     names = [a.name for a in component.attachments]
     positions = np.array([a.position for a in component.attachments])
-    motions = point_motions(positions)
+    motions = point_motions(positions, positions[0])
     volume, centre = component.body.volume_and_centre()
     mass = material_of(component).density * volume
     weight = mass * wrench_transport(np.array(centre) - positions[0])[:, :3]

@@ -8,12 +8,12 @@ import numpy as np
 from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.geometry import BodySizes
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.symmetry import meshed, mirror, repeated, turns
-from fe_drivetrain.operator.elasticity import rigid_motions
 from fe_drivetrain.operator.incompressible import assemble_unlocked
 from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.scene.component import Component, HousingComponent, material_of

@@ -15,6 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.bearing_units import scene_supports, unit_stiffness
 from fe_drivetrain.fidelity.shafts import (
     beam_shaft,
@@ -27,7 +28,7 @@ from fe_drivetrain.interfaces.joints import joint_stiffness
 from fe_drivetrain.response.model import COMPONENTS, LOADS, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.scene import Coupling, Scene
-from fe_drivetrain.solve.condensation import Condensed, supported, wrench_transport
+from fe_drivetrain.solve.condensation import Condensed, supported
 
 TITLES = (
     "statics",
@@ -264,5 +265,5 @@ def _unit_loads(body: Condensed) -> Floats:
 def _applied(body: Condensed, positions: Floats) -> Floats:
     """(6, 10) resultants of `model.LOADS` about the hub."""
     n = len(body.names)
-    carry = np.hstack([wrench_transport(p - positions[0]) for p in positions])
+    carry = point_motions(positions, positions[0]).T
     return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(body)

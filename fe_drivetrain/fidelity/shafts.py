@@ -16,12 +16,12 @@ from scipy import linalg, sparse
 from fe_drivetrain.beam.of_scene import beam_of_scene
 from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
-from fe_drivetrain.operator.elasticity import rigid_motions
 from fe_drivetrain.operator.incompressible import assemble_unlocked
 from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.revolution import harmonics
@@ -259,21 +259,10 @@ def _coupled_sides(
     return [end(shaft.front), *(seat(*span) for span in spans), end(shaft.rear)]
 
 
-def harmonic_motions(n: int, x: Floats, r: Floats) -> Floats:
-    """(2, ..., 3) amplitudes of a rigid motion in harmonic n: along x and about it; along y and
-    about the line along z through x = 0."""
-    one, zero = np.ones_like(x), np.zeros_like(x)
-    first, second = {
-        0: ((one, zero, zero), (zero, zero, r)),
-        1: ((zero, one, -one), (-r, x, -x)),
-    }[n]
-    return np.stack([np.stack(first, axis=-1), np.stack(second, axis=-1)])
-
-
 def motion_traction(mesh: Meridian, n: int, sides: Ints, place: float, k: int) -> Floats:
     """Nodal forces of a traction as large as the k-th rigid motion about x = place."""
     return harmonics.surface_loads(
-        mesh, n, sides, lambda at, _: harmonic_motions(n, at[:, 0] - place, at[:, 1])[k]
+        mesh, n, sides, lambda at, _: harmonics.rigid_motions_at(at - [place, 0.0], n)[:, :, k]
     )
 
 
@@ -292,7 +281,7 @@ def _harmonic(
     columns = []
     for place, where in zip(positions[:, 0], sides, strict=True):
         tractions = np.column_stack([motion_traction(mesh, n, where, place, k) for k in (0, 1)])
-        here = harmonic_motions(n, x - place, r).reshape(2, -1)
+        here = harmonics.rigid_motions(mesh, n, place).T
         # scaled to do unit work on these motions, tractions take the face's mean one, as RBE3 does
         columns.append(tractions @ np.linalg.inv(here @ tractions))
     # loads are in balance: what is held only takes the rigid motions out
@@ -302,7 +291,7 @@ def _harmonic(
         1: harmonics.freedoms(np.array(ends), 1),
     }[n]
     solved = harmonics.harmonic_solver(mesh, material, n, held)
-    rigid = harmonic_motions(n, x - positions[0, 0], r).reshape(2, -1).T
+    rigid = harmonics.rigid_motions(mesh, n, positions[0, 0])
     return condense(names, positions, np.hstack(columns), mass, rigid, solved, kept)
 
 

@@ -15,7 +15,7 @@ from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.common.spatial import rigid_motions
 
 AXES = ("x", "y", "z")
 

@@ -16,9 +16,9 @@ from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import AXES, Constraint, ReferencePoint
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.operator.elasticity import rigid_motions
 
 # Relative to constraint rows of size one: far above round-off, far below any real restraint.
 _NULL = 1e-9

@@ -1,5 +1,4 @@
 from .elasticity import assemble as assemble
-from .elasticity import rigid_motions as rigid_motions
 from .elasticity import sparsity as sparsity
 from .elasticity import volume_weights as volume_weights
 from .loads import Traction as Traction

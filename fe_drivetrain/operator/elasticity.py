@@ -114,26 +114,3 @@ def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
         determinant = jacobian(points, part, gradients)[1]
         np.add.at(weights, part, (np.abs(determinant) * W) @ values)
     return weights
-
-
-def rigid_motions(points: Floats, centre: Floats | None = None) -> Floats:
-    """The six rigid motions of a set of nodes.
-
-    Parameters
-    ----------
-    points
-        (n, 3) node coordinates [m].
-    centre
-        (3,) point about which the rotations turn; the origin where not given.
-
-    Returns
-    -------
-    motions
-        (3 n, 6): unit translations along x, y, z [m], unit rotations about x, y, z [rad].
-    """
-    r = points if centre is None else points - centre
-    motions = np.zeros((len(points), 3, 6))
-    motions[:, :, :3] = np.eye(3)
-    for axis in range(3):
-        motions[:, :, 3 + axis] = np.cross(np.eye(3)[axis], r)
-    return motions.reshape(-1, 6)

@@ -17,8 +17,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.response.model import COMPONENTS
-from fe_drivetrain.solve.condensation import wrench_transport
 
 MOTIONS = ("ux", "uy", "uz", "rx", "ry", "rz")
 
@@ -268,14 +268,7 @@ def moved(loads: Floats, motions: Floats, arm: Floats) -> tuple[Floats, Floats]:
 
     Between the two points the bearing moves as a rigid body.
     """
-    T = wrench_transport(-np.asarray(arm, dtype=float))
-    return loads @ T.T, motions @ np.linalg.inv(T)
-
-
-def moved_spring(matrix: Floats, arm: Floats) -> Floats:
-    """A spring (6, 6) that stands an arm (3,) [m] away, as felt at the bearing's centre."""
-    T = wrench_transport(np.asarray(arm, dtype=float))
-    return np.asarray(T @ matrix @ T.T)
+    return loads @ wrench_transport(-arm).T, motions @ wrench_transport(arm)
 
 
 def _rms(values: Floats) -> Floats:

@@ -450,9 +450,12 @@ def element_matrices(
     return np.asarray(turn(n) * frontal.element_matrices(grams, _law(lame, n)))
 
 
-def rigid_motions(mesh: Meridian, n: int) -> Floats:
-    """(3 n_nodes, k) motions without strain: n = 0 along x, about x; n = 1 along y, about z."""
-    return rigid_motions_at(mesh.nodes, n).reshape(3 * len(mesh.nodes), -1)
+def rigid_motions(mesh: Meridian, n: int, x: float = 0.0) -> Floats:
+    """(3 n_nodes, k) motions without strain: n = 0 along x, about x; n = 1 along y, about z.
+
+    The rotation about z is about the line along z through ``x`` [m] on the axis.
+    """
+    return rigid_motions_at(mesh.nodes - [x, 0.0], n).reshape(3 * len(mesh.nodes), -1)
 
 
 def rigid_motions_at(places: Floats, n: int) -> Floats:

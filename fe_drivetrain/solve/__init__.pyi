@@ -2,7 +2,6 @@ from .condensation import Condensed as Condensed
 from .condensation import condense as condense
 from .condensation import keep_points as keep_points
 from .condensation import supported as supported
-from .condensation import wrench_transport as wrench_transport
 from .error_estimate import ErrorEstimate as ErrorEstimate
 from .error_estimate import recovery_estimate as recovery_estimate
 from .multigrid import MAX_ITERATIONS as MAX_ITERATIONS

@@ -17,6 +17,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 
 
 @dataclass(frozen=True)
@@ -53,23 +54,7 @@ class Condensed:
     @property
     def rigid_motions(self) -> Floats:
         """(6 n, 6) the motions that no force resists, about the first point."""
-        return point_motions(self.positions)
-
-
-def wrench_transport(arm: Floats) -> Floats:
-    """(6, 6) that takes forces and moments at a + arm to the same about a; (3,) arm [m].
-
-    Its transpose takes a rigid motion about a to the motion of a + arm.
-    """
-    x, y, z = arm
-    T = np.eye(6)
-    T[3:, :3] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
-    return T
-
-
-def point_motions(positions: Floats) -> Floats:
-    """(6 n, 6) motions of n points (n, 3) that move as one rigid body, about the first."""
-    return np.vstack([wrench_transport(p - positions[0]).T for p in positions])
+        return point_motions(self.positions, self.positions[0])
 
 
 def condense(

@@ -12,10 +12,10 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import Elimination
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import kernels
-from fe_drivetrain.operator.elasticity import rigid_motions
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
         The constraints.
     """
     T, free = elimination.T, elimination.free
-    motions = _rigid_motions(points, elimination)
+    motions = _motions_with_points(points, elimination)
     body = np.full(len(free) // 3, -1)
     body[: len(points)] = bodies(cells, len(points))
     prolongation = None
@@ -166,7 +166,7 @@ def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
     return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
 
 
-def _rigid_motions(points: Floats, elimination: Elimination) -> Floats:
+def _motions_with_points(points: Floats, elimination: Elimination) -> Floats:
     """(n_freedoms, 6) rigid motions; reference points follow through their constraints."""
     n = 3 * len(points)
     motions = np.zeros((len(elimination.free), 6))

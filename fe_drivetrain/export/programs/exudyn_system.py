@@ -27,10 +27,10 @@ from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.export.craig_bampton import CraigBampton
 from fe_drivetrain.export.lumped_shaft import rigid_mass
 from fe_drivetrain.export.superelement import ALLOWED, Superelement, scaled
-from fe_drivetrain.solve.condensation import wrench_transport
 
 STANDING_STILL = (0.0, 0.0, 0.0)
 
@@ -253,7 +253,7 @@ def floating_system(
     )
     # it takes the centre of mass from a stretch of the mesh, which is right of lumped masses only;
     # a rotation knows better
-    whole = spread @ _rigid_motions(body.positions)
+    whole = spread @ point_motions(body.positions)
     about = whole.T @ mesh.massMatrix @ whole
     reduced.chiU = np.array([about[5, 1], about[3, 2], about[4, 0]]) / about[0, 0]
     number = reduced.AddObjectFFRFreducedOrder(system, gravity=list(gravity), name=body.name)
@@ -405,11 +405,6 @@ def bodies_of(body: Superelement) -> list[tuple[float, Floats, Floats]]:
             f"points, by {apart:.1g} of its diagonal: take the flexible body"
         )
     return found
-
-
-def _rigid_motions(positions: Floats) -> Floats:
-    """(6 n, 6) unit motions of points about the origin."""
-    return np.vstack([wrench_transport(place).T for place in positions])
 
 
 def _like(matrix: Floats, other: Floats) -> Floats:
