@@ -17,6 +17,7 @@ from test_superelement import random_element
 from fe_drivetrain import export
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.export.calculix_deck import ROUNDING, read_dat, run_calculix
 from fe_drivetrain.export.formats import nastran
 from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
@@ -28,7 +29,7 @@ from fe_drivetrain.export.programs.calculix_runs import (
     frequencies_by_calculix,
     held,
 )
-from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement, scaled
+from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
@@ -419,7 +420,7 @@ def assert_printed(found: Floats, stiffness: Floats) -> None:
     """
     expected = np.linalg.inv(stiffness)
     size = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
-    solved = 1e-13 * np.linalg.cond(scaled(stiffness))
+    solved = 1e-13 * np.linalg.cond(scaled_to_unit_diagonal(stiffness))
     assert (np.abs(found - expected) <= ROUNDING * np.abs(expected) + solved * size).all()
 
 

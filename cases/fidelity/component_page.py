@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, largest_difference
 from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.export import Superelement, difference, from_scene
+from fe_drivetrain.export import Superelement, from_scene
 from fe_drivetrain.fidelity import (
     LEAST_ORDER,
     LevelModel,
@@ -292,7 +292,7 @@ def files_section(run: Run, element: Superelement) -> tuple[Section, Verdict]:
             path = run.folder / f"{element.name}_{name}{form.suffix}"
             export.write(path, element, name)
             back = export.read(path, name)
-            changed = difference(back.stiffness, element.stiffness)
+            changed = largest_difference(back.stiffness, element.stiffness)
             worst = max(worst, changed)
             rows.append([name, path.name, path.stat().st_size, changed, 10.0**-form.digits])
     table = Table(

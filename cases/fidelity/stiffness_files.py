@@ -9,14 +9,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.export import (
-    SEATS,
-    SHAFT,
-    Superelement,
-    difference,
-    superelement_of,
-    symmetry_error,
-)
+from fe_drivetrain.common import largest_difference, symmetry_error
+from fe_drivetrain.export import SEATS, SHAFT, Superelement, superelement_of
 from fe_drivetrain.fidelity import Quantity, shaft_level
 from fe_drivetrain.report import Results, Section, Table, Text, Verdict, judge
 from fe_drivetrain.scene import Scene
@@ -49,7 +43,7 @@ def stiffness_files(
             export.write(path, element, format)
             names.append(path.name)
             again = read[what] = export.read(path, format)
-            worst = max(worst, difference(again.stiffness, element.stiffness))
+            worst = max(worst, largest_difference(again.stiffness, element.stiffness))
         rows.append(_row(names, element))
         verdicts += [
             _identity(

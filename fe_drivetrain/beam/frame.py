@@ -15,6 +15,7 @@ from scipy import sparse
 
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import along_x, point_motions, rigid_motions, wrench_transport
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.solve.condensation import Condensed, condense
@@ -239,8 +240,8 @@ class SpatialFrame:
             There is one point only, or two move as one.
         """
         K, n = self.stiffness, len(self.positions)
-        size = np.sqrt(K.diagonal())
-        scaled = K / np.outer(size, size)
+        size = diagonal_roots(K.diagonal())
+        scaled = scaled_to_unit_diagonal(K)
         # loads are in balance: what is held only takes the rigid motions out
         left = np.arange(6, 6 * n)
         factor = np.linalg.inv(scaled[np.ix_(left, left)])

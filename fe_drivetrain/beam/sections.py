@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.scene.materials import Material
 
@@ -239,11 +240,10 @@ def element_integrals(
     while not section.uniform:
         points *= 2
         finer = _integrate(section, material, shear, begin, end, points)
-        size = np.sqrt(np.diag(finer.flexibility))
-        change = np.abs(finer.flexibility - result.flexibility)
+        change = largest_difference(result.flexibility, finer.flexibility)
         result = finer
         # Gauss converges geometrically: after a change this small only rounding is left.
-        if np.all(change <= 1e-12 * np.outer(size, size)):
+        if change <= 1e-12:
             break
         if points >= 1024:
             raise InputError(

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from fe_drivetrain.beam.sections import Section, element_integrals
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
@@ -97,12 +98,13 @@ class Support:
         matrix = np.asarray(self.stiffness, dtype=float)
         rigid = np.isinf(np.diag(matrix))
         held = ~rigid & (np.diag(matrix) > 0.0)
-        root = np.sqrt(np.diag(matrix)[held])
-        value, vector = np.linalg.eigh(matrix[np.ix_(held, held)] / np.outer(root, root))
+        springs = matrix[np.ix_(held, held)]
+        root = diagonal_roots(np.diag(springs))
+        value, vector = np.linalg.eigh(scaled_to_unit_diagonal(springs))
         real = value > 1e-12
-        springs = np.zeros((int(real.sum()), 6))
-        springs[:, held] = (vector[:, real] * root[:, None]).T
-        directions = np.vstack([np.eye(6)[rigid], springs])
+        elastic = np.zeros((int(real.sum()), 6))
+        elastic[:, held] = (vector[:, real] * root[:, None]).T
+        directions = np.vstack([np.eye(6)[rigid], elastic])
         return directions, np.concatenate([np.zeros(int(rigid.sum())), 1.0 / value[real]])
 
 
@@ -629,8 +631,7 @@ def _check_support_matrix(name: str, matrix: Floats) -> None:
             f"support '{name}': a direction whose stiffness is 0 or inf must have no coupling "
             "terms: set the rest of its row and column to 0."
         )
-    root = np.where(alone, 1.0, np.sqrt(np.where(alone, 1.0, diagonal)))
-    scaled = np.where(alone[:, None] | alone, 0.0, off / np.outer(root, root))
+    scaled = scaled_to_unit_diagonal(off, np.where(alone, 1.0, diagonal))
     worst = float(np.abs(scaled - scaled.T).max())
     if worst > 1e-6:
         raise InputError(

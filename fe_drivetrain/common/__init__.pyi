@@ -10,6 +10,12 @@ from .processes import CORES_VARIABLE as CORES_VARIABLE
 from .processes import Report as Report
 from .processes import cores as cores
 from .processes import silent as silent
+from .scaling import diagonal_roots as diagonal_roots
+from .scaling import largest_difference as largest_difference
+from .scaling import least_eigenvalue as least_eigenvalue
+from .scaling import scaled_solve as scaled_solve
+from .scaling import scaled_to_unit_diagonal as scaled_to_unit_diagonal
+from .scaling import symmetry_error as symmetry_error
 from .spatial import along_x as along_x
 from .spatial import point_motions as point_motions
 from .spatial import resultant as resultant

@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
 from fe_drivetrain.common.spatial import point_motions
 
 FRAME = (
@@ -145,21 +146,3 @@ class Superelement:
         if not self.supported:
             found["force against rigid motions"] = self.rigid_error()
         return found
-
-
-def scaled(matrix: Floats) -> Floats:
-    """The matrix with a unit diagonal: lengths and angles count alike."""
-    size = np.sqrt(np.where(matrix.diagonal() > 0, matrix.diagonal(), 1.0))
-    return np.asarray(matrix / np.outer(size, size))
-
-
-def symmetry_error(matrix: Floats) -> float:
-    """Largest difference from its transpose, with a unit diagonal."""
-    found = scaled(matrix)
-    return float(np.abs(found - found.T).max())
-
-
-def least_eigenvalue(matrix: Floats) -> float:
-    """The least eigenvalue, with a unit diagonal."""
-    found = scaled(matrix)
-    return float(np.linalg.eigvalsh(0.5 * (found + found.T))[0])

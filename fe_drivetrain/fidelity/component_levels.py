@@ -15,6 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import least_eigenvalue, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
@@ -56,8 +57,7 @@ def rigid_level(component: Component) -> LevelModel:
     parts = {name: motions[6 * k : 6 * k + 6] for k, name in enumerate(names)}
     springs = component.supports
     K = sum(parts[name].T @ k @ parts[name] for name, k in springs.items())
-    size = np.sqrt(np.diag(K))
-    if not (size > 0).all() or np.linalg.eigvalsh(K / np.outer(size, size))[0] < 1e-13:
+    if least_eigenvalue(K) < 1e-13:
         raise InputError(_FREE)
     reactions = {
         name: k @ parts[name] @ np.linalg.solve(K, resultants) for name, k in springs.items()
@@ -195,8 +195,7 @@ def gearbox_springs(ring: Floats) -> GearboxSprings:
         (6, 6), of `LevelModel.stiffness` at "ring" or of `stiffness_on_supports`.
     """
     motions = ("ux", "uy", "uz", "rx", "ry", "rz")
-    size = np.sqrt(np.diag(ring))
-    share = ring / np.outer(size, size)
+    share = scaled_to_unit_diagonal(ring)
     left_out = {
         f"{motions[i]}-{motions[j]}": float(share[i, j])
         for i in range(6)

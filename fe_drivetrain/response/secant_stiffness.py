@@ -17,6 +17,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.response.model import COMPONENTS
 
@@ -197,8 +198,8 @@ def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> 
     InputError
         The stiffness holds fewer than six motions, as that of a spherical joint.
     """
-    scale = np.sqrt(np.abs(matrix.diagonal()))
-    if not scale.all() or np.linalg.cond(matrix / np.outer(scale, scale)) > 1.0 / _INDEPENDENT:
+    scaled = scaled_to_unit_diagonal(matrix, np.abs(matrix.diagonal()))
+    if not matrix.diagonal().all() or np.linalg.cond(scaled) > 1.0 / _INDEPENDENT:
         raise InputError(
             "the stiffness leaves a motion of the bearing free, and has no compliance: couplings "
             "of a moment need a bearing that holds all six motions"

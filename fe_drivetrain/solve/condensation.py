@@ -17,6 +17,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 
 
@@ -109,8 +110,7 @@ def condense(
     strained, sagged = U[:, : pairs.shape[1]], U[:, pairs.shape[1] :]
     flexibility = pairs.T @ strained
     flexibility = 0.5 * (flexibility + flexibility.T)
-    size = np.sqrt(np.abs(flexibility.diagonal()))
-    if np.linalg.cond(flexibility / np.outer(size, size)) > 1e14:
+    if np.linalg.cond(scaled_to_unit_diagonal(flexibility)) > 1e14:
         raise InputError(
             f"the points {', '.join(names)} cannot all be kept: two of them move as one; "
             "leave one out"
@@ -246,14 +246,13 @@ def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
     F = np.hstack([np.eye(6 * n), body.gravity])
     K, free = on_supports(body.names, body.stiffness, supports)
     # translations and rotations have other units: judged with a unit diagonal
-    size = np.sqrt(K.diagonal())
-    if not (size > 0).all() or np.linalg.eigvalsh(K / np.outer(size, size))[0] < _FREE:
+    if least_eigenvalue(K) < _FREE:
         raise InputError(
             f"the supports {', '.join(supports)} leave the body free to move: add a support, or "
             "stiffness to one"
         )
     U = np.zeros((6 * n, F.shape[1]))
-    U[free] = np.linalg.solve(K / np.outer(size, size), F[free] / size[:, None]) / size[:, None]
+    U[free] = scaled_solve(K, F[free])
     # what is rigidly held carries what the body and the loads leave there
     carried = F - body.stiffness @ U
     return Supported(U, {name: carried[body.rows(name)] for name in supports})

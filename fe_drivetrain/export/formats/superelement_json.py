@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.superelement import FRAME, FREEDOMS, UNITS, Origin, Superelement, scaled
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.export.superelement import FRAME, FREEDOMS, UNITS, Origin, Superelement
 
 _SINGULAR = 1e13  # condition of a stiffness with a unit diagonal
 
@@ -125,7 +126,10 @@ def read_content(path: Path, kind: type[_Content], what: str) -> _Content:
 
 
 def _compliance(element: Superelement) -> list[list[float]] | None:
-    if not element.supported or np.linalg.cond(scaled(element.stiffness)) > _SINGULAR:
+    if (
+        not element.supported
+        or np.linalg.cond(scaled_to_unit_diagonal(element.stiffness)) > _SINGULAR
+    ):
         return None
     inverse = np.linalg.inv(element.stiffness)
     return (0.5 * (inverse + inverse.T)).tolist()  # type: ignore[no-any-return]
