@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.histories import (
-    COMPONENTS,
     LoadHistory,
     read_csv,
     read_hub_loads,
@@ -382,7 +382,7 @@ def test_history_cannot_be_changed_through_its_arrays() -> None:
 def test_component_and_cut() -> None:
     loads = np.arange(60.0).reshape(10, 6)
     history = history_of(np.arange(10.0), loads)
-    for i, name in enumerate(COMPONENTS):
+    for i, name in enumerate(FORCES):
         np.testing.assert_array_equal(history.component(name), loads[:, i])
     with pytest.raises(InputError, match="'Fq' is not one of Fx, Fy"):
         history.component("Fq")

@@ -11,7 +11,7 @@ from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.geometry import build, gmsh_session
 from fe_drivetrain.revolution.harmonics import end_stiffness
-from fe_drivetrain.scene.scene import COMPONENTS, library_scene
+from fe_drivetrain.scene.scene import COMPONENT_KINDS, library_scene
 
 TEXTS = {
     file.name.removesuffix(".yaml"): file.read_text("utf-8")
@@ -20,7 +20,7 @@ TEXTS = {
 DRIVETRAINS = sorted(
     name
     for name, text in TEXTS.items()
-    if not re.search(rf"^({'|'.join(COMPONENTS)}):", text, re.MULTILINE)
+    if not re.search(rf"^({'|'.join(COMPONENT_KINDS)}):", text, re.MULTILINE)
 )
 #: Those of public turbines: every number of theirs has its place in the header.
 PUBLIC = (

@@ -7,10 +7,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.mesh import Mesh, inverted_cells, quality, volume
 from fe_drivetrain.response.model import build_model, mesh_scene
-from fe_drivetrain.response.unit_loads import GRAVITY, Response, unit_load_response
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.scene import Scene, change_scene, validated
 

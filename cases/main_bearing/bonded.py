@@ -16,9 +16,9 @@ def run(run: Run) -> Any:
 
     from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
     from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.common import FORCES
     from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
     from fe_drivetrain.report import Section, Table, Text, judge
-    from fe_drivetrain.response import COMPONENTS
 
     scene = study.scene_of(run, "bonded")
     pinned_beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
@@ -58,7 +58,7 @@ def run(run: Run) -> Any:
         value = float(reaction[component, load])
         rows.append(
             [
-                f"{COMPONENTS[component]} per {COMPONENTS[load]} at the hub",
+                f"{FORCES[component]} per {FORCES[load]} at the hub",
                 value,
                 series.band(lambda f, c=component, k=load: float(f[f"reaction {name}"][c, k])),
                 float(torsional[load, component]),
@@ -90,8 +90,8 @@ def run(run: Run) -> Any:
         for component in (1, 2, 4, 5):
             coupling_rows.append(
                 [
-                    f"{COMPONENTS[load]} = {size / 1e3:g} kN{' m' if load > 2 else ''}",
-                    f"{COMPONENTS[component]} [kN{' m' if component > 2 else ''}]",
+                    f"{FORCES[load]} = {size / 1e3:g} kN{' m' if load > 2 else ''}",
+                    f"{FORCES[component]} [kN{' m' if component > 2 else ''}]",
                     float(reaction[component, load]) * size / 1e3,
                     series.band(
                         lambda f, c=component, k=load, s=size: (
@@ -113,7 +113,7 @@ def run(run: Run) -> Any:
     energies = Table(
         caption="Where the strain energy of a unit hub load is [%] (the rest of the work goes into "
         "the gearbox springs)",
-        columns=["part", *(f"hub {c}" for c in COMPONENTS), "± hub Fz"],
+        columns=["part", *(f"hub {c}" for c in FORCES), "± hub Fz"],
         rows=[
             [
                 part,

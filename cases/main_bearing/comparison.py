@@ -18,9 +18,8 @@ from fe_drivetrain.beam import (
 )
 from fe_drivetrain.cases.main_bearing.loads import HubLoads
 from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.compare import statistics
-from fe_drivetrain.response import GRAVITY
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Run
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, InputError, user_cache
+from fe_drivetrain.common import FORCES, Floats, InputError, user_cache
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.hub_loads import (
     Condition,
@@ -17,7 +17,6 @@ from fe_drivetrain.hub_loads import (
     surrogate_grid,
 )
 from fe_drivetrain.report import Chart, Table, rounded, trace
-from fe_drivetrain.response import COMPONENTS
 from fe_drivetrain.suite import Jobs, Run
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
@@ -145,7 +144,7 @@ def load_table(hub: HubLoads) -> Table:
     """Range of each component, where a wrong sign or unit shows."""
     flat = hub.loads.reshape(-1, 6)
     rows: list[list[Any]] = []
-    for k, component in enumerate(COMPONENTS):
+    for k, component in enumerate(FORCES):
         values = flat[:, k] / 1e3
         unit = "kN" if k < 3 else "kN\u00a0m"
         numbers = (values.min(), values.mean(), values.max(), values.std())

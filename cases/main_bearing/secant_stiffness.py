@@ -21,8 +21,9 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.cases.main_bearing import secants, study
+    from fe_drivetrain.common import FORCES
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.response import COMPONENTS, secant_stiffness
+    from fe_drivetrain.response import secant_stiffness
 
     bonded = study.scene_of(run, "bonded", OWN_KEYS, coarsen=False)
     spherical = study.scene_of(run, "spherical", OWN_KEYS, coarsen=False)
@@ -53,10 +54,10 @@ def run(run: Run) -> Any:
                 rows.append(
                     [
                         titles[key],
-                        COMPONENTS[a],
+                        FORCES[a],
                         found[key, a].stiffness / 1e6,
                         100.0 * found[key, a].scatter,
-                        COMPONENTS[j] if j < 6 else "nothing on the bearing",
+                        FORCES[j] if j < 6 else "nothing on the bearing",
                         float(parts[key, a].arms[j]) if j < 6 else None,
                         100.0 * float(parts[key, a].sizes[j]),
                         100.0 * float(parts[key, a].shares[j]),
@@ -302,7 +303,7 @@ def run(run: Run) -> Any:
                             "housing",
                             "independent motions",
                             "asymmetry [%]",
-                            *(f"{c} [%]" for c in COMPONENTS),
+                            *(f"{c} [%]" for c in FORCES),
                         ],
                         rows=fit_rows,
                     ),
@@ -355,10 +356,10 @@ def run(run: Run) -> Any:
         assumptions=study.assumptions(bonded),
         figures={
             "secant": {
-                f"{key} {COMPONENTS[a]}": {"K_R": f.stiffness, "scatter": f.scatter}
+                f"{key} {FORCES[a]}": {"K_R": f.stiffness, "scatter": f.scatter}
                 for (key, a), f in found.items()
             },
-            "statements": {f"{key} {COMPONENTS[a]}": s for (key, a), s in statements.items()},
+            "statements": {f"{key} {FORCES[a]}": s for (key, a), s in statements.items()},
             "beam errors": improvement,
             "elastic centre": centre,
         },

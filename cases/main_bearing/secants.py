@@ -9,15 +9,9 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, shaft
 from fe_drivetrain.cases.main_bearing import bands, loads, study
-from fe_drivetrain.common import Floats, InputError, stiffness_transport
+from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
 from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, hub_load_set
-from fe_drivetrain.response import (
-    COMPONENTS,
-    LOADS,
-    bearing_unit_stiffness,
-    secant_stiffness,
-    without_gearbox,
-)
+from fe_drivetrain.response import LOADS, bearing_unit_stiffness, secant_stiffness, without_gearbox
 from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.suite import Run
 
@@ -183,7 +177,7 @@ def beam_errors(unit: Reacted, hub: Floats) -> dict[str, Mapping[str, float]]:
     found: dict[str, Mapping[str, float]] = {}
     for form, beam in beams.items():
         error = _error(beam, unit.loads)
-        by = {q: float(error[COMPONENTS.index(q)]) for q in QUANTITIES}
+        by = {q: float(error[FORCES.index(q)]) for q in QUANTITIES}
         found[form] = by | {OF_FORM: float(_error(beam, beams[FULL])[4])}
     return found
 

@@ -17,9 +17,10 @@ def run(run: Run) -> Any:
 
     from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
     from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.common import GRAVITY
     from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
-    from fe_drivetrain.response import GRAVITY, LOADS, bearing_unit_stiffness
+    from fe_drivetrain.response import LOADS, bearing_unit_stiffness
 
     scene = study.scene_of(run, "spherical")
     beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for

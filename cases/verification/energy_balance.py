@@ -14,8 +14,9 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.cases.verification import scenes
+    from fe_drivetrain.common import GRAVITY
     from fe_drivetrain.report import Chart, Section, Table, Text, judge
-    from fe_drivetrain.response import GRAVITY, LOADS
+    from fe_drivetrain.response import LOADS
 
     verdicts, charts = [], []
     rows: list[list[Any]] = []

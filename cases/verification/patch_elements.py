@@ -14,9 +14,10 @@ def run(run: Run) -> Any:
 
     from fe_drivetrain.cases.verification import distorted
     from fe_drivetrain.cases.verification.manufactured import LAME
+    from fe_drivetrain.common import STRESSES
     from fe_drivetrain.interfaces import freedoms
     from fe_drivetrain.mesh import element_kind
-    from fe_drivetrain.operator import COMPONENTS, tensor, traction_loads
+    from fe_drivetrain.operator import tensor, traction_loads
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
     from fe_drivetrain.solve import solve_solid
 
@@ -153,7 +154,7 @@ def run(run: Run) -> Any:
                 items=[
                     Table(
                         caption="Largest errors over six strain states "
-                        f"({', '.join(COMPONENTS)}), relative to the largest value of each. Nodes "
+                        f"({', '.join(STRESSES)}), relative to the largest value of each. Nodes "
                         "are moved at random, inside and on the surface",
                         columns=[
                             "element",

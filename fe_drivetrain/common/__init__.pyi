@@ -4,6 +4,11 @@ from .arrays import Ints as Ints
 from .cache import CACHE_VARIABLE as CACHE_VARIABLE
 from .cache import Cache as Cache
 from .cache import user_cache as user_cache
+from .components import CYLINDRICAL_STRESSES as CYLINDRICAL_STRESSES
+from .components import FORCES as FORCES
+from .components import GRAVITY as GRAVITY
+from .components import MOTIONS as MOTIONS
+from .components import STRESSES as STRESSES
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
 from .processes import CORES_VARIABLE as CORES_VARIABLE

@@ -15,7 +15,6 @@ FRAME = (
     "x downwind along the shaft, z up, y = z cross x; origin at the main bearing's centre where "
     "the scene puts its shaft so"
 )
-FREEDOMS = ("ux", "uy", "uz", "rx", "ry", "rz")
 UNITS = "N/m, N, N m/rad; kg, kg m, kg m^2; m, rad"
 
 #: What a matrix may be off: of symmetry, of a rigid motion's forces, of a negative eigenvalue;
@@ -61,7 +60,7 @@ class Superelement:
     positions
         (n, 3) [m], in `FRAME`.
     stiffness
-        (6 n, 6 n), symmetric: `FREEDOMS` of each point to forces and moments there.
+        (6 n, 6 n), symmetric: `components.MOTIONS` of each point to forces and moments there.
     mass
         (6 n, 6 n), symmetric; None where there is none.
     supported

@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
 from fe_drivetrain.fidelity.ladder import Cost, LevelModel
-from fe_drivetrain.response.model import COMPONENTS
 from fe_drivetrain.scene.component import (
     CarrierComponent,
     Component,
@@ -35,7 +35,7 @@ NAMED_FROM = 1e-3
 
 def loads_of(component: Component) -> tuple[str, ...]:
     """Names of the unit loads: "ring.Fx" and so on [N, N m], then gravity along x, y, z [m/s^2]."""
-    at_points = [f"{name}.{c}" for name in component.loaded for c in COMPONENTS]
+    at_points = [f"{name}.{c}" for name in component.loaded for c in FORCES]
     return (*at_points, "gravity.x", "gravity.y", "gravity.z")
 
 
@@ -194,10 +194,9 @@ def gearbox_springs(ring: Floats) -> GearboxSprings:
     ring
         (6, 6), of `LevelModel.stiffness` at "ring" or of `stiffness_on_supports`.
     """
-    motions = ("ux", "uy", "uz", "rx", "ry", "rz")
     share = scaled_to_unit_diagonal(ring)
     left_out = {
-        f"{motions[i]}-{motions[j]}": float(share[i, j])
+        f"{MOTIONS[i]}-{MOTIONS[j]}": float(share[i, j])
         for i in range(6)
         for j in range(i + 1, 6)
         if abs(share[i, j]) >= NAMED_FROM

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.bearing_units import scene_supports, unit_stiffness
@@ -25,7 +26,7 @@ from fe_drivetrain.fidelity.shafts import (
 )
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.interfaces.joints import joint_stiffness
-from fe_drivetrain.response.model import COMPONENTS, LOADS, build_model, mesh_scene
+from fe_drivetrain.response.model import LOADS, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.condensation import Condensed, supported
@@ -109,7 +110,7 @@ class LevelModel:
         stuck = [
             f"{name} {c}"
             for name, part in zip(at, np.split(compliance.diagonal(), len(at)), strict=True)
-            for c, value in zip(("ux", "uy", "uz", "rx", "ry", "rz"), part, strict=True)
+            for c, value in zip(MOTIONS, part, strict=True)
             if value <= 0.0
         ]
         if stuck:
@@ -144,7 +145,7 @@ def statics_level(scene: Scene) -> LevelModel:
     for (name, c), row, sure in zip(carried, found, decided, strict=True):
         matrices[name][c] = row if sure else np.nan
     unknown = [
-        f"{name} {COMPONENTS[c]}" for (name, c), s in zip(carried, decided, strict=True) if not s
+        f"{name} {FORCES[c]}" for (name, c), s in zip(carried, decided, strict=True) if not s
     ]
     neglects = ["every stiffness"]
     if unknown:

@@ -16,9 +16,8 @@ from scipy import sparse
 from fe_drivetrain.beam.of_scene import beam_of_scene
 from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.mesh.cached import cached_mesh
-from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
 from fe_drivetrain.revolution import harmonics
 from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
 from fe_drivetrain.scene.component import Attachment
@@ -206,15 +205,15 @@ def _coupled_sides(
     """Sides of the meridian that each reference point moves with."""
 
     def end(at: float) -> Ints:
-        return mesh.sides(lambda x, r: np.abs(x - at) < SAME_LENGTH)
+        return mesh.sides(lambda x, r: np.abs(x - at) < LENGTH_TOLERANCE)
 
     def seat(low: float, high: float) -> Ints:
         radius = shaft.outer_radius((low + high) / 2)
         return mesh.sides(
             lambda x, r: (
-                (np.abs(r - radius) < SAME_LENGTH)
-                & (x > low - SAME_LENGTH)
-                & (x < high + SAME_LENGTH)
+                (np.abs(r - radius) < LENGTH_TOLERANCE)
+                & (x > low - LENGTH_TOLERANCE)
+                & (x < high + LENGTH_TOLERANCE)
             )
         )
 

@@ -1,5 +1,4 @@
 from .aero_rotor import assumptions as assumptions
-from .histories import COMPONENTS as COMPONENTS
 from .histories import UNITS as UNITS
 from .histories import LoadHistory as LoadHistory
 from .histories import read_hub_loads as read_hub_loads

@@ -31,12 +31,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.compare.statistics import CONSTANT
 
-COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 LARGEST_LOAD = 1e12
@@ -87,15 +87,15 @@ class LoadHistory:
     def __post_init__(self) -> None:
         time = _frozen(self.time)
         loads = _frozen(self.loads)
-        if time.ndim != 1 or loads.shape != (time.size, len(COMPONENTS)):
+        if time.ndim != 1 or loads.shape != (time.size, len(FORCES)):
             raise InputError(
                 f"load history '{self.name}': time has shape {time.shape} and loads {loads.shape}; "
-                f"give (n,) and (n, 6) in the order {', '.join(COMPONENTS)}"
+                f"give (n,) and (n, 6) in the order {', '.join(FORCES)}"
             )
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "loads", loads)
         object.__setattr__(self, "attributes", dict(self.attributes))
-        columns = dict(zip(COMPONENTS, loads.T, strict=True))
+        columns = dict(zip(FORCES, loads.T, strict=True))
         _require_sound(f"load history '{self.name}'", time, columns)
 
     def __len__(self) -> int:
@@ -109,9 +109,9 @@ class LoadHistory:
         InputError
             If there is no component of that name.
         """
-        if name not in COMPONENTS:
-            raise InputError(f"hub-load component '{name}' is not one of {', '.join(COMPONENTS)}")
-        return self.loads[:, COMPONENTS.index(name)]
+        if name not in FORCES:
+            raise InputError(f"hub-load component '{name}' is not one of {', '.join(FORCES)}")
+        return self.loads[:, FORCES.index(name)]
 
     def between(self, start: float, stop: float = np.inf) -> LoadHistory:
         """The samples with start <= time <= stop [s], for example without a start-up transient."""
@@ -368,7 +368,7 @@ def _first_bad_cell(file: Path, header_lines: int = 8, name_line: int = 6) -> st
 
 # --- CSV -----------------------------------------------------------------------------------------
 
-_CSV_COLUMNS = ("time", *COMPONENTS)
+_CSV_COLUMNS = ("time", *FORCES)
 _CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
@@ -435,10 +435,9 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     time = _in_si(source, channels["time"], _TIME_UNITS)
     tables = (_FORCE_UNITS,) * 3 + (_MOMENT_UNITS,) * 3
     loads = [
-        _in_si(source, channels[name], table)
-        for name, table in zip(COMPONENTS, tables, strict=True)
+        _in_si(source, channels[name], table) for name, table in zip(FORCES, tables, strict=True)
     ]
-    columns = dict(zip(COMPONENTS, loads, strict=True))
+    columns = dict(zip(FORCES, loads, strict=True))
     _require_sound(f"hub loads '{source}'", time, columns, rows)
     return LoadHistory(file.stem, time, np.column_stack(loads), {"source": file.name} | attributes)
 
@@ -477,7 +476,7 @@ def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]
         if not match[2]:
             raise InputError(
                 f"hub loads '{file}': column '{title.strip()}' has no unit; write it like "
-                f"'{name} [{'s' if name == 'time' else UNITS[COMPONENTS.index(name)]}]'"
+                f"'{name} [{'s' if name == 'time' else UNITS[FORCES.index(name)]}]'"
             )
         places[name] = (place, match[2])
     missing = [name for name in _CSV_COLUMNS if name not in places]

@@ -41,7 +41,7 @@ from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import Constraint
 from fe_drivetrain.mesh.facets import FacetKind, facet_kind, facet_points
@@ -58,7 +58,6 @@ _STRAIGHT = 1e-9  # of a facet's size
 _SLIVER = 1e-14  # of a window: pieces that are smaller are none
 _STEP = 1e-12  # of a facet: Newton's last step, which squares itself once more
 _STEPS = 20
-_CHUNK = 2048  # windows at a time
 _FINER = 2.0  # nodes to an area of the master, over the slave's: more is warned of
 _APART = 0.01  # of the slave's radius: faces that lie further apart are warned of
 _BLOCK = 256  # columns that are dense at a time
@@ -368,8 +367,8 @@ def _pieces(points: Floats, slave: Ints, master: Ints, reach: float = _REACH) ->
     master_normals = _normals(points, master)
     centres, radii = _circles(outline)
     found = []
-    for start in range(0, len(windows), _CHUNK):
-        part = windows[start : start + _CHUNK]
+    for rows in chunks(len(windows), CHUNK // 2):
+        part = windows[rows]
         window, facet = _near(*_circles(part), centres, radii)
         normals = np.cross(part[:, 1] - part[:, 0], part[:, 2] - part[:, 0])
         normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -380,7 +379,7 @@ def _pieces(points: Floats, slave: Ints, master: Ints, reach: float = _REACH) ->
         distances = outline[facet] - part[window, None, 0]
         polygons = np.einsum("pij,pvj->pvi", to_window[window], distances)[:, ::-1]
         pair, triangles = _cut(polygons)
-        owner, local = np.divmod(start + window[pair], len(reference))
+        owner, local = np.divmod(rows.start + window[pair], len(reference))
         found.append(
             _integrated(
                 points, slave, master, owner, facet[pair], reference[local], triangles, reach

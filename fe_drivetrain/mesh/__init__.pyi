@@ -12,7 +12,6 @@ from .facets import MEANS as MEANS
 from .facets import face_weights as face_weights
 from .facets import facet_points as facet_points
 from .facets import local_facets as local_facets
-from .hexahedra import SAME_LENGTH as SAME_LENGTH
 from .hexahedra import UNGRADED as UNGRADED
 from .hexahedra import Grading as Grading
 from .hexahedra import Hexahedra as Hexahedra

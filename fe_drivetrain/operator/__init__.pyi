@@ -6,7 +6,6 @@ from .loads import body_loads as body_loads
 from .loads import pressure as pressure
 from .loads import traction_loads as traction_loads
 from .mass import mass_matrix as mass_matrix
-from .stress import COMPONENTS as COMPONENTS
 from .stress import nodal_stresses as nodal_stresses
 from .stress import principal as principal
 from .stress import strains as strains

@@ -16,11 +16,9 @@ from skfem import (
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.mesh.shapes import element_kind, is_straight, jacobian, shape_functions
 from fe_drivetrain.operator import kernels
-
-_CHUNK = 4096  # elements at a time: keeps the work arrays inside the cache and memory bounded
 
 
 @dataclass(frozen=True)
@@ -109,8 +107,8 @@ def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
     X, W = get_quadrature(RefTet, 4)
     values, gradients = shape_functions(ElementTetP2(), X)
     weights = np.zeros(n_nodes)
-    for start in range(0, len(cells), _CHUNK):
-        part = cells[start : start + _CHUNK]
+    for rows in chunks(len(cells)):
+        part = cells[rows]
         determinant = jacobian(points, part, gradients)[1]
         np.add.at(weights, part, (np.abs(determinant) * W) @ values)
     return weights

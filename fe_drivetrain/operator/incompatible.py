@@ -15,14 +15,12 @@ import numpy as np
 from scipy import sparse
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
 from fe_drivetrain.operator.incompressible import plus_products
-
-_CHUNK = 1024  # cells at a time
 
 
 def assemble(
@@ -64,10 +62,7 @@ def assemble(
         )
     size = 3 * len(points) if n_freedoms is None else n_freedoms
     rows = np.concatenate(
-        [
-            _condensed(points, cells[start : start + _CHUNK], lame)
-            for start in range(0, len(cells), _CHUNK)
-        ]
+        [_condensed(points, cells[chunk], lame) for chunk in chunks(len(cells), CHUNK // 4)]
     )
     plain = elasticity.assemble(points, cells, lame, n_freedoms, pattern)
     return plus_products(plain, -1.0, rows, cells, size)

@@ -16,12 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.response.model import COMPONENTS
-
-MOTIONS = ("ux", "uy", "uz", "rx", "ry", "rz")
 
 #: Of the root mean square rotation: a case that turns the bearing by less has no secant of its own,
 #: for M / theta goes to infinity wherever anything else makes a moment.
@@ -225,7 +223,7 @@ def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> 
 def statement(found: Secant, parts: Parts) -> str:
     """One sentence: whether a torsional spring is the right form, and if not, what breaks it."""
     a = found.component
-    moment = COMPONENTS[a]
+    moment = FORCES[a]
     axis = "xyz"[a - 3]
     cases = f"{len(found.secants):,} load case{'s' if len(found.secants) > 1 else ''}"
     scatter = f"K_R about {axis} scatters by {100 * found.scatter:.2g} % over {cases}"
@@ -244,9 +242,9 @@ def statement(found: Secant, parts: Parts) -> str:
     reason = _REASONS.get((a, j))
     arm = f"{parts.arms[j]:.3g} m" if j < 3 else f"{parts.arms[j]:.3g}"
     return (
-        f"{wrong}: {moment} also follows {COMPONENTS[j]}"
+        f"{wrong}: {moment} also follows {FORCES[j]}"
         + (f" ({reason})" if reason else "")
-        + f"; {arm} times {COMPONENTS[j]} is {100 * parts.sizes[j]:.2g} % of {moment} beside what "
+        + f"; {arm} times {FORCES[j]} is {100 * parts.sizes[j]:.2g} % of {moment} beside what "
         f"goes with {MOTIONS[a]}, and makes {share}"
     )
 

@@ -6,15 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import eliminate, freedoms
-from fe_drivetrain.response.model import COMPONENTS, LOADS, Model
+from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import solve
-
-#: Standard gravity [m/s^2] (CGPM 1901).
-GRAVITY = 9.80665
 
 
 @dataclass(frozen=True)
@@ -71,7 +69,7 @@ class Response:
         labels, matrix
             "NAME Fx" to "NAME Mz" for each reaction, and (n_labels, 10).
         """
-        labels = [f"{name} {c}" for name in self.reactions for c in COMPONENTS]
+        labels = [f"{name} {c}" for name in self.reactions for c in FORCES]
         return labels, np.vstack(list(self.reactions.values()))
 
     def history(

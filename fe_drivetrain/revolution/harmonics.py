@@ -21,14 +21,10 @@ from scipy.linalg import block_diag
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.revolution import frontal
 from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
 from fe_drivetrain.scene.materials import Material
-
-COMPONENTS = ("xx", "rr", "tt", "xr", "xt", "rt")
-"""Of stress: the first four go round as cos(n t), the last two as sin(n t)."""
 
 Traction = Callable[[Floats, Floats], Floats]
 """Of (k, 2) positions [m] and outward normals, each x and radius: (k, 3) amplitudes [Pa]."""
@@ -224,7 +220,7 @@ def stresses(
 
     Returns
     -------
-    (k, q, 6) in the order of `COMPONENTS` [Pa]; on the axis the limits.
+    (k, q, 6) in the order of `CYLINDRICAL_STRESSES` [Pa]; on the axis the limits.
     """
     chosen = mesh.cells if cells is None else mesh.cells[cells]
     places = np.broadcast_to(at, (len(chosen), *np.shape(at)[-2:]))
@@ -243,7 +239,7 @@ def stresses(
     )
 
     def over_radius(f: Floats, slope: Floats) -> Floats:
-        on_axis = r < SAME_LENGTH
+        on_axis = r < LENGTH_TOLERANCE
         return np.where(on_axis, slope, f / np.where(on_axis, 1.0, r))
 
     e_tt = over_radius(ur + n * ut, ur_r + n * ut_r)
@@ -345,10 +341,10 @@ def seat_stiffness(
     x, r = mesh.nodes.T
     nodes = []
     for seat, radius in zip(seats, radii, strict=True):
-        low, high = seat[0] - SAME_LENGTH, seat[1] + SAME_LENGTH
+        low, high = seat[0] - LENGTH_TOLERANCE, seat[1] + LENGTH_TOLERANCE
         here = (x > low) & (x < high)
         if _wide(seat):
-            here &= np.abs(r - np.interp(x, seat, radius)) < SAME_LENGTH
+            here &= np.abs(r - np.interp(x, seat, radius)) < LENGTH_TOLERANCE
         nodes.append((np.flatnonzero(here), 0.5 * (seat[0] + seat[1])))
     return stiffness_between_seats(mesh, material, nodes)
 
@@ -356,7 +352,7 @@ def seat_stiffness(
 def stiffness_between_ends(mesh: Meridian, material: Material) -> Floats:
     """`end_stiffness` of a meridian, whose ends are its nodes of least and of greatest x."""
     x = mesh.nodes[:, 0]
-    ends = [(np.flatnonzero(np.abs(x - end) < SAME_LENGTH), end) for end in (x.min(), x.max())]
+    ends = [(np.flatnonzero(np.abs(x - end) < LENGTH_TOLERANCE), end) for end in (x.min(), x.max())]
     return stiffness_between_seats(mesh, material, ends)
 
 
@@ -410,21 +406,21 @@ def stiffness_between_seats(
 
 
 def _wide(seat: tuple[float, float]) -> bool:
-    return seat[1] - seat[0] > SAME_LENGTH
+    return seat[1] - seat[0] > LENGTH_TOLERANCE
 
 
 def _seat(shaft: Shaft, seat: tuple[float, float]) -> tuple[float, float]:
     """Outer radius of a seat at its ends [m]; of an end face what stands there twice."""
     low, high = seat
     if not _wide(seat):
-        if min(abs(low - shaft.front), abs(low - shaft.rear)) > SAME_LENGTH or high < low:
+        if min(abs(low - shaft.front), abs(low - shaft.rear)) > LENGTH_TOLERANCE or high < low:
             raise InputError(
                 f"seat from x = {low:g} m to {high:g} m has no width: give its two ends in "
                 f"ascending order, or twice {shaft.front:g} m or {shaft.rear:g} m for an end face"
             )
         return 0.0, 0.0
     for piece, (start, end) in zip(shaft.pieces, pairwise(shaft.stations), strict=True):
-        if start - SAME_LENGTH <= low and high <= end + SAME_LENGTH:
+        if start - LENGTH_TOLERANCE <= low and high <= end + LENGTH_TOLERANCE:
             widths = np.interp(seat, [start, end], [piece.outer_diameter, piece.end_diameter])
             return float(widths[0] / 2), float(widths[1] / 2)
     raise InputError(

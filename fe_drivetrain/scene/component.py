@@ -19,7 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
 from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.scene.scene import (
-    COMPONENTS,
+    COMPONENT_KINDS,
     Coupling,
     Keys,
     check_material,
@@ -219,7 +219,7 @@ def is_component(text: str) -> bool:
         data = parse_mapping(text)
     except InputError:
         return False
-    return any(kind in data for kind in COMPONENTS)
+    return any(kind in data for kind in COMPONENT_KINDS)
 
 
 def component_hash(component: Component) -> str:
@@ -228,10 +228,10 @@ def component_hash(component: Component) -> str:
 
 
 def _validated(data: dict[str, Any], source: str) -> Component:
-    found = [kind for kind in COMPONENTS if kind in data]
+    found = [kind for kind in COMPONENT_KINDS if kind in data]
     if len(found) != 1:
         raise InputError(
-            f"{source} must have one of the keys {', '.join(COMPONENTS)}, not "
+            f"{source} must have one of the keys {', '.join(COMPONENT_KINDS)}, not "
             f"{' and '.join(found) or 'none of them'}: that says which component it is"
         )
     return validated(_KINDS[found[0]], data, source)

@@ -33,7 +33,7 @@ SPHERICAL_JOINTS = ("sliding", "averaged", "rigid")
 Coupling = Literal["averaged", "rigid"]
 
 #: Keys that make a file one of a component, see `fe_drivetrain.scene.component`.
-COMPONENTS = ("gearbox_housing", "planet_carrier")
+COMPONENT_KINDS = ("gearbox_housing", "planet_carrier")
 
 _MAX_BYTES = 1_000_000
 _STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
@@ -331,7 +331,7 @@ def parse_scene(
 ) -> Scene:
     """A scene from YAML text; see `read_scene`."""
     data = parse_mapping(text, changes, source)
-    for kind in COMPONENTS:
+    for kind in COMPONENT_KINDS:
         if kind in data:
             raise InputError(
                 f"{source} is a component, for it has {kind!r}, and no scene of a shaft: "

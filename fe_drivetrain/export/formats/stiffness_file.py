@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.scaling import least_eigenvalue
 from fe_drivetrain.export.superelement import FRAME
 
@@ -19,7 +20,7 @@ class StiffnessMatrix(BaseModel):
 
     name: str
     reference_point: tuple[float, float, float] = Field(description="[m], in the frame")
-    freedoms: tuple[str, ...] = ("ux", "uy", "uz", "rx", "ry", "rz")
+    freedoms: tuple[str, ...] = MOTIONS
     units: Literal["N/m, N, N m/rad"] = "N/m, N, N m/rad"
     matrix: list[list[float]]
     description: str
