@@ -1,0 +1,70 @@
+"""Validation cases: one script each, which describes a problem, runs it and judges the answers.
+
+A script is ``cases/GROUP/NAME.py`` with one function that `case` declares, or, where many problems
+differ in a few values only, one that `cases` declares for each row of a table beside it. What the
+declaration says of a case is read without importing it, so it is made of literals.
+"""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+_Function = TypeVar("_Function", bound=Callable[..., None])
+
+
+def case(title: str, *, source: str, alone: bool = False) -> Callable[[_Function], _Function]:
+    """Declare the function that runs the case of its file.
+
+    Parameters
+    ----------
+    title : str
+        One line.
+    source : str
+        Where the problem and its reference come from.
+    alone : bool
+        It measures time or memory: nothing may run beside it, and nothing it uses comes from the
+        cache.
+
+    Notes
+    -----
+    The function takes a `fe_drivetrain.suite.Run` and fills a `fe_drivetrain.suite.Page`. As a
+    script the file runs its case, with the options of ``fe-drivetrain run``.
+    """
+
+    def declared(function: _Function) -> _Function:
+        if function.__module__ == "__main__":
+            group, name = Path(function.__code__.co_filename).resolve().with_suffix("").parts[-2:]
+            _run([f"{group}/{name}", *sys.argv[1:]])
+        return function
+
+    return declared
+
+
+def cases(table: str) -> Callable[[_Function], _Function]:
+    """Declare the function that runs each case of a table.
+
+    Parameters
+    ----------
+    table : str
+        Name of a YAML file beside the script: by name of the case its title, its source, and what
+        else the function takes of it.
+
+    Notes
+    -----
+    The function takes a `fe_drivetrain.suite.Run`, a `fe_drivetrain.suite.Page`, and its row. As a
+    script the file runs the cases that are named after it.
+    """
+
+    def declared(function: _Function) -> _Function:
+        if function.__module__ == "__main__":
+            _run(sys.argv[1:])
+        return function
+
+    return declared
+
+
+def _run(arguments: list[str]) -> None:
+    from fe_drivetrain.commands import main
+
+    main(["run", *arguments])

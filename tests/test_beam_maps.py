@@ -3,9 +3,15 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.stability import beam_maps as maps
-from fe_drivetrain.cases.stability.beam_theory_flange import plate_rotation
-from fe_drivetrain.cases.verification.shaft_theory import Tube
+from fe_drivetrain.cases.stability import (
+    beam_maps as maps,
+)
+from fe_drivetrain.cases.stability.beam_theory_flange import (
+    plate_rotation,
+)
+from fe_drivetrain.validation.shaft_theory import (
+    Tube,
+)
 
 
 @pytest.mark.parametrize("bore", [0.0, 0.6])

@@ -1,6 +1,7 @@
 """A result folder appears whole or not at all, and says what was computed."""
 
 import os
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -20,7 +21,8 @@ from fe_drivetrain.report.results import (
     read_results,
 )
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import Case, Run, find_cases, run_case
+from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Run, find_cases, run_case
 
 
 def results_of(run: Run, *items: Text | Table | Chart | Image, computed: float = 1.01) -> Results:
@@ -200,4 +202,9 @@ def test_every_case_of_the_package_is_named_after_its_place() -> None:
     assert cases
     for name, found in cases.items():
         assert found.name == name
-        assert found.run.__module__ == f"fe_drivetrain.cases.{name.replace('/', '.')}"
+        if isinstance(found, case_module.Case):
+            module, function = found.run.args
+            assert callable(getattr(import_module(module), function))
+        else:
+            module = found.run.__module__
+        assert module == f"fe_drivetrain.cases.{name.replace('/', '.')}"

@@ -17,7 +17,8 @@ from fe_drivetrain.commands import app
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.results import Environment, Results, judge, read_results
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Run
 
 # a script of a case, as under cases/, that counts to one or does what --set work says
 SCRIPT = """

@@ -8,8 +8,12 @@ from conftest import coarse_scene
 
 from fe_drivetrain.beam import closed_forms
 from fe_drivetrain.beam.of_scene import main_bearing_beam
-from fe_drivetrain.cases.main_bearing.comparison import Linear
-from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.cases.main_bearing.comparison import (
+    Linear,
+)
+from fe_drivetrain.cases.main_bearing.study import (
+    Solved,
+)
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.mesh.mesh import quality
 from fe_drivetrain.response.model import Model

@@ -4,13 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from fe_drivetrain.cases.drivetrain import from_table, published
-from fe_drivetrain.cases.drivetrain.independent import (
-    certified,
-    holzer_frequencies,
-    inverse_squares,
-    modes_below,
-    two_mass_frequencies,
+from fe_drivetrain.cases.drivetrain import (
+    from_table,
+    published,
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.suite.case import Run
@@ -41,6 +37,13 @@ from fe_drivetrain.torsion.system import (
     relative_sensitivities,
     response,
     static_stiffness,
+)
+from fe_drivetrain.validation.independent_torsion import (
+    certified,
+    holzer_frequencies,
+    inverse_squares,
+    modes_below,
+    two_mass_frequencies,
 )
 
 NAMES = ("nrel_750kw", "drivetrain_a", "drivetrain_b", "drivetrain_c")

@@ -11,8 +11,9 @@ from conftest import coarse_scene
 from scipy.linalg import eigh
 
 from fe_drivetrain import export
-from fe_drivetrain.cases.export.sample_elastodyn import TEXT
-from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.cases.export.sample_elastodyn import (
+    TEXT,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.formats import extptfm, subdyn
 from fe_drivetrain.export.formats.elastodyn import (
@@ -313,7 +314,7 @@ def test_extptfm_keeps_frequencies_and_inertia(tmp_path: Path, shaft: Supereleme
     assert inertia is not None
     np.testing.assert_allclose(found.mass[:6, :6], inertia, atol=1e-12 * inertia.max())
     np.testing.assert_allclose(
-        found.weight[:6], -GRAVITY * inertia[:, 2], atol=1e-9 * inertia.max()
+        found.weight[:6], -extptfm.GRAVITY * inertia[:, 2], atol=1e-9 * inertia.max()
     )
 
 

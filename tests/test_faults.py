@@ -30,7 +30,8 @@ from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.mesh import cached
 from fe_drivetrain.report.results import Environment, Results, judge, read_results
 from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.suite.case import Case, Run, new_folder, run_case
+from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Run, new_folder, run_case
 from fe_drivetrain.suite.suite import run_cases
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are forked")

@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.verification import fillets
-from fe_drivetrain.cases.verification.solid_fillet import fitted_peak
+from fe_drivetrain.validation import (
+    fillet_factors,
+)
+from fe_drivetrain.validation.solid_fillet import (
+    fitted_peak,
+)
 
 
 @pytest.mark.parametrize("load", ["tension", "bending"])
@@ -12,13 +16,17 @@ from fe_drivetrain.cases.verification.solid_fillet import fitted_peak
 def test_both_ranges_of_a_fit_meet(load, wide):
     """At t/r = 2, to the few per cent of a fit: a wrong sign in one constant shows."""
     radius = (wide - 1.0) / 4.0
-    low, high = (fillets.peterson(load, wide, radius * s) for s in (1.0 + 1e-9, 1.0 - 1e-9))
+    low, high = (fillet_factors.peterson(load, wide, radius * s) for s in (1.0 + 1e-9, 1.0 - 1e-9))
     assert low == pytest.approx(high, rel=0.02)
 
 
-@pytest.mark.parametrize("load", fillets.LOADS)
+@pytest.mark.parametrize("load", fillet_factors.LOADS)
 def test_published_factors_fall_with_the_radius_and_rise_with_the_step(load):
-    formulae = [fillets.peterson] if load == "torsion" else [fillets.peterson, fillets.tipton]
+    formulae = (
+        [fillet_factors.peterson]
+        if load == "torsion"
+        else [fillet_factors.peterson, fillet_factors.tipton]
+    )
     for formula in formulae:
         by_radius = [formula(load, 1.5, r) for r in (0.08, 0.1, 0.15, 0.2, 0.25)]
         assert np.all(np.diff(by_radius) < 0)
@@ -30,17 +38,17 @@ def test_published_factors_fall_with_the_radius_and_rise_with_the_step(load):
 @pytest.mark.parametrize("load", ["tension", "bending"])
 def test_no_step_concentrates_nothing(load):
     """To the few per cent that a fitted formula is off."""
-    assert fillets.tipton(load, 1.00001, 0.2) == pytest.approx(1.0, abs=0.03)
+    assert fillet_factors.tipton(load, 1.00001, 0.2) == pytest.approx(1.0, abs=0.03)
 
 
 def test_outside_its_range_a_fit_says_nothing():
-    assert np.isnan(fillets.peterson("torsion", 2.0, 0.1))  # t/r = 5
-    assert np.isnan(fillets.peterson("bending", 3.0, 0.04))  # t/r = 25
+    assert np.isnan(fillet_factors.peterson("torsion", 2.0, 0.1))  # t/r = 5
+    assert np.isnan(fillet_factors.peterson("bending", 3.0, 0.04))  # t/r = 25
 
 
-@pytest.mark.parametrize("load", fillets.LOADS)
+@pytest.mark.parametrize("load", fillet_factors.LOADS)
 def test_factor_has_settled_and_far_from_the_shoulder_stress_is_nominal(load):
-    found = fillets.factor(load, 1.5, 0.2)
+    found = fillet_factors.factor(load, 1.5, 0.2)
     assert found.band < 1e-3 * found.peak.factor
     assert 0.0 < found.peak.angle < 45.0
     # the other end of the arc meets the free shoulder: little stress is left there

@@ -31,7 +31,8 @@ from fe_drivetrain.report.results import Environment, Results, judge
 from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.scene.scene import Scene, change_scene, parse_scene, read_scene
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Run
 
 SCENE: dict[str, Any] = {
     "title": "small",

@@ -3,8 +3,15 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
-from fe_drivetrain.cases.main_bearing.housing_dimensions import BOLTED, ONE_BODY, STEEL, WIDTH
+from fe_drivetrain.cases.main_bearing import (
+    housing_dimensions as housings,
+)
+from fe_drivetrain.cases.main_bearing.housing_dimensions import (
+    BOLTED,
+    ONE_BODY,
+    STEEL,
+    WIDTH,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.scene import change_scene, library_scene
 

@@ -6,7 +6,9 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.fidelity.published_torsion import front_part
+from fe_drivetrain.cases.fidelity.published_torsion import (
+    front_part,
+)
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.geometry import build, gmsh_session

@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
-from fe_drivetrain.cases.main_bearing import bands
-from fe_drivetrain.cases.main_bearing.bands import FACTORS, LEAST_ORDER, Series
+from fe_drivetrain.cases.main_bearing import (
+    bands,
+)
+from fe_drivetrain.cases.main_bearing.bands import (
+    FACTORS,
+    LEAST_ORDER,
+    Series,
+)
 from fe_drivetrain.scene.scene import change_scene
 from fe_drivetrain.suite.case import Run
 
@@ -62,7 +68,9 @@ def test_coarser_scene_has_larger_elements_and_enough_a_turn():
 
 def test_figures_of_a_coarser_mesh_are_those_of_the_case(tmp_path):
     """Solved on the same mesh, a figure is the same; K_R stands under its plane and estimator."""
-    from fe_drivetrain.cases.main_bearing import study
+    from fe_drivetrain.cases.main_bearing import (
+        study,
+    )
 
     scene = coarse_scene("bonded")
     run = Run({}, True, tmp_path)

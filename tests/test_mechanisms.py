@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
-from fe_drivetrain.cases.main_bearing import study
+from fe_drivetrain.cases.main_bearing import (
+    study,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.mechanisms import bodies, find_mechanisms, weak_restraints
 from fe_drivetrain.mesh.mesh import quality

@@ -13,9 +13,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.performance import peers, problems, rounds
-from fe_drivetrain.cases.performance.tools import launch, runner
-from fe_drivetrain.cases.performance.tools.launch import Limits, Outcome, Variant
+from fe_drivetrain.cases.performance import (
+    peers,
+    problems,
+    rounds,
+)
+from fe_drivetrain.cases.performance.tools import (
+    launch,
+    runner,
+)
+from fe_drivetrain.cases.performance.tools.launch import (
+    Limits,
+    Outcome,
+    Variant,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.mesh import FACETS
 from fe_drivetrain.suite.case import Run, find_cases, run_case

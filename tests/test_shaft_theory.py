@@ -5,7 +5,9 @@ import pytest
 
 from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.beam.shaft import Beam, Support, unit_load_response
-from fe_drivetrain.cases.verification.shaft_theory import (
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.validation.shaft_theory import (
     Spring,
     Tube,
     chain_frequencies,
@@ -20,15 +22,15 @@ from fe_drivetrain.cases.verification.shaft_theory import (
     rod_frequency,
     two_mass_frequencies,
 )
-from fe_drivetrain.cases.verification.solid_shafts import (
+from fe_drivetrain.validation.solid_shafts import (
     on_springs,
     sectional_compliance,
     solid,
     straight,
 )
-from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.validation.torsion_meridian import (
+    torsion_bounds,
+)
 
 STEEL = MATERIALS["steel"]
 TUBES = [Tube(0.4, bore, 1.5, STEEL) for bore in (0.0, 0.2, 0.36)]

@@ -4,10 +4,21 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from fe_drivetrain.cases.stability import couplings, fingerprints, floats, layers
-from fe_drivetrain.cases.stability.decades import decades, safe_range, slope
+from fe_drivetrain.cases.stability import (
+    fingerprints,
+)
+from fe_drivetrain.cases.stability.decades import (
+    decades,
+    safe_range,
+    slope,
+)
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.validation import (
+    layers,
+    other_precisions,
+    penalised_couplings,
+)
 
 
 def test_safe_range_is_the_run_about_the_least_error():
@@ -32,25 +43,30 @@ def test_slope_of_a_power_within_bounds():
 
 def test_assembly_in_any_precision_is_the_library_s():
     """Two implementations, one operator; in 32 bits to 32 bits."""
-    solid = floats.tube(3.0, 4, 2)
+    solid = other_precisions.tube(3.0, 4, 2)
     n = solid.points.size
     own = assemble(solid.points.astype(float), solid.cells, MATERIALS["steel"].lame).tocsr()
     own = own[solid.free][:, solid.free]
     size = abs(own).max()
     for kind, tolerance in ((np.float64, 1e-13), (np.float32, 1e-4)):
-        K = floats.summed(solid, kind)
+        K = other_precisions.summed(solid, kind)
         assert K.dtype == kind
         assert abs(sparse.csr_array(K.astype(float)) - own).max() < tolerance * size
     assert n > len(solid.free)
 
 
 def test_refined_solution_fulfils_its_equations_beyond_double_precision():
-    solid = floats.tube(3.0, 4, 2)
-    K, long = (floats.summed(solid, kind) for kind in (np.float64, np.longdouble))
-    u = floats.refined(long, K, solid.load, 10)
+    solid = other_precisions.tube(3.0, 4, 2)
+    K, long = (other_precisions.summed(solid, kind) for kind in (np.float64, np.longdouble))
+    u = other_precisions.refined(long, K, solid.load, 10)
     f = solid.load.astype(np.longdouble)
-    residual = np.abs(f - floats._product(long, u)).max() / np.abs(f).max()
-    once = np.abs(f - floats._product(long, floats.solved(K, solid.load).astype(np.longdouble)))
+    residual = np.abs(f - other_precisions._product(long, u)).max() / np.abs(f).max()
+    once = np.abs(
+        f
+        - other_precisions._product(
+            long, other_precisions.solved(K, solid.load).astype(np.longdouble)
+        )
+    )
     assert residual < 1e-2 * once.max() / np.abs(f).max()
 
 
@@ -77,11 +93,14 @@ def test_chain_is_springs_in_series_and_rigid_ones_give_nothing():
     assert rigid == pytest.approx((1.0 + 1.0 / 0.3) / layers.E, rel=1e-12)
 
 
-@pytest.mark.parametrize("kind", couplings.KINDS)
+@pytest.mark.parametrize("kind", penalised_couplings.KINDS)
 def test_a_penalty_is_too_soft_and_tends_to_elimination(kind):
-    bar = couplings.bar(kind, 1 if kind != "tie" else 2)
-    exact = couplings.work(*couplings.eliminated(bar), "superlu")
-    soft, stiff = (couplings.work(*couplings.penalised(bar, p), "superlu") for p in (1e2, 1e5))
+    bar = penalised_couplings.bar(kind, 1 if kind != "tie" else 2)
+    exact = penalised_couplings.work(*penalised_couplings.eliminated(bar), "superlu")
+    soft, stiff = (
+        penalised_couplings.work(*penalised_couplings.penalised(bar, p), "superlu")
+        for p in (1e2, 1e5)
+    )
     assert (soft > exact).all()
     assert (stiff > exact).all()
     assert ((stiff / exact - 1.0) < 2e-3 * (soft / exact - 1.0)).all()

@@ -15,7 +15,8 @@ from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.processes import CORES_VARIABLE, cores
 from fe_drivetrain.report.page import write_index
 from fe_drivetrain.report.results import Environment, Results, judge, read_results
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Run
 from fe_drivetrain.suite.suite import run_cases
 
 

@@ -3,11 +3,17 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.verification import condensed, distorted, manufactured
-from fe_drivetrain.cases.verification.round_shafts import Bush
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.operator.loads import body_loads
+from fe_drivetrain.validation import (
+    condensed_bodies,
+    distorted_blocks,
+    manufactured,
+)
+from fe_drivetrain.validation.round_shafts import (
+    Bush,
+)
 
 
 @pytest.mark.parametrize("waves", [manufactured.three_waves(), manufactured.plane_waves()])
@@ -40,7 +46,7 @@ def test_force_in_the_volume_balances_the_tractions_on_the_surface():
 
 @pytest.mark.parametrize("nodes", [4, 8, 10, 20, 27])
 def test_error_norms_of_a_field_that_is_five_percent_too_large(nodes):
-    block = distorted.patch("any", nodes, 0.1, 0.03).block
+    block = distorted_blocks.patch("any", nodes, 0.1, 0.03).block
     gradient = np.array([[1.0, 2.0, 0.0], [0.5, -1.0, 3.0], [0.0, 0.7, 0.2]])
 
     class Linear:
@@ -70,9 +76,9 @@ def test_gradient_is_that_of_the_displacement():
 
 def test_rank_is_decided_by_the_widest_gap():
     values = np.array([0.0, -3e-16, 1e-15, 0.0, 2e-15, 1e-16, 1e-3, 0.1, 0.5, 0.9, 1.0, 1.0])
-    assert condensed.zeros_by_gap(values)[0] == 6
+    assert condensed_bodies.zeros_by_gap(values)[0] == 6
     values[5] = 1e-4  # one zero mode too few: the body is held somewhere
-    assert condensed.zeros_by_gap(values)[0] == 5
+    assert condensed_bodies.zeros_by_gap(values)[0] == 5
 
 
 def test_order_of_a_series_of_known_order():
@@ -85,8 +91,8 @@ def test_order_of_a_series_of_known_order():
 
 @pytest.mark.parametrize("nodes", [10, 20, 27])
 def test_under_integration_fails_the_patch_test_only_where_elements_are_curved(nodes):
-    straight, curved = (distorted.patch("any", nodes, 0.1, by) for by in (0.0, 0.05))
+    straight, curved = (distorted_blocks.patch("any", nodes, 0.1, by) for by in (0.0, 0.05))
     stress = np.diag([1.0, 0.0, 0.0])
-    assert distorted.inner_forces(curved, stress, 6) < 1e-13
-    assert distorted.inner_forces(curved, stress, 2) > 1e-4
-    assert distorted.inner_forces(straight, stress, 2) < 1e-13
+    assert distorted_blocks.inner_forces(curved, stress, 6) < 1e-13
+    assert distorted_blocks.inner_forces(curved, stress, 2) > 1e-4
+    assert distorted_blocks.inner_forces(straight, stress, 2) < 1e-13

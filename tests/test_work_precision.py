@@ -19,15 +19,27 @@ from fe_drivetrain.cases.performance.choices import (
     mesh_shaft,
     shaft_outcomes,
 )
-from fe_drivetrain.cases.performance.growth import STEPPED
+from fe_drivetrain.cases.performance.growth import (
+    STEPPED,
+)
 from fe_drivetrain.cases.performance.precision import (
     cheapest_within,
     growth_exponent,
     pareto_front,
 )
-from fe_drivetrain.cases.performance.studies import beam_stiffness, meridian_stiffness
-from fe_drivetrain.cases.performance.tilt import QUANTITIES, assemble_tilt, in_element
-from fe_drivetrain.cases.performance.work_precision import PARTS, parts_of
+from fe_drivetrain.cases.performance.studies import (
+    beam_stiffness,
+    meridian_stiffness,
+)
+from fe_drivetrain.cases.performance.tilt import (
+    QUANTITIES,
+    assemble_tilt,
+    in_element,
+)
+from fe_drivetrain.cases.performance.work_precision import (
+    PARTS,
+    parts_of,
+)
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.mesh.hexahedra import Grading

@@ -11,7 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.cases.verification.published_shafts import material_of
+from fe_drivetrain.cases.verification.published_shafts import (
+    material_of,
+)
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import Constraint, averaged_point, fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh import Mesh, face_weights, generate

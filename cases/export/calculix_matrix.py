@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Natural frequencies that are compared.
 COUNT = 3
@@ -15,7 +16,10 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.export.samples import frequencies, samples
+    from fe_drivetrain.cases.export.samples import (
+        frequencies,
+        samples,
+    )
     from fe_drivetrain.common import scaled_to_unit_diagonal
     from fe_drivetrain.export import (
         ROUNDING,

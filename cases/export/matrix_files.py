@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 REASON = "seventeen digits, or the bits, name every double; the rest is one addition of the halves"
 
@@ -20,7 +21,10 @@ def run(run: Run) -> Any:
     from scipy.io import mmread
 
     from fe_drivetrain import export
-    from fe_drivetrain.cases.export.samples import difference, samples
+    from fe_drivetrain.cases.export.samples import (
+        difference,
+        samples,
+    )
     from fe_drivetrain.common import Floats, MissingToolError
     from fe_drivetrain.report import Section, Table, judge
 

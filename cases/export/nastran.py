@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 SOURCE = "the matrices before they were written"
 DMIG_REASON = (
@@ -19,7 +20,11 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain import export
-    from fe_drivetrain.cases.export.samples import difference, frequencies, samples
+    from fe_drivetrain.cases.export.samples import (
+        difference,
+        frequencies,
+        samples,
+    )
     from fe_drivetrain.export import pynastran
     from fe_drivetrain.report import Section, Table, Text, judge
 

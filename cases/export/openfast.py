@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 SOURCE = "the values before they were written"
 DIGITS = "the file keeps every digit"
@@ -26,8 +27,14 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.export.sample_elastodyn import TEXT
-    from fe_drivetrain.cases.export.samples import FACTOR, difference, frequencies
+    from fe_drivetrain.cases.export.sample_elastodyn import (
+        TEXT,
+    )
+    from fe_drivetrain.cases.export.samples import (
+        FACTOR,
+        difference,
+        frequencies,
+    )
     from fe_drivetrain.export import (
         Superelement,
         shaft_superelement,

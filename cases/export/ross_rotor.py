@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Elements along the shaft, and natural frequencies that are compared.
 PARTS, COUNT = 32, 6
@@ -22,7 +23,9 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import Support, beam_of_scene, shaft_stiffness, unit_load_response
-    from fe_drivetrain.cases.export import rotor_scenes
+    from fe_drivetrain.cases.export import (
+        rotor_scenes,
+    )
     from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
     from fe_drivetrain.export.programs import ross_rotor
     from fe_drivetrain.fidelity import scene_supports

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 SCENE = "main_bearing_spherical"
 
@@ -29,8 +30,15 @@ def run(run: Run) -> Any:
     """Sweep the tilt stiffness of the joint from none to all, and set the other joints beside."""
     import numpy as np
 
-    from fe_drivetrain.cases.fidelity import joint_ladder
-    from fe_drivetrain.cases.fidelity.joint_ladder import BEARING, solved, tilting, with_joint
+    from fe_drivetrain.cases.fidelity import (
+        joint_ladder,
+    )
+    from fe_drivetrain.cases.fidelity.joint_ladder import (
+        BEARING,
+        solved,
+        tilting,
+        with_joint,
+    )
     from fe_drivetrain.fidelity import meridian_shaft
     from fe_drivetrain.interfaces import joint_stiffness, roller_lines, roller_loads
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace

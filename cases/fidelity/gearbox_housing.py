@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Bushing stiffness is varied by these factors, decades about the one given.
 DECADES = (-2.0, 3.0)
@@ -16,7 +17,9 @@ def run(run: Run) -> Any:
     """Climb the ladder, vary the bushings, export."""
     import numpy as np
 
-    from fe_drivetrain.cases.fidelity import component_page as page
+    from fe_drivetrain.cases.fidelity import (
+        component_page as page,
+    )
     from fe_drivetrain.export import component_superelement
     from fe_drivetrain.fidelity import gearbox_springs
     from fe_drivetrain.scene import HousingComponent, change_component, library_component
@@ -84,7 +87,9 @@ def _sweep(ladder: Any, component: Any) -> tuple[Any, float, float]:
     """
     import numpy as np
 
-    from fe_drivetrain.cases.fidelity.component_page import TOLERANCE
+    from fe_drivetrain.cases.fidelity.component_page import (
+        TOLERANCE,
+    )
     from fe_drivetrain.fidelity import housing_frame, rigid_level
     from fe_drivetrain.report import Section, Text, chart, trace
     from fe_drivetrain.scene import change_component
@@ -247,7 +252,10 @@ def _checks(ladder: Any, component: Any) -> list[Any]:
     import numpy as np
 
     from fe_drivetrain.beam import rectangle
-    from fe_drivetrain.cases.fidelity.component_page import SOLVED, SOLVED_REASON
+    from fe_drivetrain.cases.fidelity.component_page import (
+        SOLVED,
+        SOLVED_REASON,
+    )
     from fe_drivetrain.common import wrench_transport
     from fe_drivetrain.fidelity import frame_level
     from fe_drivetrain.report import judge

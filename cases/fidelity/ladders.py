@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from fe_drivetrain.cases.fidelity.published_torsion import Published, beside_published
-from fe_drivetrain.cases.fidelity.stiffness_files import stiffness_files
+from fe_drivetrain.cases.fidelity.published_torsion import (
+    Published,
+    beside_published,
+)
+from fe_drivetrain.cases.fidelity.stiffness_files import (
+    stiffness_files,
+)
 from fe_drivetrain.commands import advised
 from fe_drivetrain.fidelity import Quantity
 from fe_drivetrain.report import Results
 from fe_drivetrain.scene import change_scene, library_scene
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Coarsening of the mesh under --quick.
 QUICK = 1.4

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Shafts of verification/shaft_ends, and a seat on each [m].
 SEATS = {"bored": (0.6, 0.85), "stepped": (1.0, 1.2)}
@@ -29,13 +30,15 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.verification import shaft_ends
     from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.compare import grid_convergence, richardson
     from fe_drivetrain.mesh import shaft_hexahedra
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.revolution import seat_stiffness
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation import (
+        shaft_ends,
+    )
 
     steel = shaft_ends.STEEL
 

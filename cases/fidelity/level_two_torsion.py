@@ -3,7 +3,8 @@
 from itertools import pairwise
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 LARGE, SMALL, LENGTH = 0.6, 0.4, 0.6
 BORES = {"bored": 0.2, "solid": 0.0}
@@ -20,13 +21,15 @@ CLAIM = 1e-8
 
 def run(run: Run) -> Any:
     """The bounds closed in on, and the meridian's 12 x 12 between them."""
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
+    from fe_drivetrain.cases.verification import shaft_inputs
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.revolution import meridian, stiffness_between_ends
     from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation.torsion_meridian import (
+        torsion_bounds,
+    )
 
     steel = MATERIALS["steel"]
     verdicts, traces = [], []
@@ -149,12 +152,12 @@ def run(run: Run) -> Any:
                         "outline. Of the solid shaft the lower bound takes the torsion function "
                         "on the step's face by interpolation, and is a bound but for that."
                     ),
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("large diameter", LARGE, "m", "chosen"),
                         ("small diameter", SMALL, "m", "chosen"),
                         ("bore of the bored shaft", BORES["bored"], "m", "chosen"),
                         ("length of each part", LENGTH, "m", "chosen"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                 ],
             )

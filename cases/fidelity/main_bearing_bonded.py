@@ -2,14 +2,17 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 SCENE, QUANTITY, TOLERANCE = "main_bearing_bonded", "main_bearing.My", 0.1
 
 
 def run(run: Run) -> Any:
     """Climb the whole ladder."""
-    from fe_drivetrain.cases.fidelity.ladders import climbed
+    from fe_drivetrain.cases.fidelity.ladders import (
+        climbed,
+    )
 
     return climbed(CASE, run, SCENE, QUANTITY, TOLERANCE)
 

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: N m. Rated torque of the NREL 5 MW turbine: generator torque 43 093.55 N m at a ratio of 97
 #: (Jonkman 2009, NREL/TP-500-38060, Table 1-1 and section 7).
@@ -14,7 +15,9 @@ def run(run: Run) -> Any:
     """Climb the ladder with two walls, compare with one, export."""
     import numpy as np
 
-    from fe_drivetrain.cases.fidelity import component_page as page
+    from fe_drivetrain.cases.fidelity import (
+        component_page as page,
+    )
     from fe_drivetrain.export import component_superelement
     from fe_drivetrain.fidelity import pin_motions, torque_share
     from fe_drivetrain.scene import CarrierComponent, change_component, library_component
@@ -100,7 +103,9 @@ def _percent(ladder: Any, quantity: Any) -> float:
 
 def _walls(run: Run, component: Any, ladder: Any, bands: Any) -> Any:
     """Two walls, with the bands of their wind-up and tilt, against pins on one."""
-    from fe_drivetrain.cases.fidelity import component_page as page
+    from fe_drivetrain.cases.fidelity import (
+        component_page as page,
+    )
     from fe_drivetrain.fidelity import frame_level, pin_motions, solid_component, solid_level
     from fe_drivetrain.report import Section, Table, Text
     from fe_drivetrain.scene import change_component
@@ -153,7 +158,10 @@ def _checks(ladder: Any, component: Any) -> list[Any]:
     import numpy as np
 
     from fe_drivetrain.beam import round_section
-    from fe_drivetrain.cases.fidelity.component_page import SOLVED, SOLVED_REASON
+    from fe_drivetrain.cases.fidelity.component_page import (
+        SOLVED,
+        SOLVED_REASON,
+    )
     from fe_drivetrain.fidelity import frame_level, pin_motions, torque_share
     from fe_drivetrain.interfaces import averaged_point
     from fe_drivetrain.mesh import MEANS, face_weights, turns

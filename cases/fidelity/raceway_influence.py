@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Raceway and outside of the ring, its width, and the rollers' length [m].
 RACEWAY, OUTSIDE, WIDTH, ROLLER = 0.35, 0.40, 0.16, 0.12
@@ -29,12 +30,8 @@ def run(run: Run) -> Any:
     import numpy as np
     from scipy.optimize import brentq
 
-    from fe_drivetrain.cases.verification.plane_rings import Lame, harmonics, plane_strain
-    from fe_drivetrain.cases.verification.ring_solids import (
+    from fe_drivetrain.compare import (
         band_of,
-        on_plane,
-        ring_sector,
-        sector_symmetry,
     )
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
@@ -50,6 +47,16 @@ def run(run: Run) -> Any:
     )
     from fe_drivetrain.scene import MATERIALS
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.plane_rings import (
+        Lame,
+        harmonics,
+        plane_strain,
+    )
+    from fe_drivetrain.validation.ring_solids import (
+        on_plane,
+        ring_sector,
+        sector_symmetry,
+    )
 
     steel = MATERIALS["steel"]
     pitch = 2 * np.pi / ROLLERS

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: 10 % of a stiffness is 5 % of a frequency.
 SCENE, QUANTITY, TOLERANCE = "stepped_shaft", "hub.stiffness.uz", 0.1
@@ -10,7 +11,9 @@ SCENE, QUANTITY, TOLERANCE = "stepped_shaft", "hub.stiffness.uz", 0.1
 
 def run(run: Run) -> Any:
     """Climb the whole ladder."""
-    from fe_drivetrain.cases.fidelity.ladders import climbed
+    from fe_drivetrain.cases.fidelity.ladders import (
+        climbed,
+    )
 
     return climbed(CASE, run, SCENE, QUANTITY, TOLERANCE)
 

@@ -10,7 +10,14 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.cases.fidelity.moved_meshes import BORE, FRONT, OUTER, PEDESTAL, WALL, moved
+from fe_drivetrain.cases.fidelity.moved_meshes import (
+    BORE,
+    FRONT,
+    OUTER,
+    PEDESTAL,
+    WALL,
+    moved,
+)
 from fe_drivetrain.commands import bands, first_order, relative_spread
 from fe_drivetrain.common import FORCES
 from fe_drivetrain.fidelity import (
@@ -46,7 +53,8 @@ from fe_drivetrain.response import (
     without_gearbox,
 )
 from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 from fe_drivetrain.uncertainty import Study, nominal_value, study, with_values
 
 BEARING, LOAD = "main_bearing", "hub.My"

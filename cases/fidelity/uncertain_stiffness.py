@@ -2,14 +2,17 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 SCENE = "main_bearing_bonded_uncertain"
 
 
 def run(run: Run) -> Any:
     """Sensitivities of the beam level, of the assembly by its energy, and by differences."""
-    from fe_drivetrain.cases.fidelity.top_slopes import compared
+    from fe_drivetrain.cases.fidelity.top_slopes import (
+        compared,
+    )
 
     return compared(CASE, run, SCENE)
 

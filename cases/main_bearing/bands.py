@@ -7,8 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing import study
-from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt
+from fe_drivetrain.cases.main_bearing import (
+    study,
+)
+from fe_drivetrain.cases.main_bearing.study import (
+    ESTIMATORS,
+    Solved,
+    Tilt,
+)
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import GridConvergence, grid_convergence
 from fe_drivetrain.report import Table, Verdict, judge

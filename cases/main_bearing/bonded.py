@@ -7,7 +7,8 @@ is named.
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 
 def run(run: Run) -> Any:
@@ -15,7 +16,10 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
-    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.cases.main_bearing import (
+        bands,
+        study,
+    )
     from fe_drivetrain.common import FORCES
     from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
     from fe_drivetrain.report import Section, Table, Text, judge

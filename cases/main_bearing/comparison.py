@@ -16,8 +16,14 @@ from fe_drivetrain.beam import (
     main_bearing_beam,
     shaft,
 )
-from fe_drivetrain.cases.main_bearing.loads import HubLoads
-from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt
+from fe_drivetrain.cases.main_bearing.loads import (
+    HubLoads,
+)
+from fe_drivetrain.cases.main_bearing.study import (
+    ESTIMATORS,
+    Solved,
+    Tilt,
+)
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.scene import Scene

@@ -8,7 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing.study import ESTIMATORS
+from fe_drivetrain.cases.main_bearing.study import (
+    ESTIMATORS,
+)
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import Calibrated, Surface, calibrated, fitted, hypercube, nearest
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids

@@ -6,7 +6,8 @@ FE, torsional-spring beam against bonded FE; and a fourth, a beam on the full 6x
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OWN_KEYS = ("scene", "loads", "solver")
 
@@ -16,7 +17,11 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import main_bearing_beam
-    from fe_drivetrain.cases.main_bearing import bands, loads, study
+    from fe_drivetrain.cases.main_bearing import (
+        bands,
+        loads,
+        study,
+    )
     from fe_drivetrain.cases.main_bearing.comparison import (
         PUBLISHED,
         SIXBYSIX,

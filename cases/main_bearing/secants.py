@@ -8,7 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, shaft
-from fe_drivetrain.cases.main_bearing import bands, loads, study
+from fe_drivetrain.cases.main_bearing import (
+    bands,
+    loads,
+    study,
+)
 from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
 from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, hub_load_set
 from fe_drivetrain.response import LOADS, bearing_unit_stiffness, secant_stiffness, without_gearbox

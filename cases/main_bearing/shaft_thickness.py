@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 WALLS = (100, 75, 50)
 QUICK_WALLS = (100, 50)
@@ -23,7 +24,10 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import closed_forms, main_bearing_beam
-    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.cases.main_bearing import (
+        bands,
+        study,
+    )
     from fe_drivetrain.compare import resultant
     from fe_drivetrain.hub_loads import Condition, hub_loads
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace

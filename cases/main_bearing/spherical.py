@@ -6,7 +6,8 @@ the FE model. Deflection, slope and stiffness do; three forms of the joint show 
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 FORMS = ("sliding", "averaged", "rigid")
 
@@ -16,7 +17,10 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
-    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.cases.main_bearing import (
+        bands,
+        study,
+    )
     from fe_drivetrain.common import GRAVITY
     from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace

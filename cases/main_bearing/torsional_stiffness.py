@@ -2,14 +2,18 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 
 def run(run: Run) -> Any:
     """Measure K_R, and show how much it depends on the estimator and on the load."""
     import numpy as np
 
-    from fe_drivetrain.cases.main_bearing import bands, study
+    from fe_drivetrain.cases.main_bearing import (
+        bands,
+        study,
+    )
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, rounded
     from fe_drivetrain.response import PLANES
 

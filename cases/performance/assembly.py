@@ -32,7 +32,8 @@ from fe_drivetrain.report import Results, Table, Text, environment, judge
 from fe_drivetrain.report import Section as PageSection
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import factorise, reduce
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Mesh size of the hollow shaft of about 110 000 unknowns [m], and a small one.
 SIZE, QUICK_SIZE = 0.0515, 0.2

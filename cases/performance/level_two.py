@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 if TYPE_CHECKING:
     from fe_drivetrain.common import Floats
@@ -33,13 +34,15 @@ def run(run: Run) -> Any:
     import numpy as np
     from threadpoolctl import threadpool_limits
 
-    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
     from fe_drivetrain.fidelity import beam_shaft, meridian_shaft
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.revolution import end_stiffness
     from fe_drivetrain.scene import MATERIALS, library_scene
+    from fe_drivetrain.validation.torsion_meridian import (
+        torsion_bounds,
+    )
 
     steel = MATERIALS["steel"]
 

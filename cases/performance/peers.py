@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fe_drivetrain.cases.performance.problems import Benchmark
-    from fe_drivetrain.cases.performance.rounds import Plan, Row
-    from fe_drivetrain.cases.performance.tools.launch import Outcome, Variant
+    from fe_drivetrain.cases.performance.problems import (
+        Benchmark,
+    )
+    from fe_drivetrain.cases.performance.rounds import (
+        Plan,
+        Row,
+    )
+    from fe_drivetrain.cases.performance.tools.launch import (
+        Outcome,
+        Variant,
+    )
 
 SIZES = (10_000, 50_000, 110_000, 300_000, 1_000_000)
 QUICK_SIZES = (10_000,)
@@ -71,9 +80,16 @@ def run(run: Run) -> Any:
     import tempfile
     from pathlib import Path
 
-    from fe_drivetrain.cases.performance import problems, rounds
-    from fe_drivetrain.cases.performance.tools.launch import parse
-    from fe_drivetrain.cases.performance.tools.runner import write_problem
+    from fe_drivetrain.cases.performance import (
+        problems,
+        rounds,
+    )
+    from fe_drivetrain.cases.performance.tools.launch import (
+        parse,
+    )
+    from fe_drivetrain.cases.performance.tools.runner import (
+        write_problem,
+    )
 
     settings = settings_of(run)
     plan = plan_of(settings)
@@ -115,8 +131,13 @@ def settings_of(run: Run) -> dict[str, Any]:
     InputError
         A setting is unknown or out of its range.
     """
-    from fe_drivetrain.cases.performance.problems import BENCHMARKS
-    from fe_drivetrain.cases.performance.tools.launch import TOOLS, parse
+    from fe_drivetrain.cases.performance.problems import (
+        BENCHMARKS,
+    )
+    from fe_drivetrain.cases.performance.tools.launch import (
+        TOOLS,
+        parse,
+    )
     from fe_drivetrain.common import InputError
 
     quick = QUICK if run.quick else {}
@@ -164,8 +185,12 @@ def settings_of(run: Run) -> dict[str, Any]:
 
 def plan_of(settings: dict[str, Any]) -> Plan:
     """Repetitions and limits."""
-    from fe_drivetrain.cases.performance.rounds import Plan
-    from fe_drivetrain.cases.performance.tools.launch import Limits
+    from fe_drivetrain.cases.performance.rounds import (
+        Plan,
+    )
+    from fe_drivetrain.cases.performance.tools.launch import (
+        Limits,
+    )
 
     limits = Limits(
         float(settings["time_limit"]), settings["memory_limit"] * 2.0**30, settings["threads"]
@@ -177,7 +202,10 @@ def first_runs(
     variants: Sequence[Variant], warm_up: Any, plan: Plan, report: Any
 ) -> dict[Variant, tuple[Outcome, str]]:
     """Run every tool once on the small problem: which are there, and in which Python."""
-    from fe_drivetrain.cases.performance.tools.launch import interpreters, launch
+    from fe_drivetrain.cases.performance.tools.launch import (
+        interpreters,
+        launch,
+    )
 
     found = {}
     for variant in variants:
@@ -268,7 +296,9 @@ def results_of(
 
 def verdicts_of(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> list[Any]:
     """Faster than any other, with less memory than any direct one; the same answer."""
-    from fe_drivetrain.cases.performance import rounds
+    from fe_drivetrain.cases.performance import (
+        rounds,
+    )
     from fe_drivetrain.report import judge
 
     found = []
@@ -315,7 +345,9 @@ def verdicts_of(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> list[A
 
 
 def _time_verdict(label: str, ours: Row, here: Sequence[Row], plan: Plan) -> Any:
-    from fe_drivetrain.cases.performance import rounds
+    from fe_drivetrain.cases.performance import (
+        rounds,
+    )
     from fe_drivetrain.report import judge
 
     peer = rounds.fastest_peer(here)
@@ -336,7 +368,9 @@ def _time_verdict(label: str, ours: Row, here: Sequence[Row], plan: Plan) -> Any
 
 
 def _exact_verdict(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
-    from fe_drivetrain.cases.performance import rounds
+    from fe_drivetrain.cases.performance import (
+        rounds,
+    )
     from fe_drivetrain.report import judge
 
     done = [r for r in rows if r.variant.tool == OURS and r.variant.key == "auto" and r.found]
@@ -360,7 +394,9 @@ def summary_of(
     benchmarks: dict[str, Benchmark], rows: dict[str, list[Row]], missing: Sequence[str]
 ) -> list[str]:
     """The answer in a few sentences."""
-    from fe_drivetrain.cases.performance import rounds
+    from fe_drivetrain.cases.performance import (
+        rounds,
+    )
 
     sentences = []
     for key, benchmark in benchmarks.items():
@@ -381,7 +417,9 @@ def summary_of(
 
 def ratio_table(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> Any:
     """How many times this project's time each tool takes, where it reaches the same error."""
-    from fe_drivetrain.cases.performance import rounds
+    from fe_drivetrain.cases.performance import (
+        rounds,
+    )
     from fe_drivetrain.report import Table
 
     meshes = meshes_of(rows)
@@ -469,7 +507,9 @@ def mesh_table(
 
 def _remarks(row: Row) -> list[str]:
     """What else to know of a row."""
-    from fe_drivetrain.cases.performance.rounds import EQUAL
+    from fe_drivetrain.cases.performance.rounds import (
+        EQUAL,
+    )
 
     remarks = [row.trouble] if row.trouble else []
     if row.variant.rule != "common":
@@ -498,7 +538,9 @@ def _small(value: float) -> str:
 
 def memory_table(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
     """Peak memory of every tool by mesh."""
-    from fe_drivetrain.cases.performance import rounds
+    from fe_drivetrain.cases.performance import (
+        rounds,
+    )
     from fe_drivetrain.report import Table
 
     meshes = meshes_of(rows)
@@ -519,7 +561,9 @@ def memory_table(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
 
 def time_chart(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
     """Time against unknowns."""
-    from fe_drivetrain.cases.performance.rounds import EQUAL
+    from fe_drivetrain.cases.performance.rounds import (
+        EQUAL,
+    )
 
     return _chart(
         f"{benchmark.title}: time from the mesh in memory to the stiffness; hollow markers leave "
@@ -628,7 +672,9 @@ def tool_table(first: dict[Variant, tuple[Outcome, str]], plan: Plan) -> Any:
 
 def missing_tables(first: dict[Variant, tuple[Outcome, str]]) -> list[Any]:
     """How to install what is not there."""
-    from fe_drivetrain.cases.performance.tools.launch import how_to_install
+    from fe_drivetrain.cases.performance.tools.launch import (
+        how_to_install,
+    )
     from fe_drivetrain.report import Table
 
     rows: list[list[Any]] = [

@@ -26,7 +26,8 @@ from fe_drivetrain.solve import (
     multigrid,
     reduce,
 )
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 MANY = 12  # right-hand sides
 

@@ -2,12 +2,15 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 
 def run(run: Run) -> Any:
     """Time the grid, try the options, watch the stopping."""
-    from fe_drivetrain.cases.performance.solver_grid import study
+    from fe_drivetrain.cases.performance.solver_grid import (
+        study,
+    )
 
     return study(run, CASE)
 

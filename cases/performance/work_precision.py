@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fe_drivetrain.cases.performance.choices import Outcome
-    from fe_drivetrain.cases.performance.growth import Grown
-    from fe_drivetrain.cases.performance.studies import Setting, Study
+    from fe_drivetrain.cases.performance.choices import (
+        Outcome,
+    )
+    from fe_drivetrain.cases.performance.growth import (
+        Grown,
+    )
+    from fe_drivetrain.cases.performance.studies import (
+        Setting,
+        Study,
+    )
     from fe_drivetrain.report import Chart, Section, Table, Verdict
 
 PARTS = ("shaft", "housing", "growth")
@@ -35,7 +43,9 @@ _GOAL = "goal of this project"
 
 def run(run: Run) -> Any:
     """Measure every choice, and say which to take."""
-    from fe_drivetrain.cases.performance import studies
+    from fe_drivetrain.cases.performance import (
+        studies,
+    )
 
     parts = parts_of(run)
     verdicts: list[Verdict] = []
@@ -113,8 +123,12 @@ def percent(bound: float) -> str:
 
 def torsion_verdicts(run: Run, study: Study, uniform: Study) -> list[Verdict]:
     """Torsional stiffness to 1e-4 in under half a second, of a uniform and of a stepped shaft."""
-    from fe_drivetrain.cases.performance import studies
-    from fe_drivetrain.cases.performance.growth import STEPPED
+    from fe_drivetrain.cases.performance import (
+        studies,
+    )
+    from fe_drivetrain.cases.performance.growth import (
+        STEPPED,
+    )
     from fe_drivetrain.report import judge
 
     found = []
@@ -144,7 +158,9 @@ def torsion_verdicts(run: Run, study: Study, uniform: Study) -> list[Verdict]:
 
 def limit_verdicts(study: Study) -> list[Verdict]:
     """Whether series of meshes of different elements tend to one value."""
-    from fe_drivetrain.cases.performance.choices import P1
+    from fe_drivetrain.cases.performance.choices import (
+        P1,
+    )
     from fe_drivetrain.report import judge
 
     found = []
@@ -172,7 +188,9 @@ def limit_verdicts(study: Study) -> list[Verdict]:
 
 def assembly_verdict(run: Run, study: Study, settings: Sequence[Setting]) -> tuple[Verdict, str]:
     """The assembly's ten unit loads with K_R within 1 % in under 10 s."""
-    from fe_drivetrain.cases.performance import studies
+    from fe_drivetrain.cases.performance import (
+        studies,
+    )
     from fe_drivetrain.report import judge
 
     good = [s for s in settings if energy_error(study, s) <= 1e-2]
@@ -307,7 +325,9 @@ def front_of(study: Study, quantity: int) -> list[int]:
     """Outcomes on the Pareto front, as far as the reference can rank them."""
     import numpy as np
 
-    from fe_drivetrain.cases.performance.precision import pareto_front
+    from fe_drivetrain.cases.performance.precision import (
+        pareto_front,
+    )
 
     error = study.error(quantity)
     ranked = np.where(error >= study.floor(quantity), error, np.nan)
@@ -343,7 +363,9 @@ def error_chart(study: Study, quantity: int) -> Chart:
     """Error against time of every choice, the front drawn."""
     import numpy as np
 
-    from fe_drivetrain.cases.performance.choices import ELEMENTS
+    from fe_drivetrain.cases.performance.choices import (
+        ELEMENTS,
+    )
     from fe_drivetrain.report import Chart, rounded
 
     error, seconds = study.error(quantity), study.seconds()
@@ -418,7 +440,9 @@ def error_chart(study: Study, quantity: int) -> Chart:
 
 def split_chart(study: Study, quantity: int) -> Chart:
     """Where the time goes, along the front."""
-    from fe_drivetrain.cases.performance.choices import STEPS
+    from fe_drivetrain.cases.performance.choices import (
+        STEPS,
+    )
     from fe_drivetrain.report import Chart, rounded
 
     error = study.error(quantity)
@@ -533,7 +557,10 @@ def tolerance_chart(study: Study) -> Chart:
 
 def settings_section(study: Study, settings: Sequence[Setting]) -> Section:
     """Mesh sizes that users can take for K_R."""
-    from fe_drivetrain.cases.performance.tilt import BALANCED, sizes_in_words
+    from fe_drivetrain.cases.performance.tilt import (
+        BALANCED,
+        sizes_in_words,
+    )
     from fe_drivetrain.report import Section, Table, Text
 
     rows: list[list[Any]] = []
@@ -585,7 +612,9 @@ def settings_section(study: Study, settings: Sequence[Setting]) -> Section:
 
 def growth_verdicts(grown: Sequence[Grown]) -> list[Verdict]:
     """Growth of time with unknowns, and the memory of the largest."""
-    from fe_drivetrain.cases.performance.precision import growth_exponent
+    from fe_drivetrain.cases.performance.precision import (
+        growth_exponent,
+    )
     from fe_drivetrain.report import judge
 
     largest = max((g.unknowns for g in grown), default=0)
@@ -616,8 +645,13 @@ def growth_verdicts(grown: Sequence[Grown]) -> list[Verdict]:
 
 def growth_section(grown: Sequence[Grown], outcomes: Sequence[Outcome]) -> Section:
     """Time and memory against the number of unknowns, and their exponents."""
-    from fe_drivetrain.cases.performance.choices import CURVED, STEPS
-    from fe_drivetrain.cases.performance.precision import growth_exponent
+    from fe_drivetrain.cases.performance.choices import (
+        CURVED,
+        STEPS,
+    )
+    from fe_drivetrain.cases.performance.precision import (
+        growth_exponent,
+    )
     from fe_drivetrain.report import Chart, Section, Table, rounded
 
     unknowns = [g.unknowns for g in grown]
@@ -704,7 +738,9 @@ def write_outcomes(run: Run, study: Study, name: str) -> None:
     """Every choice with its times and errors, for other programs."""
     import csv
 
-    from fe_drivetrain.cases.performance.choices import STEPS
+    from fe_drivetrain.cases.performance.choices import (
+        STEPS,
+    )
 
     errors = [(study.signed_error(q), study.error(q)) for q in range(len(study.quantities))]
     with (run.folder / f"{name}_choices.csv").open("w", newline="", encoding="utf-8") as file:

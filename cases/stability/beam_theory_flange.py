@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Flange over shaft diameter.
 RATIOS = (1.4, 1.7, 2.0, 2.5, 3.0)
@@ -25,7 +26,9 @@ def run(run: Run) -> Any:
     """Map the error over thickness and diameter; add the flange as a plate; check both."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     thick = np.geomspace(0.02, 1.0, 4 if run.quick else 9)
@@ -241,7 +244,9 @@ def plate_rotation(outer: float, inner: float, thickness: float, material: Any) 
 
 def _plate(thickness: float, ratio: float, inset: float) -> float:
     """Rotation of the plate that reaches some of its thickness into a shaft of 1 m diameter."""
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
 
     return plate_rotation(ratio / 2, 0.5 - inset * thickness, thickness, maps.STEEL)
 
@@ -268,7 +273,9 @@ def _by_elements(thickness: float, ratio: float, finer: bool = False) -> float:
     """Rotation of the rear by a moment, the rim held."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.revolution import seat_stiffness
 
     shaft = _shaft(thickness, ratio)
@@ -283,7 +290,9 @@ def _by_elements(thickness: float, ratio: float, finer: bool = False) -> float:
 
 def _by_beam(thickness: float, ratio: float) -> float:
     """The same of a beam that is clamped at the middle of the flange."""
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
 
     half = maps.stepped((thickness / 2, LENGTH), (ratio, 1.0))
     return float(maps.by_beam(half)[4, 4])
@@ -293,7 +302,9 @@ def _solid_verdict(run: Run) -> Any:
     """One point against curved tetrahedra."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.geometry import MeshSizes
     from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
     from fe_drivetrain.mesh import generate

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Large over small diameter.
 RATIOS = (1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 2.5, 3.0)
@@ -25,9 +26,13 @@ def run(run: Run) -> Any:
     """Map the errors of sharp steps, then of fillets; correct the beam; check both."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
-    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation.torsion_meridian import (
+        torsion_bounds,
+    )
 
     lengths = np.append(np.geomspace(0.5, 30.0, 4 if run.quick else 7), AT)
     lengths.sort()
@@ -299,21 +304,27 @@ def run(run: Run) -> Any:
 
 
 def _shaft(length: float, ratio: float, fillet: float = 0.0) -> Any:
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
 
     return maps.stepped((length / 2, length / 2), (ratio, 1.0), fillet)
 
 
 def _beam(length: float, ratio: float) -> Any:
     """Flexibilities (6,)."""
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
 
     return maps.by_beam(_shaft(length, ratio)).diagonal()
 
 
 def _ends() -> Any:
     """What two rigid ends take off the flexibilities (6,) of a solid shaft of 1 m diameter."""
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
 
     shaft = maps.uniform(3.0)
     return (maps.by_elements(shaft, 0.3) - maps.by_beam(shaft)).diagonal()
@@ -325,7 +336,9 @@ def _without_ends(
     """Flexibilities (6,) of the elements, less the ends'; of rotations and along x alone."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
 
     shaft = _shaft(length, ratio, fillet)
     size = ratio / 3
@@ -339,7 +352,9 @@ def _bent_by_tractions(length: float, ratio: float) -> float:
     """Rotation by a moment [rad/(N m)]: twice the energy of unit moments by linear tractions."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.geometry import LENGTH_TOLERANCE
     from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
 

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Bore over outer diameter.
 BORES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9)
@@ -21,9 +22,13 @@ def run(run: Run) -> Any:
     """Map the errors, correct the beam by its ends, and check against solids."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
-    from fe_drivetrain.cases.verification.shaft_theory import Tube
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation.shaft_theory import (
+        Tube,
+    )
 
     lengths = np.append(np.geomspace(0.5, 30.0, 5 if run.quick else 8), SHORTEST)
     lengths.sort()
@@ -304,7 +309,9 @@ def run(run: Run) -> Any:
 
 def _flexibility(length: float, bore: float, finer: bool = False) -> Any:
     """Of a shaft of 1 m diameter between rigid ends."""
-    from fe_drivetrain.cases.stability import beam_maps as maps
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
 
     shaft = maps.uniform(length, bore)
     size = 0.34 if length < 5 else 0.5
@@ -317,8 +324,12 @@ def _ends(measured: Any, bore: float) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
-    from fe_drivetrain.cases.verification.shaft_theory import Tube
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
+        Tube,
+    )
 
     tube = Tube(1.0, bore, 1.0, maps.STEEL)
     left = [
@@ -357,8 +368,9 @@ def _flexure_tip(tube: Any, order: int) -> float:
 
     import numpy as np
 
-    from fe_drivetrain.cases.stability import beam_maps as maps
-    from fe_drivetrain.cases.verification.shaft_theory import flexure_stress
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.geometry import LENGTH_TOLERANCE
     from fe_drivetrain.revolution import (
         along_sides,
@@ -366,6 +378,9 @@ def _flexure_tip(tube: Any, order: int) -> float:
         harmonic_response,
         meridian,
         surface_loads,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
+        flexure_stress,
     )
 
     mesh = meridian(maps.uniform(tube.length, tube.inner, tube.outer), order=order, layers=0)
@@ -405,9 +420,13 @@ def _at(end: float, x: Any, r: Any) -> Any:
 
 def _solid_verdicts(run: Run) -> list[Any]:
     """Points of the map against curved tetrahedra."""
-    from fe_drivetrain.cases.stability import beam_maps as maps
-    from fe_drivetrain.cases.verification import rigid_ended_shafts
+    from fe_drivetrain.cases.stability import (
+        beam_maps as maps,
+    )
     from fe_drivetrain.report import judge
+    from fe_drivetrain.validation import (
+        rigid_ended_shafts,
+    )
 
     verdicts = []
     for length, bore in () if run.quick else ((1.0, 0.0), (2.0, 0.5)):

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: By name: what it is, its values, and for a quick run.
 SWEEPS: dict[str, tuple[str, tuple[float, ...], tuple[float, ...]]] = {
@@ -65,30 +66,32 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.stability import extremes
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation import (
+        extreme_parts,
+    )
 
     cross = {"symbol": "x", "size": 11, "color": "#c62828"}
     verdicts, sections, limits, bounds = [], [], [], []
     number = refused_in_all = 0
     for name, (parameter, values, quick_values) in SWEEPS.items():
-        make = getattr(extremes, name)
+        make = getattr(extreme_parts, name)
         found = []
         for value in quick_values if run.quick else values:
             run.report(f"{parameter}: {value:g}")
             with run.step(name):
-                found.append(extremes.outcome(value, make))
+                found.append(extreme_parts.outcome(value, make))
         fine = []
         for value in (QUICK_FINE if run.quick else FINE).get(name, ()):
             with run.step(f"{name}, finer mesh"):
-                fine.append(extremes.outcome(value, partial(make, fine=True)))
+                fine.append(extreme_parts.outcome(value, partial(make, fine=True)))
         every = [*found, *fine]
         number += len(every)
         sound = [o for o in every if not o.sentence]
         refused = [o for o in found if o.sentence]
         refused_in_all += len(refused)
-        inside = extremes.meshed(found)
-        both = extremes.meshed(every)
+        inside = extreme_parts.meshed(found)
+        both = extreme_parts.meshed(every)
         verdicts += [
             judge(
                 f"{parameter}: error of volumes and named areas over what parabolas round a circle "

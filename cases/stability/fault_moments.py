@@ -34,7 +34,8 @@ from fe_drivetrain.operator import sparsity
 from fe_drivetrain.report import Environment, Results, page, read_results
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Case, Run, run_case, run_cases, run_into
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run, run_case, run_cases, run_into
 
 OLD, NEW, BROKEN = "old", "new", "broken"
 FILES = ("report.html", "results.json", "shaft.vtu")

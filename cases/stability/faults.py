@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Kills over the duration of a run that nothing disturbs.
 MOMENTS, QUICK_MOMENTS = 40, 10

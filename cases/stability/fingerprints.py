@@ -33,7 +33,9 @@ STIFFNESS = "stiffness"
 
 def scene_arrays() -> dict[str, NDArray[np.float64]]:
     """ "mesh" and "operator" of a main bearing, made anew where the cache is off."""
-    from fe_drivetrain.cases.stability import soft_springs
+    from fe_drivetrain.cases.stability import (
+        soft_springs,
+    )
     from fe_drivetrain.response import build_model, mesh_scene
 
     scene = soft_springs.scene_of("bonded")

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Elements to a full turn of the fillet's radius; a fillet is a quarter of a turn.
 PER_TURN = (6.0, 5.0, 4.0, 3.5, 3.0, 2.5, 2.0, 1.5, 1.0)
@@ -23,19 +24,22 @@ def run(run: Run) -> Any:
     """Mesh the fillet ever coarser, count, solve and mend."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import folds
-    from fe_drivetrain.cases.verification import fillets, rigid_ended_shafts
     from fe_drivetrain.geometry import MeshSizes
     from fe_drivetrain.mesh import find_faults, generate, inverted_cells, relax_flat_cells, volume
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation import (
+        fillet_factors,
+        folded_meshes,
+        rigid_ended_shafts,
+    )
 
     sweep = QUICK_PER_TURN if run.quick else PER_TURN
     with run.step("reference"):
-        exact = rigid_ended_shafts.exact(folds.SHAFT, 0.1, 10)
-        thin = folds.SHAFT.sections[-1].outer_diameter
-        wide = folds.SHAFT.sections[0].outer_diameter
-        factor = fillets.peak("torsion", wide / thin, folds.RADIUS / thin, 8).factor
-    exact_volume = folds.exact_volume()
+        exact = rigid_ended_shafts.exact(folded_meshes.SHAFT, 0.1, 10)
+        thin = folded_meshes.SHAFT.sections[-1].outer_diameter
+        wide = folded_meshes.SHAFT.sections[0].outer_diameter
+        factor = fillet_factors.peak("torsion", wide / thin, folded_meshes.RADIUS / thin, 8).factor
+    exact_volume = folded_meshes.exact_volume()
     counts: dict[str, list[int]] = {name: [] for name in REPAIRS}
     errors: dict[str, list[float]] = {name: [] for name in REPAIRS}
     peaks: dict[str, list[float]] = {name: [] for name in REPAIRS}
@@ -44,32 +48,34 @@ def run(run: Run) -> Any:
     sentence = ""
     for per_turn in sweep:
         run.report(f"{per_turn:g} elements to a turn of the fillet")
-        size = 2 * np.pi * folds.RADIUS / per_turn
+        size = 2 * np.pi * folded_meshes.RADIUS / per_turn
         with run.step("meshes"):
-            raw = folds.curved(per_turn)
+            raw = folded_meshes.curved(per_turn)
             meshes = {
                 "as curved": raw,
                 "relaxed": relax_flat_cells(raw),
-                "HighOrder": folds.curved(per_turn, "HighOrder"),
-                "HighOrderElastic": folds.curved(per_turn, "HighOrderElastic"),
-                "refined": generate(folds.SHAFT, sizes=MeshSizes(shaft=size, elements_per_turn=6)),
+                "HighOrder": folded_meshes.curved(per_turn, "HighOrder"),
+                "HighOrderElastic": folded_meshes.curved(per_turn, "HighOrderElastic"),
+                "refined": generate(
+                    folded_meshes.SHAFT, sizes=MeshSizes(shaft=size, elements_per_turn=6)
+                ),
             }
         with run.step("check and solve"):
             for name, mesh in meshes.items():
                 found = inverted_cells(mesh)
-                sampled = folds.folded_by_sampling(mesh)
+                sampled = folded_meshes.folded_by_sampling(mesh)
                 missed += len(np.setdiff1d(sampled, found))
                 faults = [f for f in find_faults(mesh) if f.kind == "inverted"]
                 missed += int((faults[0].count if faults else 0) != len(found))
                 needless += int(bool(faults) and len(found) == 0)
-                answer = folds.solved(mesh)
+                answer = folded_meshes.solved(mesh)
                 stiffness = answer.stiffness["torsion"] / exact["torsion"] - 1.0
                 peak = answer.peak / factor - 1.0
                 counts[name].append(len(found))
                 errors[name].append(stiffness)
                 peaks[name].append(peak)
                 if name == "as curved":
-                    hidden += len(found) - folds.folded_at_nodes(mesh)
+                    hidden += len(found) - folded_meshes.folded_at_nodes(mesh)
                     sentence = faults[0].sentence if faults else sentence
                 rows.append(
                     [
@@ -77,7 +83,7 @@ def run(run: Run) -> Any:
                         name,
                         len(mesh.cells),
                         len(found),
-                        folds.folded_at_nodes(mesh),
+                        folded_meshes.folded_at_nodes(mesh),
                         volume(mesh) / exact_volume - 1.0,
                         None if np.isnan(stiffness) else stiffness,
                         None if np.isnan(peak) else peak,

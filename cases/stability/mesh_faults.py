@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Rows of cubes over the height of the cracked bar, and crack depths in rows.
 ROWS, DEPTHS = 8, (0, 1, 2, 4, 6, 8)
@@ -22,9 +23,6 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.stability import faulty_meshes, slivers
-    from fe_drivetrain.cases.verification import rigid_ended_shafts
-    from fe_drivetrain.cases.verification.exact_blocks import LENGTH, SIDE
     from fe_drivetrain.common import InputError
     from fe_drivetrain.geometry import WIDEST, MeshSizes, Section, Shaft
     from fe_drivetrain.mesh import find_faults, generate
@@ -32,6 +30,15 @@ def run(run: Run) -> Any:
     from fe_drivetrain.report import Section as Part
     from fe_drivetrain.response import build_model, mesh_scene, needed_faces
     from fe_drivetrain.scene import library_scene
+    from fe_drivetrain.validation import (
+        faulty_meshes,
+        rigid_ended_shafts,
+        slivers,
+    )
+    from fe_drivetrain.validation.exact_blocks import (
+        LENGTH,
+        SIDE,
+    )
 
     verdicts = []
     rows = QUICK_ROWS if run.quick else ROWS

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Elements across the coarser side, and how many times as many across the finer.
 COARSE = 2
@@ -19,9 +20,14 @@ def run(run: Run) -> Any:
     """Each tie at each ratio, either side the slave."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import tied_strips
-    from fe_drivetrain.cases.stability.tied_strips import TIES, Strip
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation import (
+        tied_strips,
+    )
+    from fe_drivetrain.validation.tied_strips import (
+        TIES,
+        Strip,
+    )
 
     ratios = np.array(QUICK_RATIOS if run.quick else RATIOS, dtype=float)
     sides = ("finer", "coarser")

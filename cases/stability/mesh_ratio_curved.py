@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Elements round the coarser ring, and how many times as many round the finer.
 COARSE, QUICK_COARSE = 5, 4
@@ -23,9 +24,15 @@ def run(run: Run) -> Any:
     """Twist tied rings at each ratio, either side the slave, as meshed and settled."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import tied_rings
-    from fe_drivetrain.cases.stability.tied_rings import TIES, Tie, Twisted
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation import (
+        tied_rings,
+    )
+    from fe_drivetrain.validation.tied_rings import (
+        TIES,
+        Tie,
+        Twisted,
+    )
 
     coarse = QUICK_COARSE if run.quick else COARSE
     ratios = QUICK_RATIOS if run.quick else RATIOS

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Unknowns, about.
 SIZES = (10_000, 100_000, 1_000_000)
@@ -27,7 +28,9 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.stability import thin_and_slender as shared
+    from fe_drivetrain.cases.stability import (
+        thin_and_slender as shared,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.solve import multigrid, round_off, schwarz, solvers
 

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Of the gearbox's axial spring, which hardly matters [N/m].
 AXIAL = 1e8
@@ -14,7 +15,9 @@ def run(run: Run) -> Any:
     """Soften the springs that hold a shaft on a spherical bearing against turning."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import soft_springs
+    from fe_drivetrain.cases.stability import (
+        soft_springs,
+    )
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
         crosses,

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 NAMES = {
     "tie": "tie of two halves that do not match",
@@ -19,7 +20,6 @@ def run(run: Run) -> Any:
     """Sweep the penalty of three couplings, with direct and iterative solvers."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import couplings
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
         crosses,
@@ -32,6 +32,9 @@ def run(run: Run) -> Any:
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import change_scene, library_scene
     from fe_drivetrain.solve import solve
+    from fe_drivetrain.validation import (
+        penalised_couplings,
+    )
 
     penalties = decades(-3, 14, 1 if run.quick else 3)
     iterated_penalties = decades(-2, 10, 0.25 if run.quick else 0.5)
@@ -40,19 +43,21 @@ def run(run: Run) -> Any:
     verdicts, limits, sections, figures = [], [], [], {}
     rows: list[list[Any]] = []
     words: list[str] = []
-    for kind in couplings.KINDS:
+    for kind in penalised_couplings.KINDS:
         with run.step(f"{kind}: elimination"):
-            bar = couplings.bar(kind, 2)
-            system, F = couplings.eliminated(bar)
-            exact = couplings.work(system, F, "superlu")
-            by_iteration, iterations, _ = couplings.iterated(system, F)
+            bar = penalised_couplings.bar(kind, 2)
+            system, F = penalised_couplings.eliminated(bar)
+            exact = penalised_couplings.work(system, F, "superlu")
+            by_iteration, iterations, _ = penalised_couplings.iterated(system, F)
             # a stiffness scaled by a third rounds differently everywhere
-            other = couplings.work(_scaled(system, 1.0 / 3.0), F, "superlu") / 3.0
+            other = penalised_couplings.work(_scaled(system, 1.0 / 3.0), F, "superlu") / 3.0
         uncertain = float(np.abs(other / exact - 1.0).max())
         with run.step(f"{kind}: penalty, direct"):
             direct = np.array(
                 [
-                    couplings.work(*couplings.penalised(bar, penalty), "superlu")
+                    penalised_couplings.work(
+                        *penalised_couplings.penalised(bar, penalty), "superlu"
+                    )
                     for penalty in penalties
                 ]
             )
@@ -60,7 +65,7 @@ def run(run: Run) -> Any:
         spread = np.sqrt(((direct / exact - 1.0) ** 2).mean(axis=1))
         with run.step(f"{kind}: penalty, multigrid"):
             found = [
-                couplings.iterated(*couplings.penalised(bar, penalty))
+                penalised_couplings.iterated(*penalised_couplings.penalised(bar, penalty))
                 for penalty in iterated_penalties
             ]
         iterated_error = np.array([np.abs(w / exact - 1.0).max() for w, _, _ in found])
@@ -187,9 +192,9 @@ def run(run: Run) -> Any:
             )
         )
     with run.step("what the program does"):
-        bar = couplings.bar("averaged", 2)
-        exact = couplings.work(*couplings.eliminated(bar), "superlu")
-        system, F = couplings.penalised(bar, 1e6)
+        bar = penalised_couplings.bar("averaged", 2)
+        exact = penalised_couplings.work(*penalised_couplings.eliminated(bar), "superlu")
+        system, F = penalised_couplings.penalised(bar, 1e6)
         instead = solve(system, F, "multigrid")
         error_instead = np.abs(np.einsum("nm,nm->m", F, instead.x) / exact - 1.0).max()
         try:

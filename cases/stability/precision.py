@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 LOADS = ("bending", "torsion")
 
@@ -15,9 +16,16 @@ def run(run: Run) -> Any:
     """Assemble and solve tubes in 32, 64 and 80 bits."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import floats
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, safe_range, shown, slope
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+        safe_range,
+        shown,
+        slope,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation import (
+        other_precisions,
+    )
 
     turn, along = (4, 10) if run.quick else (8, 10)
     per_decade = 1.5 if run.quick else 3.0
@@ -25,22 +33,22 @@ def run(run: Run) -> Any:
 
     def solved(L_over_D: float, turn: int, along: int) -> dict[str, Any]:
         """Relative errors (2,) by precision, the reference's own, and what the program says."""
-        solid = floats.tube(L_over_D, turn, along)
+        solid = other_precisions.tube(L_over_D, turn, along)
         short, double, long = (
-            floats.summed(solid, kind) for kind in (np.float32, np.float64, np.longdouble)
+            other_precisions.summed(solid, kind) for kind in (np.float32, np.float64, np.longdouble)
         )
-        best = floats.refined(long, double, solid.load, 14)
-        before = floats.refined(long, double, solid.load, 10)
-        exact = floats.compliances(solid, best)
+        best = other_precisions.refined(long, double, solid.load, 14)
+        before = other_precisions.refined(long, double, solid.load, 10)
+        exact = other_precisions.compliances(solid, best)
 
         def error(u: Any) -> Any:
-            return np.abs((floats.compliances(solid, u) / exact - 1.0).astype(float))
+            return np.abs((other_precisions.compliances(solid, u) / exact - 1.0).astype(float))
 
-        program, residual = floats.by_the_program(double, solid.load)
-        mixed = floats.refined(double, double.astype(np.float32), solid.load, 20)
+        program, residual = other_precisions.by_the_program(double, solid.load)
+        mixed = other_precisions.refined(double, double.astype(np.float32), solid.load, 20)
         return {
-            "32 bits": error(floats.solved(short, solid.load)),
-            "64 bits": error(floats.solved(double, solid.load)),
+            "32 bits": error(other_precisions.solved(short, solid.load)),
+            "64 bits": error(other_precisions.solved(double, solid.load)),
             "program": error(program),
             "mixed": error(mixed),
             "80 bits": error(before),

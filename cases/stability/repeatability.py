@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Lengths over diameters of the tubes that other processes solve.
 LENGTHS = (5.0, 200.0)
@@ -16,8 +17,15 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.stability import fingerprints
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, safe_range, shown, slope
+    from fe_drivetrain.cases.stability import (
+        fingerprints,
+    )
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+        safe_range,
+        shown,
+        slope,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
     lengths = QUICK_LENGTHS if run.quick else LENGTHS

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Widths of the loaded band [m]; the ring is as long as the last.
 WIDTHS = (0.015, 0.03, 0.06, 0.09, 0.12, 0.18, 0.24, 0.3)
@@ -27,9 +28,11 @@ def run(run: Run) -> Any:
     """Sweep the width of the band, then the mesh."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import seat_couplings as seat
     from fe_drivetrain.compare import grid_convergence
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation import (
+        seat_couplings as seat,
+    )
 
     widths = QUICK_WIDTHS if run.quick else WIDTHS
     rough = QUICK_ROUGH_SIZES if run.quick else ROUGH_SIZES

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 CRITERION = 0.01  # error of a stiffness
 
@@ -48,10 +49,12 @@ def run(run: Run) -> Any:
     """Bend a bar, load a cantilever, bend shafts, all in longer and longer elements."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import locking_bars as bars
     from fe_drivetrain.operator import elasticity, incompatible, incompressible
     from fe_drivetrain.report import Cell, Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.solve import recovery_estimate
+    from fe_drivetrain.validation import (
+        locking_bars as bars,
+    )
 
     plain, modes, averaged = elasticity.assemble, incompatible.assemble, incompressible.assemble
     lengths = QUICK_LENGTHS if run.quick else LENGTHS

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 DIAMETER, WALL = 0.7, 0.175
 #: Elements along a shaft, at most, and round it.
@@ -19,7 +20,9 @@ def run(run: Run) -> Any:
     """Sweep the slenderness of a cantilever under torsion and under a moment."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import thin_and_slender as shared
+    from fe_drivetrain.cases.stability import (
+        thin_and_slender as shared,
+    )
     from fe_drivetrain.report import Limit, Section, Text, judge
 
     points = []

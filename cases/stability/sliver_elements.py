@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Heights of the slivers, in cubes.
 HEIGHTS = (0.5, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14)
@@ -19,10 +20,12 @@ def run(run: Run) -> Any:
     """Bend a bar with a layer of slivers."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import slivers
     from fe_drivetrain.mesh import FLATTEST, find_faults, flatness
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.solve import MAX_ITERATIONS
+    from fe_drivetrain.validation import (
+        slivers,
+    )
 
     across = QUICK_ACROSS if run.quick else ACROSS
     heights = QUICK_HEIGHTS if run.quick else HEIGHTS

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.stability import soft_springs
+from fe_drivetrain.cases.stability import (
+    soft_springs,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point

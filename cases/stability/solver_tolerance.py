@@ -2,15 +2,24 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 
 def run(run: Run) -> Any:
     """Follow conjugate gradients step by step, and the stiffnesses that each step would give."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import solver_steps
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, decades, safe_range, shown, slope
+    from fe_drivetrain.cases.stability import (
+        solver_steps,
+    )
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+        decades,
+        safe_range,
+        shown,
+        slope,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.solve import TOLERANCE
 
@@ -207,7 +216,9 @@ def _first_safe(errors: Any) -> int:
     """The first step from which on every error stays below four digits."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability.decades import FOUR_DIGITS
+    from fe_drivetrain.cases.stability.decades import (
+        FOUR_DIGITS,
+    )
 
     bad = np.max(np.array(list(errors)), axis=0) >= FOUR_DIGITS
     return int(np.flatnonzero(bad)[-1] + 1) if bad.any() else 0

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Of the other gearbox springs [N/m].
 OTHER = 1e8
@@ -15,7 +16,9 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import Support, beam_of_scene, unit_load_response
-    from fe_drivetrain.cases.stability import soft_springs
+    from fe_drivetrain.cases.stability import (
+        soft_springs,
+    )
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
         crosses,

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Bodies of the chain.
 COUNT = 12
@@ -14,7 +15,6 @@ def run(run: Run) -> Any:
     """Sweep the stiffness of some bodies over what others have."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import layers
     from fe_drivetrain.cases.stability.decades import (
         FOUR_DIGITS,
         crosses,
@@ -25,6 +25,9 @@ def run(run: Run) -> Any:
     )
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import Material
+    from fe_drivetrain.validation import (
+        layers,
+    )
 
     per_decade = 1.0 if run.quick else 3.0
     tolerance = 0.3 if run.quick else 0.15

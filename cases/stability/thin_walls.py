@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 DIAMETER, LENGTH = 3.0, 3.0
 #: Radius over wall.
@@ -21,7 +22,9 @@ def run(run: Run) -> Any:
     """Sweep the wall of a tube under torsion and under a pressure that makes it oval."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import thin_and_slender as shared
+    from fe_drivetrain.cases.stability import (
+        thin_and_slender as shared,
+    )
     from fe_drivetrain.report import Limit, Section, Table, Text, judge
     from fe_drivetrain.solve import multigrid, schwarz, solvers
 

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Factors on the sizes of the mesh, coarse first.
 FACTORS = (1.4, 1.0, 0.75)
@@ -22,9 +23,11 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.stability import housing_nodes as housing
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.response import PLANES, VERTICAL
+    from fe_drivetrain.validation import (
+        housing_nodes as housing,
+    )
 
     factors = QUICK_FACTORS if run.quick else FACTORS
     with run.step("mesh and solve"), warnings.catch_warnings(record=True) as said:

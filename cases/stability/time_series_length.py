@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Samples of the histories whose variance is taken, and how many of these.
 SAMPLES, HISTORIES = 20_000, 8
@@ -26,7 +27,9 @@ def run(run: Run) -> Any:
     """Variances against their mean, then memory against length."""
     import numpy as np
 
-    from fe_drivetrain.cases.stability import streamed_series as series
+    from fe_drivetrain.cases.stability import (
+        streamed_series as series,
+    )
     from fe_drivetrain.compare import moments
     from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Poisson's ratios of the pressed cylinder and of the bonded disc.
 NUS = (0.3, 0.35, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4995, 0.4999)
@@ -45,14 +46,20 @@ def run(run: Run) -> Any:
     import numpy as np
     from pydantic import ValidationError
 
-    from fe_drivetrain.cases.stability import locking_bars as bars
-    from fe_drivetrain.cases.stability import locking_solids as solids
-    from fe_drivetrain.cases.verification.ring_solids import band_of
     from fe_drivetrain.common import InputError
+    from fe_drivetrain.compare import (
+        band_of,
+    )
     from fe_drivetrain.operator import elasticity, incompatible, incompressible
     from fe_drivetrain.report import Cell, Limit, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import HIGHEST_POISSON_RATIO
     from fe_drivetrain.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
+    from fe_drivetrain.validation import (
+        locking_bars as bars,
+    )
+    from fe_drivetrain.validation import (
+        locking_solids as solids,
+    )
 
     plain, averaged = elasticity.assemble, incompressible.assemble
     nus = QUICK_NUS if run.quick else NUS

@@ -4,7 +4,8 @@ ones.
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 SHAFT = "stepped, sharp"
 LOAD = "bending"
@@ -24,9 +25,12 @@ def run(run: Run) -> Any:
     """Refine step by step, and compare with uniform meshes."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import rigid_ended_shafts
+    from fe_drivetrain.cases.verification import rigid_balance
     from fe_drivetrain.mesh import marked, refined_sizes
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation import (
+        rigid_ended_shafts,
+    )
 
     shaft = rigid_ended_shafts.SHAFTS[SHAFT]
     with run.step("reference"):
@@ -86,7 +90,7 @@ def run(run: Run) -> Any:
         float(np.polyfit(np.log(n), np.log(e), 1)[0]) for n, e in (of_uniform.T, (unknowns, errors))
     ]
     verdicts = [
-        rigid_ended_shafts.balance_verdict(imbalances),
+        rigid_balance.balance_verdict(imbalances),
         judge(
             f"error of the adaptive mesh of {int(unknowns[last]):,} unknowns over that of a "
             "uniform one of as many",

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, BORES = 0.4, (0.0, 0.28)
 #: Lengths over the outer diameter: free ends, held ends in three dimensions, held ends.
@@ -15,8 +16,7 @@ def run(run: Run) -> Any:
     """Uniform traction on the ends, then ends that are held flat and round."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import Tube, parabola_shortfall
+    from fe_drivetrain.cases.verification import shaft_inputs
     from fe_drivetrain.compare import grid_convergence
     from fe_drivetrain.mesh import Grading, face_weights
     from fe_drivetrain.operator import nodal_stresses, traction_loads
@@ -24,6 +24,13 @@ def run(run: Run) -> Any:
     from fe_drivetrain.revolution import end_stiffness
     from fe_drivetrain.scene import MATERIALS
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
+        Tube,
+        parabola_shortfall,
+    )
 
     steel = MATERIALS["steel"]
     E, nu = steel.youngs_modulus, steel.poisson_ratio
@@ -191,12 +198,12 @@ def run(run: Run) -> Any:
             Section(
                 title="Tension",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
                         ("bore of the bored shaft", BORES[-1], "m", "chosen"),
                         ("length of the free-ended shaft", length, "m", "chosen"),
                         ("tension on the ends", sigma / 1e6, "MPa", "chosen"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "What ends that can neither contract nor warp add to E A / L",

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 FILLET, HEIGHT, ARM, LEG = 0.05, 0.1, 0.3, 0.2  # m
 FORCE = 1e6  # N/m, per width
@@ -19,14 +20,23 @@ def run(run: Run) -> Any:
     """Solve the bracket as a solid on three meshes, and as a plane problem."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.bracket_plane import Bracket, plane_answer
-    from fe_drivetrain.cases.verification.ring_solids import band_of, node_at, plane_strain_hold
+    from fe_drivetrain.compare import (
+        band_of,
+    )
     from fe_drivetrain.interfaces import held_freedoms
     from fe_drivetrain.mesh import brick
     from fe_drivetrain.operator import nodal_stresses, principal, traction_loads
     from fe_drivetrain.report import AssumptionRow, Cell, Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import Material
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.bracket_plane import (
+        Bracket,
+        plane_answer,
+    )
+    from fe_drivetrain.validation.ring_solids import (
+        node_at,
+        plane_strain_hold,
+    )
 
     bracket = Bracket(FILLET, HEIGHT, ARM, LEG)
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame

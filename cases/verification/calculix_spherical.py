@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 FORMS = ("sliding", "averaged", "rigid")
 
@@ -12,7 +13,9 @@ FACTOR, QUICK_FACTOR = 4.0, 4.0
 
 def run(run: Run) -> Any:
     """Write the decks, solve each twice, compare."""
-    from fe_drivetrain.cases.verification import calculix_decks as decks
+    from fe_drivetrain.cases.verification import (
+        calculix_decks as decks,
+    )
     from fe_drivetrain.export import find_calculix
     from fe_drivetrain.response import mesh_scene
     from fe_drivetrain.scene import change_scene

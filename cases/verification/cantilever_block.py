@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 LENGTH, HEIGHT, WIDTH = 0.6, 0.2, 0.15  # m
 E, NU = 169e9, 0.275
@@ -26,15 +27,22 @@ def run(run: Run) -> Any:
     """Energy of three fields with every element."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.plane_rings import plane_strain
-    from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
-    from fe_drivetrain.compare import observed_order
+    from fe_drivetrain.compare import (
+        band_of,
+        observed_order,
+    )
     from fe_drivetrain.interfaces import held_freedoms, held_nodes
     from fe_drivetrain.mesh import FACES, Block, brick
     from fe_drivetrain.operator import traction_loads
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import Material
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.plane_rings import (
+        plane_strain,
+    )
+    from fe_drivetrain.validation.ring_solids import (
+        node_at,
+    )
 
     iron = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
     plane = plane_strain(E, NU)

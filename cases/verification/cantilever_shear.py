@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, LENGTH = 0.4, 0.8
 #: Bore over outer diameter.
@@ -17,20 +18,23 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import cowper_shear_coefficient
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
-        Tube,
-        flexure_field,
-        flexure_stress,
-        parabola_shortfall,
-        recovery_error,
-    )
+    from fe_drivetrain.cases.verification import shaft_inputs
     from fe_drivetrain.mesh import Grading, face_weights
     from fe_drivetrain.operator import nodal_stresses, traction_loads
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.revolution import end_stiffness
     from fe_drivetrain.scene import MATERIALS
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
+        Tube,
+        flexure_field,
+        flexure_stress,
+        parabola_shortfall,
+        recovery_error,
+    )
 
     steel = MATERIALS["steel"]
     nu = steel.poisson_ratio
@@ -216,11 +220,11 @@ def run(run: Run) -> Any:
             Section(
                 title="Saint-Venant's flexure",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
                         ("length", LENGTH, "m", "chosen: short, so that shear counts"),
                         ("force at the tip", force / 1e6, "MN", "chosen"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     Table(
                         caption="Mean deflection of the tip, from the mean tangent at the root",
@@ -285,9 +289,11 @@ def _unbalanced(points: Any, F: Any, facets: Any) -> Any:
     """Forces on a face, uniform and linear, with the resultant of F."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import solid_shafts
     from fe_drivetrain.interfaces import averaged_point
     from fe_drivetrain.mesh import face_weights
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
 
     weights = face_weights(points, facets, len(points))
     nodes = np.flatnonzero(weights != 0.0)

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Bored shaft: outer and inner diameter, length [m].
 OUTER, BORE, LENGTH = 0.7, 0.3, 2.0
@@ -12,13 +13,17 @@ def run(run: Run) -> Any:
     """Condense bodies to the twelve motions of two end points, and look at the eigenvalues."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import condensed
-    from fe_drivetrain.cases.verification import manufactured as m
     from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.geometry import Section as ShaftSection
     from fe_drivetrain.geometry import Shaft
     from fe_drivetrain.mesh import brick, shaft_hexahedra
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
+    from fe_drivetrain.validation import (
+        condensed_bodies,
+    )
+    from fe_drivetrain.validation import (
+        manufactured as m,
+    )
 
     shaft = Shaft(
         front=0.0,
@@ -31,7 +36,7 @@ def run(run: Run) -> Any:
     ends = np.array([[0.0, 0.0, 0.0], [LENGTH, 0.0, 0.0]])
     with run.step("shaft"):
         coarse, fine = (
-            condensed.condense(mesh.points, mesh.cells, (mesh.front, mesh.rear), ends)
+            condensed_bodies.condense(mesh.points, mesh.cells, (mesh.front, mesh.rear), ends)
             for mesh in meshes
         )
     with run.step("quarter ring"):
@@ -40,7 +45,7 @@ def run(run: Run) -> Any:
         middle = 0.5 * (m.INNER + m.OUTER)
         ring_ends = np.array([[middle, 0.0, 0.5 * m.HEIGHT], [0.0, middle, 0.5 * m.HEIGHT]])
         faces = block.face_nodes("y0"), block.face_nodes("y1")
-        ring = condensed.condense(block.points, block.cells, faces, ring_ends)
+        ring = condensed_bodies.condense(block.points, block.cells, faces, ring_ends)
 
     verdicts, traces = [], []
     rows: list[list[Any]] = []
@@ -56,7 +61,7 @@ def run(run: Run) -> Any:
         by_reactions = found.by_reactions * np.outer(scale, scale)
         size = np.abs(S).max()
         values = np.asarray(np.linalg.eigvalsh(0.5 * (S + S.T)), dtype=float)
-        zeros, gap = condensed.zeros_by_gap(values)
+        zeros, gap = condensed_bodies.zeros_by_gap(values)
         motions = np.zeros((12, 6))
         for k, place in enumerate(positions):
             motions[6 * k : 6 * k + 3] = rigid_motions(place[None], positions.mean(axis=0))

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 INNER, OUTER = 0.1, 0.3  # m
 MOMENT = 1e5  # N, per width
@@ -18,9 +19,19 @@ def run(run: Run) -> Any:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.plane_rings import CurvedBar, plane_strain
-    from fe_drivetrain.cases.verification.ring_solids import (
+    from fe_drivetrain.compare import (
         band_of,
+    )
+    from fe_drivetrain.interfaces import held_freedoms
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Measure, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.plane_rings import (
+        CurvedBar,
+        plane_strain,
+    )
+    from fe_drivetrain.validation.ring_solids import (
         node_at,
         on_plane,
         plane_strain_hold,
@@ -28,11 +39,6 @@ def run(run: Run) -> Any:
         polar_traction,
         ring_sector,
     )
-    from fe_drivetrain.interfaces import held_freedoms
-    from fe_drivetrain.operator import nodal_stresses, traction_loads
-    from fe_drivetrain.report import Measure, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import Material
-    from fe_drivetrain.solve import solve_solid
 
     bar = CurvedBar(INNER, OUTER)
     plane = plane_strain(E, NU)

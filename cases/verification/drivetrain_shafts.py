@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 SHEAR_MODULUS = 80e9
 #: Power [W] and rated speed [rpm], Table 4.1.
@@ -14,10 +15,18 @@ def run(run: Run) -> Any:
     """Implied diameters, and one shaft meshed."""
     import numpy as np
 
-    from fe_drivetrain.cases.drivetrain import low_speed_shaft, published
-    from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import solid_diameter
+    from fe_drivetrain.cases.drivetrain import (
+        low_speed_shaft,
+        published,
+    )
+    from fe_drivetrain.cases.verification import (
+        published_shafts,
+        shaft_inputs,
+    )
     from fe_drivetrain.report import Section, Table, Text, chart, trace
+    from fe_drivetrain.validation.shaft_theory import (
+        solid_diameter,
+    )
 
     tables = {
         "D": published.table("nrel_750kw"),
@@ -68,7 +77,7 @@ def run(run: Run) -> Any:
             Section(
                 title="What the stiffnesses imply",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("G", SHEAR_MODULUS / 1e9, "GPa", "steel; the thesis gives none"),
                         ("lengths of the table", "0.5, 1, 2", "m", "chosen: it gives none"),
                         ("section", "solid circle", "", "chosen: it gives none"),

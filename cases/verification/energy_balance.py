@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: A typical mean load: hub forces [N] and moments [N m] (Fx 200 kN, Fz -370 kN, My 660 kN m), then
 #: accelerations, and the weight of the gearbox.
@@ -13,7 +14,9 @@ def run(run: Run) -> Any:
     """Clapeyron's theorem for ten unit loads and for a working load with gravity, both scenes."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import scenes
+    from fe_drivetrain.cases.verification import (
+        scenes,
+    )
     from fe_drivetrain.common import GRAVITY
     from fe_drivetrain.report import Chart, Section, Table, Text, judge
     from fe_drivetrain.response import LOADS

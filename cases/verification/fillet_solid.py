@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: D/d, r/d.
 WIDE, RADIUS = 1.6, 0.25
@@ -20,14 +21,17 @@ def run(run: Run) -> Any:
     """Tension, bending and torsion on one mesh, three meshes."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import fillets, solid_fillet
     from fe_drivetrain.compare import DOUBTFUL, richardson
     from fe_drivetrain.report import Chart, Section, Table, Text, judge
+    from fe_drivetrain.validation import (
+        fillet_factors,
+        solid_fillet,
+    )
 
     with run.step("meridian"):
         flat = {
-            load: fillets.factor(load, WIDE, RADIUS, 4 if run.quick else 8)
-            for load in fillets.LOADS
+            load: fillet_factors.factor(load, WIDE, RADIUS, 4 if run.quick else 8)
+            for load in fillet_factors.LOADS
         }
     meshes = QUICK if run.quick else PER_FILLET
     found = []
@@ -37,7 +41,7 @@ def run(run: Run) -> Any:
     verdicts, sections = [], []
     rows: list[list[Any]] = []
     share: dict[str, float] = {}
-    for load in fillets.LOADS:
+    for load in fillet_factors.LOADS:
         f = flat[load]
         values = [s.factor(load, DEGREE) for s in found]
         sizes = [1.0 / n for n in meshes]

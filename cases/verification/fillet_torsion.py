@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: D/d and r/d of the sweep.
 WIDES = (1.1, 1.3, 1.6, 2.0)
@@ -16,18 +17,21 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.cases.verification import fillets
+    from fe_drivetrain.validation import (
+        fillet_factors,
+    )
 
     pairs = [(wide, radius) for wide in WIDES for radius in RADII]
     factors = fillets.sweep(run, "torsion", JUDGED if run.quick else pairs)
     published = {
-        fillets.PETERSON: (
-            fillets.peterson,
-            fillets.of_a_fit,
+        fillet_factors.PETERSON: (
+            fillet_factors.peterson,
+            fillet_factors.of_a_fit,
             "the fit of a chart that was computed, not measured (Matthews and Hooke 1971; "
             "recalled, not re-read), within 5 % of it",
         ),
     }
-    deviation = 100.0 * fillets.deviations("torsion", factors, fillets.peterson)
+    deviation = 100.0 * fillets.deviations("torsion", factors, fillet_factors.peterson)
     worst = int(np.abs(deviation).argmax())
     f = factors[worst]
     summary = [

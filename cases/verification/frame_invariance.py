@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Distances of the origin that are tried [m].
 DISTANCES = (1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
@@ -19,9 +20,14 @@ def run(run: Run) -> Any:
     import numpy as np
     from scipy.spatial.transform import Rotation
 
-    from fe_drivetrain.cases.verification import frames, scenes
+    from fe_drivetrain.cases.verification import (
+        scenes,
+    )
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
     from fe_drivetrain.response import build_model, unit_load_response
+    from fe_drivetrain.validation import (
+        turned_frames,
+    )
 
     rng = np.random.default_rng(SEED)
     Q = Rotation.random(random_state=rng).as_matrix()
@@ -55,12 +61,16 @@ def run(run: Run) -> Any:
 
     for nodes, label in ((10, "curved tetrahedra"), (27, "27-node hexahedra")):
         with run.step(f"quarter ring, {label}"):
-            here = frames.solve_ring(nodes, still, np.zeros(3))
+            here = turned_frames.solve_ring(nodes, still, np.zeros(3))
             for move, (turn, shift) in moves.items():
-                there = frames.solve_ring(nodes, turn, shift)
-                judged(f"quarter ring, {label}", move, frames.differences(here, there, turn))
+                there = turned_frames.solve_ring(nodes, turn, shift)
+                judged(f"quarter ring, {label}", move, turned_frames.differences(here, there, turn))
             far = [
-                max(frames.differences(here, frames.solve_ring(nodes, Q, d * away), Q).values())
+                max(
+                    turned_frames.differences(
+                        here, turned_frames.solve_ring(nodes, Q, d * away), Q
+                    ).values()
+                )
                 for d in DISTANCES
             ]
             traces.append(trace(f"quarter ring, {label}", DISTANCES, far, mode="lines+markers"))
@@ -70,9 +80,9 @@ def run(run: Run) -> Any:
         scene, mesh = scenes.meshed(run, kind, scenes.QUICK)
         with run.step(f"main bearing, {kind}"):
             model = build_model(scene, mesh)
-            moved = frames.moved_model(model, Q, 10.0 * away)
+            moved = turned_frames.moved_model(model, Q, 10.0 * away)
             one, other = (unit_load_response(m, "superlu") for m in (model, moved))
-            differences = frames.response_differences(one, other, Q)
+            differences = turned_frames.response_differences(one, other, Q)
         judged(f"main bearing, {kind}", "turned, 10 m away", differences)
 
     round_off = np.finfo(float).eps * np.array(DISTANCES)

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER = 0.4
 #: Hub, main bearing, second bearing, gearbox [m] from the hub.
@@ -16,16 +17,19 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import Beam, BeamSection, Support, solve, torsional_spring_reaction
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import shaft_inputs
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
         Spring,
         Tube,
         evenly_loaded_shear,
         macaulay,
         parabola_shortfall,
     )
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     length = STATIONS[-1]
@@ -201,7 +205,7 @@ def run(run: Run) -> Any:
             Section(
                 title="Indeterminate supports",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),
                         ("main bearing from the hub", STATIONS[1], "m", "chosen"),
                         ("second bearing from the hub", STATIONS[2], "m", "chosen"),
@@ -210,7 +214,7 @@ def run(run: Run) -> Any:
                         ("radial stiffness of the gearbox", GEARBOX / 1e6, "MN/m", "Table 3.1"),
                         ("tilt stiffness of a bearing", TILT / 1e6, "MN m/rad", "section 3.3.1"),
                         ("force and moment at the hub", 1, "MN, MN m", "chosen"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "Loads on three supports under a hub force of 1 MN, as the second bearing "

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Bending and torsion [N m/rad] of the three shafts of Park et al. 2021, Table 2.
 TABLE = {
@@ -17,14 +18,17 @@ def run(run: Run) -> Any:
     """The solid's compliance, and what one joint makes of each load, over the split d."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import shaft_inputs
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
         Tube,
         evenly_loaded_shear,
         parabola_shortfall,
     )
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     nu, G = steel.poisson_ratio, steel.shear_modulus
@@ -207,11 +211,11 @@ def run(run: Run) -> Any:
             Section(
                 title="Where the split must sit",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("low-speed shaft: diameter", diameter, "m", "implied, see below"),
                         ("low-speed shaft: length", length, "m", "implied, see below"),
                         ("bending, torsion", "1.34e8, 7.19e7", "N m/rad", "Table 2"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "What two links with the spring of Eq 15 make of each load, against the "

@@ -2,14 +2,17 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 
 def run(run: Run) -> Any:
     """Errors of hexahedra on a curved body, and of quadratic ones on trapezoids."""
-    from fe_drivetrain.cases.verification import manufactured as m
     from fe_drivetrain.cases.verification import orders
     from fe_drivetrain.report import Section, Text, judge
+    from fe_drivetrain.validation import (
+        manufactured as m,
+    )
 
     linear = (4, 6, 9) if run.quick else (4, 8, 12, 16)
     quadratic = (2, 3, 4) if run.quick else (2, 4, 6, 8)
@@ -79,8 +82,8 @@ def run(run: Run) -> Any:
                 "elements, the 27-node element keeps its own. Meshes of shafts and rings are not "
                 "of that kind."
             ),
-            m.convergence_chart("Errors on trapezoids", trapezoids, orders.SIZE),
-            m.convergence_table(trapezoids, orders.SIZE),
+            orders.convergence_chart("Errors on trapezoids", trapezoids, orders.SIZE),
+            orders.convergence_table(trapezoids, orders.SIZE),
         ],
     )
     return found.model_copy(

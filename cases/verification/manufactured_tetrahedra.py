@@ -2,13 +2,18 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 
 def run(run: Run) -> Any:
     """Errors of P1, of straight P2 on a bar, and of curved P2, on ever finer meshes."""
-    from fe_drivetrain.cases.verification import manufactured as m
-    from fe_drivetrain.cases.verification import orders
+    from fe_drivetrain.cases.verification import (
+        orders,
+    )
+    from fe_drivetrain.validation import (
+        manufactured as m,
+    )
 
     p1 = (4, 6, 9) if run.quick else (4, 8, 12, 16)
     p2 = (2, 3, 4) if run.quick else (2, 4, 6, 8)

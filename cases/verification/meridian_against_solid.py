@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Elements per coarsest element, in all three directions.
 CUTS = (1, 2, 3)
@@ -26,11 +27,15 @@ def run(run: Run) -> Any:
 
     import numpy as np
 
-    from fe_drivetrain.cases.verification import shaft_ends
-    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
     from fe_drivetrain.compare import grid_convergence, richardson
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.revolution import end_stiffness
+    from fe_drivetrain.validation import (
+        shaft_ends,
+    )
+    from fe_drivetrain.validation.torsion_meridian import (
+        torsion_bounds,
+    )
 
     steel = shaft_ends.STEEL
     verdicts, traces, milliseconds = [], [], []

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.cases.verification import manufactured as m
-from fe_drivetrain.report import Results, Section, Text, Verdict, judge
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.report import Chart, Results, Section, Table, Text, Verdict, judge, trace
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
+from fe_drivetrain.validation import manufactured as m
+from fe_drivetrain.validation.manufactured import Series
 
 SIZE = "element size relative to the body [-]"
 
@@ -82,8 +84,8 @@ def results(case: Case, run: Run, series: Sequence[m.Series], notes: Sequence[st
         for one in series
     )
     items: list[Any] = [
-        m.convergence_chart("Errors of the manufactured solution", series, SIZE),
-        m.convergence_table(series, SIZE),
+        convergence_chart("Errors of the manufactured solution", series, SIZE),
+        convergence_table(series, SIZE),
         *(Text(text=note) for note in notes),
     ]
     return case.results(
@@ -101,4 +103,56 @@ def results(case: Case, run: Run, series: Sequence[m.Series], notes: Sequence[st
             one.label: {"sizes": one.sizes, "unknowns": one.unknowns, "errors": one.errors}
             for one in series
         },
+    )
+
+
+def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Chart:
+    """Errors over element size, both logarithmic, with the slopes of theory through the finest.
+
+    Parameters
+    ----------
+    size
+        What the sizes are, with their unit.
+    """
+    colours = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")
+    data = []
+    for colour, one in zip(colours, series, strict=False):
+        h = np.array(one.sizes)
+        for k, (name, values) in enumerate(one.errors.items()):
+            style = {"color": colour, "dash": ("solid", "dash", "dashdot")[k]}
+            label = f"{one.label}, {name}: {one.order(name)[0]:.2f}"
+            data.append(trace(label, h, values, mode="lines+markers", line=style))
+            theory = values[-1] * (h / h[-1]) ** one.orders[name]
+            dots = {"color": colour, "dash": "dot", "width": 1}
+            label = f"order {one.orders[name]:g}"
+            data.append(trace(label, h, theory, line=dots, showlegend=False))
+    return Chart(
+        caption=f"{caption}. In the legend the observed order of the two finest meshes; thin "
+        "dotted lines have the order of theory",
+        figure={
+            "data": data,
+            "layout": {
+                "xaxis": {"title": {"text": size}, "type": "log"},
+                "yaxis": {
+                    "title": {"text": "relative error"},
+                    "type": "log",
+                    "exponentformat": "power",
+                },
+            },
+        },
+    )
+
+
+def convergence_table(series: Sequence[Series], size: str) -> Table:
+    """Errors and observed orders mesh by mesh."""
+    rows: list[list[Any]] = []
+    for one in series:
+        for name, values in one.errors.items():
+            slopes = [None, *(float(s) for s in one.slopes(name))]
+            for h, n, error, slope in zip(one.sizes, one.unknowns, values, slopes, strict=True):
+                rows.append([one.label, name, h, n, error, slope, one.orders[name]])
+    return Table(
+        caption="Errors, and observed order from the mesh before",
+        columns=["element", "error in", size, "unknowns", "relative error", "order", "theory"],
+        rows=rows,
     )

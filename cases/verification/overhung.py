@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, OVERHANG, SPAN = 0.4, 2.145, 2.615
 
@@ -12,16 +13,19 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import Beam, BeamSection, Support, pinned_reaction, solve
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import shaft_inputs
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
         Spring,
         Tube,
         evenly_loaded_shear,
         macaulay,
         parabola_shortfall,
     )
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     a, L = OVERHANG, SPAN
@@ -152,13 +156,13 @@ def run(run: Run) -> Any:
             Section(
                 title="Overhung shaft",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),
                         ("overhang L1, hub to bearing", a, "m", "Stirling 2023, Table 3.1"),
                         ("span L2, bearing to gearbox", L, "m", "Stirling 2023, Table 3.1"),
                         ("supports", "rigid, free to turn", "", "chosen: determinate"),
                         ("force and moment at the hub", 1, "MN, MN m", "chosen"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "Deflection: Macaulay's beam with shear, and the means of the solid's "

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Degrees of quadrature that are tried for the forces on nodes inside.
 DEGREES = (1, 2, 3, 4, 5, 6)
@@ -12,14 +13,18 @@ def run(run: Run) -> Any:
     """Six strain states on distorted blocks: displacements given all round, then tractions."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import distorted
-    from fe_drivetrain.cases.verification.manufactured import LAME
     from fe_drivetrain.common import STRESSES
     from fe_drivetrain.interfaces import freedoms
     from fe_drivetrain.mesh import element_kind
     from fe_drivetrain.operator import tensor, traction_loads
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation import (
+        distorted_blocks,
+    )
+    from fe_drivetrain.validation.manufactured import (
+        LAME,
+    )
 
     lam, mu = LAME
     strains = tensor(np.eye(6))  # one component of the tensor each, shear ones both ways
@@ -27,7 +32,7 @@ def run(run: Run) -> Any:
 
     rows: list[list[Any]] = []
     verdicts, traces = [], []
-    for patch in distorted.patches():
+    for patch in distorted_blocks.patches():
         block = patch.block
         points, cells, n = block.points, block.cells, 3 * len(block.points)
         exact = np.einsum("kij,nj->nik", strains, points).reshape(n, 6)
@@ -47,7 +52,9 @@ def run(run: Run) -> Any:
             F = np.zeros((n, 6))
             for k, sigma in enumerate(sigmas):
                 for facets in block.faces.values():
-                    F[:, k] += traction_loads(points, facets, distorted.constant_traction(sigma))
+                    F[:, k] += traction_loads(
+                        points, facets, distorted_blocks.constant_traction(sigma)
+                    )
             origin, along_x, along_y = freedoms(patch.holders)
             minimal = np.array([*origin, along_x[1], along_x[2], along_y[2]])
             weak = solve_solid(
@@ -59,8 +66,8 @@ def run(run: Run) -> Any:
                 prescribed=(minimal, exact[minimal]),
                 method="superlu",
             )
-        by_displacements = distorted.worst_errors(patch, strong.u, exact, sigmas)
-        by_tractions = distorted.worst_errors(patch, weak.u, exact, sigmas)
+        by_displacements = distorted_blocks.worst_errors(patch, strong.u, exact, sigmas)
+        by_tractions = distorted_blocks.worst_errors(patch, weak.u, exact, sigmas)
         reaction = np.abs(weak.reactions["prescribed"]).max() / np.abs(F).sum(axis=0).min()
         found = {
             "displacements given, displacement": (by_displacements[0], 1e-12),
@@ -88,7 +95,7 @@ def run(run: Run) -> Any:
             )
             for what, (error, tolerance) in found.items()
         ]
-        quadratic = distorted.quadratic_error(patch)
+        quadratic = distorted_blocks.quadratic_error(patch)
         if patch.holds_quadratics:
             verdicts.append(
                 judge(
@@ -116,7 +123,7 @@ def run(run: Run) -> Any:
         if cells.shape[1] > 4:
             with run.step("forces by degree of quadrature"):
                 forces = [
-                    max(distorted.inner_forces(patch, sigma, degree) for sigma in sigmas)
+                    max(distorted_blocks.inner_forces(patch, sigma, degree) for sigma in sigmas)
                     for degree in DEGREES
                 ]
             own = element_kind(cells.shape[1]).degree

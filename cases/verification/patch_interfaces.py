@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: (nodes of the slave's elements, of the master's, divisions of the slave, of the master)
 MORTAR = (
@@ -190,9 +191,11 @@ def tied_blocks(mortar: Any) -> tuple[dict[str, float], dict[str, float]]:
     """Stress errors of ties that pass, and of those node by node that do not."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import mortar_tie, node_tie
     from fe_drivetrain.mesh import brick
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     def blocks(nodes: tuple[int, int], divisions: tuple[int, int], power: float) -> Any:
         made = []
@@ -243,8 +246,10 @@ def tied_blocks(mortar: Any) -> tuple[dict[str, float], dict[str, float]]:
 
 
 def one_block() -> Any:
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.mesh import brick
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     return two_bodies.together(brick((3, 2, 2), 10, oblique))
 
@@ -270,7 +275,9 @@ def averaged_block() -> dict[str, float]:
     """A face loaded through its averaged point, and the point's motion in a linear field."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     bodies = one_block()
     n = bodies.points.size
@@ -314,7 +321,9 @@ def sprung_block() -> dict[str, float]:
     import numpy as np
     from scipy import sparse
 
-    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     bodies = one_block()
     n = bodies.points.size
@@ -340,8 +349,10 @@ def rigid_block() -> dict[str, float]:
     """A rigid face: its rigid motions, and the tension that leaves it undeformed."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import held_freedoms, rigid_face, rigid_point
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     bodies = one_block()
     n = bodies.points.size + 6
@@ -378,8 +389,10 @@ def spheres(divisions: int) -> Any:
     import numpy as np
     from scipy.spatial import cKDTree
 
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.mesh import brick
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     def sector(bottom: float) -> Any:
         def shape(x: Any) -> Any:
@@ -433,8 +446,10 @@ def sphere_error(divisions: int) -> float:
     """Stress error of a uniform pressure that passes the sliding sphere, of the pressure."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import held_freedoms, sliding_sphere
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     bodies, inner, outside = spheres(divisions)
     n = bodies.points.size

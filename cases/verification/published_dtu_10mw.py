@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 STIFFNESS, RATIO = 2_317_025_352.0, 50.0
 ROTOR, GENERATOR = 156.7374e6, 1500.5
@@ -15,14 +16,17 @@ def run(run: Run) -> Any:
     """Two masses in closed form, by eigenvalues, and with the shaft's own inertia."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import (
+        published_shafts,
+        shaft_inputs,
+    )
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation.shaft_theory import (
         chain_frequencies,
         polar_moment,
         rod_frequency,
         two_mass_frequencies,
     )
-    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
 
     generator = GENERATOR * RATIO**2
     free, fixed = two_mass_frequencies(STIFFNESS, ROTOR, generator)
@@ -117,7 +121,7 @@ def run(run: Run) -> Any:
             Section(
                 title="Frequencies and the shaft behind them",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("k, on the rotor's side", STIFFNESS, "N m/rad", source),
                         ("gear ratio", RATIO, "-", source),
                         ("rotor", ROTOR, "kg m^2", source),

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, WALL, LENGTHS, SHEAR_MODULUS = 3.0, 0.1, (1.5, 1.5), 80e9
 #: DTTorSpr of the OpenFAST model [N m/rad].
@@ -18,9 +19,14 @@ def run(run: Run) -> Any:
     """The tube by finite elements, and what other descriptions of it would give."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import polar_moment
+    from fe_drivetrain.cases.verification import (
+        published_shafts,
+        shaft_inputs,
+    )
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation.shaft_theory import (
+        polar_moment,
+    )
 
     length = sum(LENGTHS)
     inner = OUTER - 2 * WALL
@@ -84,7 +90,7 @@ def run(run: Run) -> Any:
             Section(
                 title="A figure for the field",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("outer diameter", OUTER, "m", "IEA-10.0-198-RWT"),
                         ("wall", WALL, "m", "IEA-10.0-198-RWT"),
                         ("lengths", "1.5 + 1.5", "m", "hub to bearing, bearing to bearing"),

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, WALL, LENGTHS, SHEAR_MODULUS = 3.0, 0.1, (1.0, 1.2), 80e9
 #: DTTorSpr of the OpenFAST model [N m/rad], and what an earlier release of it had.
@@ -13,9 +14,14 @@ POLAR, HAWC2_G, SECTION_LENGTH, BODY_LENGTH = 3.9532, 7.93e10, 5.118, 6.12988012
 
 def run(run: Run) -> Any:
     """Closed form, finite elements, and the arithmetic behind the HAWC2 shaft."""
-    from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import polar_moment
+    from fe_drivetrain.cases.verification import (
+        published_shafts,
+        shaft_inputs,
+    )
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation.shaft_theory import (
+        polar_moment,
+    )
 
     length = sum(LENGTHS)
     J = polar_moment(OUTER, OUTER - 2 * WALL)
@@ -114,7 +120,7 @@ def run(run: Run) -> Any:
             Section(
                 title="One shaft, two models",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("outer diameter", OUTER, "m", "IEA-15-240-RWT, WISDEM model"),
                         ("wall", WALL, "m", "IEA-15-240-RWT, WISDEM model"),
                         ("lengths", "1.0 + 1.2", "m", "hub to bearing, bearing to bearing"),

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, WALL, SHEAR_MODULUS = 3.1, 0.02, 80e9
 #: Hub to bearing and bearing to bearing [m].
@@ -15,10 +16,18 @@ def run(run: Run) -> Any:
     """The thin tube by finite elements and by its closed forms."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import polar_moment
+    from fe_drivetrain.cases.verification import (
+        published_shafts,
+        shaft_inputs,
+    )
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.revolution import end_stiffness
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
+        polar_moment,
+    )
 
     length = sum(LENGTHS)
     inner = OUTER - 2 * WALL
@@ -85,7 +94,7 @@ def run(run: Run) -> Any:
             Section(
                 title="A figure for the field",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("outer diameter", OUTER, "m", "IEA-22-280-RWT.yaml, lss_diameter"),
                         ("wall", WALL, "m", "lss_wall_thickness"),
                         ("hub to bearing", LENGTHS[0], "m", "distance_hub_mb, commit 0199ef4"),

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 STIFFNESS, DAMPING, RATIO = 867_637_000.0, 6_215_000.0, 97.0
 ROTOR, GENERATOR = 38_759_228.0, 534.116
@@ -15,14 +16,17 @@ def run(run: Run) -> Any:
     """The shaft by finite elements beside the published stiffness."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import published_shafts, solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import (
+        published_shafts,
+        shaft_inputs,
+    )
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.validation.shaft_theory import (
         chain_frequencies,
         polar_moment,
         solid_diameter,
         two_mass_frequencies,
     )
-    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
 
     length = sum(LOW_LENGTHS)
     closed = SHEAR_MODULUS * polar_moment(LOW) / length
@@ -71,7 +75,7 @@ def run(run: Run) -> Any:
             Section(
                 title="What part the shaft is",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("DTTorSpr", STIFFNESS, "N m/rad", "Jonkman et al. 2009; OpenFAST model"),
                         ("DTTorDmp", DAMPING, "N m s/rad", "Jonkman et al. 2009; OpenFAST model"),
                         ("gear ratio", RATIO, "-", "Jonkman et al. 2009"),

@@ -6,12 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.cases.verification import solid_shafts
-from fe_drivetrain.cases.verification.shaft_theory import parabola_shortfall
 from fe_drivetrain.compare import GridConvergence, grid_convergence
 from fe_drivetrain.report import AssumptionRow, Verdict, judge
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Run
+from fe_drivetrain.validation import (
+    solid_shafts,
+)
+from fe_drivetrain.validation.shaft_theory import (
+    parabola_shortfall,
+)
 
 #: Elements round the axis of the coarsest mesh; of a quick run.
 BASE_TURN, QUICK_TURN = 12, 8

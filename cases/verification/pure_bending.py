@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, BORES, LENGTH = 0.4, (0.0, 0.28), 0.8
 CURVATURE = 1e-3
@@ -12,19 +13,22 @@ def run(run: Run) -> Any:
     """Linear tractions on both ends, on three meshes each."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import shaft_inputs
+    from fe_drivetrain.mesh import face_weights
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
         Tube,
         anticlastic_error,
         parabola_shortfall,
         pure_bending_field,
         recovery_error,
     )
-    from fe_drivetrain.mesh import face_weights
-    from fe_drivetrain.operator import nodal_stresses, traction_loads
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
-    from fe_drivetrain.solve import solve_solid
 
     steel = MATERIALS["steel"]
     E, nu = steel.youngs_modulus, steel.poisson_ratio
@@ -165,12 +169,12 @@ def run(run: Run) -> Any:
             Section(
                 title="Pure bending",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
                         ("bore of the bored shaft", BORES[-1], "m", "chosen"),
                         ("length", LENGTH, "m", "chosen"),
                         ("curvature", CURVATURE, "1/m", "chosen: 40 MPa at the skin"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "Anticlastic bending: sideways displacement of the skin round the shaft, "

@@ -2,14 +2,17 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 
 def run(run: Run) -> Any:
     """Work of each of ten unit loads on the displacements under each other one, both scenes."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import scenes
+    from fe_drivetrain.cases.verification import (
+        scenes,
+    )
     from fe_drivetrain.report import Chart, Section, Table, Text, judge
     from fe_drivetrain.response import LOADS
 

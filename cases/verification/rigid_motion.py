@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 MOTIONS = ("x", "y", "z", "about x", "about y", "about z")
 
@@ -14,14 +15,21 @@ def run(run: Run) -> Any:
     """Move one face of a body as a rigid body: the rest must follow, and no force may be needed."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import distorted, scenes
-    from fe_drivetrain.cases.verification import manufactured as m
+    from fe_drivetrain.cases.verification import (
+        scenes,
+    )
     from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import freedoms
     from fe_drivetrain.mesh import brick, renumbered
     from fe_drivetrain.operator import stresses
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation import (
+        distorted_blocks,
+    )
+    from fe_drivetrain.validation import (
+        manufactured as m,
+    )
 
     # label, points, cells, nodes of the face that is moved, Lame's constants
     bodies: list[tuple[str, Any, Any, Any, tuple[float, float]]] = []
@@ -59,7 +67,7 @@ def run(run: Run) -> Any:
             # of a strain of one over the body's size.
             force = (abs(static.K) @ np.abs(motions)).max(axis=0)
             reaction = np.abs(static.reactions["prescribed"]).max(axis=0) / force
-            at = distorted.reference_points(cells.shape[1])
+            at = distorted_blocks.reference_points(cells.shape[1])
             scale = sum(lame) / size
             stress = np.array(
                 [

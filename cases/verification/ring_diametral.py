@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 RADIUS = 0.33  # m, of the wall's middle
 E, NU = 206e9, 0.3
@@ -26,24 +27,26 @@ def run(run: Run) -> Any:
     """Squeeze rings of several thicknesses, by finite elements and by four formulas."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.plane_rings import (
+    from fe_drivetrain.compare import (
+        band_of,
+    )
+    from fe_drivetrain.operator import nodal_stresses, traction_loads
+    from fe_drivetrain.report import Measure, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.plane_rings import (
         Lame,
         even_amplitudes,
         harmonics,
         plane_strain,
     )
-    from fe_drivetrain.cases.verification.ring_solids import (
-        band_of,
+    from fe_drivetrain.validation.ring_solids import (
         node_at,
         plane_strain_hold,
         polar_stresses,
         ring_sector,
         sector_symmetry,
     )
-    from fe_drivetrain.operator import nodal_stresses, traction_loads
-    from fe_drivetrain.report import Measure, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import Material
-    from fe_drivetrain.solve import solve_solid
 
     plane = plane_strain(E, NU)
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 INNER, OUTER = 0.3175, 0.348  # m
 PRESSURE = 1e6  # Pa, amplitude
@@ -16,14 +17,8 @@ def run(run: Run) -> Any:
     """Solve one half wave of the ring for each order."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.plane_rings import harmonics, plane_strain
-    from fe_drivetrain.cases.verification.ring_solids import (
+    from fe_drivetrain.compare import (
         band_of,
-        node_at,
-        plane_strain_hold,
-        polar_stresses,
-        ring_sector,
-        sector_symmetry,
     )
     from fe_drivetrain.operator import nodal_stresses, traction_loads
     from fe_drivetrain.report import (
@@ -38,6 +33,17 @@ def run(run: Run) -> Any:
     )
     from fe_drivetrain.scene import Material
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.plane_rings import (
+        harmonics,
+        plane_strain,
+    )
+    from fe_drivetrain.validation.ring_solids import (
+        node_at,
+        plane_strain_hold,
+        polar_stresses,
+        ring_sector,
+        sector_symmetry,
+    )
 
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
     plane = plane_strain(E, NU)

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER = 0.4
 RATIO = 6.0
@@ -15,14 +16,17 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import Beam, BeamSection, Support, solve
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import shaft_inputs
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
         Tube,
         evenly_loaded_shear,
         parabola_shortfall,
     )
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     gravity = -9.80665
@@ -148,12 +152,12 @@ def run(run: Run) -> Any:
             Section(
                 title="Sag",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
                         ("overhang", length, "m", "chosen"),
                         ("gravity", gravity, "m/s^2", "standard"),
                         ("density", steel.density, "kg/m^3", "steel, assumed"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of "

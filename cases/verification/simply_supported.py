@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 OUTER, LENGTH = 0.4, 2.4
 
@@ -12,16 +13,19 @@ def run(run: Run) -> Any:
     import numpy as np
 
     from fe_drivetrain.beam import Beam, BeamSection, Support, solve
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import shaft_inputs
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
         Spring,
         Tube,
         evenly_loaded_shear,
         macaulay,
         parabola_shortfall,
     )
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     tube = Tube(OUTER, 0.0, LENGTH, steel)
@@ -163,14 +167,14 @@ def run(run: Run) -> Any:
             Section(
                 title="Simple supports",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
                         ("span", LENGTH, "m", "chosen"),
                         ("force at mid span", force / 1e6, "MN", "chosen"),
                         ("moment at the downwind end", moment / 1e6, "MN m", "chosen"),
                         ("gravity", gravity, "m/s^2", "standard"),
                         ("density", steel.density, "kg/m^3", "steel, assumed"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "Deflection over its largest: Macaulay's beam with shear, and the means of "

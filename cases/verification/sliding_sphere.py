@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Radii of core, joint and outside [m]: those of a main bearing's ring and housing.
 CORE, JOINT, OUTSIDE = 0.2, 0.3, 0.41
@@ -19,7 +20,10 @@ def run(run: Run) -> Any:
     """Move, turn and press the joint on several meshes."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.spherical_shells import (
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.validation.spherical_shells import (
         AXIS,
         JOINTS,
         Moved,
@@ -33,9 +37,6 @@ def run(run: Run) -> Any:
         squeezed,
         turning_stiffness,
     )
-    from fe_drivetrain.compare import grid_convergence
-    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import Material
 
     inner, outer = (
         Shell(a, b, Material(youngs_modulus=e, poisson_ratio=nu, density=0.0).lame)

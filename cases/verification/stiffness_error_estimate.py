@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 NAMES = {
     4: "tetrahedra of 4 nodes",
@@ -31,9 +32,13 @@ def run(run: Run) -> Any:
     """Estimate the errors of bars and shafts, and compare."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import exact_blocks, rigid_ended_shafts
+    from fe_drivetrain.cases.verification import rigid_balance
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.solve import recovery_estimate
+    from fe_drivetrain.validation import (
+        exact_blocks,
+        rigid_ended_shafts,
+    )
 
     rows: list[list[Any]] = []
     verdicts, traces = [], []
@@ -139,7 +144,7 @@ def run(run: Run) -> Any:
             if values
         ]
 
-    verdicts.append(rigid_ended_shafts.balance_verdict(imbalances))
+    verdicts.append(rigid_balance.balance_verdict(imbalances))
     effectivity = np.array([row[-1] for row in rows])
     return CASE.results(
         run,

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Elements through the wall; eight times as many round it.
 WALLS, QUICK_WALLS = (3, 6, 9, 12), (2, 3, 4)
@@ -17,11 +18,17 @@ def run(run: Run) -> Any:
     """Mesh a shaft and a bush with straight and with curved elements on the same corners."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import manufactured as m
     from fe_drivetrain.cases.verification import orders
-    from fe_drivetrain.cases.verification.round_shafts import Bush, Torsion, slice_of_tube
     from fe_drivetrain.mesh import straightened
     from fe_drivetrain.report import Section, Text, judge
+    from fe_drivetrain.validation import (
+        manufactured as m,
+    )
+    from fe_drivetrain.validation.round_shafts import (
+        Bush,
+        Torsion,
+        slice_of_tube,
+    )
 
     def both(block: Any) -> dict[str, Any]:
         return {"straight": straightened(block.points, block.cells), "curved": block.points}
@@ -109,8 +116,8 @@ def run(run: Run) -> Any:
                         text="A slice of a bored shaft, one element thick, for nothing changes "
                         "along it: held on one side, under a torque on the other."
                     ),
-                    m.convergence_chart("Torsion of a bored shaft", shafts, size),
-                    m.convergence_table(shafts, size),
+                    orders.convergence_chart("Torsion of a bored shaft", shafts, size),
+                    orders.convergence_table(shafts, size),
                     Text(
                         text="The exact displacement is quadratic, so straight P2 elements hold "
                         "it: all of their error comes from the shape. Chords leave out slivers of "
@@ -137,8 +144,8 @@ def run(run: Run) -> Any:
                         "the order of h in a volume of the order of h, √(h² h) = h^1.5 in the "
                         "energy norm. Its mean shifts all displacements by h²."
                     ),
-                    m.convergence_chart("A bush pushed along its axis", bushes, size),
-                    m.convergence_table(bushes, size),
+                    orders.convergence_chart("A bush pushed along its axis", bushes, size),
+                    orders.convergence_table(bushes, size),
                 ],
             ),
         ],

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 INNER, OUTER = 0.3, 0.6  # m
 PRESSURE = 100e6  # Pa
@@ -26,21 +27,27 @@ def run(run: Run) -> Any:
     """Solve an eighth of the ring on ever finer meshes."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, plane_strain
-    from fe_drivetrain.cases.verification.ring_solids import (
+    from fe_drivetrain.compare import (
         band_of,
+        observed_order,
+    )
+    from fe_drivetrain.interfaces import held_nodes
+    from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
+    from fe_drivetrain.report import Cell, Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import Material
+    from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.plane_rings import (
+        Lame,
+        Plane,
+        plane_strain,
+    )
+    from fe_drivetrain.validation.ring_solids import (
         node_at,
         plane_strain_hold,
         polar_stresses,
         ring_sector,
         sector_symmetry,
     )
-    from fe_drivetrain.compare import observed_order
-    from fe_drivetrain.interfaces import held_nodes
-    from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
-    from fe_drivetrain.report import Cell, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import Material
-    from fe_drivetrain.solve import solve_solid
 
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
     exact = Lame(INNER, OUTER, inside=PRESSURE)

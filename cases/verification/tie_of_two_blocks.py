@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 LENGTH = 3.0  # m, of a bar of section 1 m x 1 m, cut in its middle
 E, NU = 210e9, 0.3
@@ -230,15 +231,19 @@ def part(n: int, start: float, stop: float) -> Any:
 
 
 def bar(n: int) -> Any:
-    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     return two_bodies.together(part(n, 0.0, LENGTH))
 
 
 def tied_bar(own: int, other: int, kind: Any) -> tuple[Any, Any]:
     """Both halves, and the tie between them; the slave is the first."""
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import mortar_tie, node_tie
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     # The slave's inner nodes are moved: the same number of divisions does not match either.
     half = 0.5 * LENGTH
@@ -265,10 +270,12 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     """Stiffness in torsion, pure bending and across; what is out of balance between the halves."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import held_freedoms, held_nodes
     from fe_drivetrain.operator import traction_loads
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     points, n = bodies.points, bodies.points.size
     K = bodies.stiffness(lame())
@@ -320,9 +327,11 @@ def fill_in(largest: int) -> list[list[Any]]:
     """Rows of ties and entries of stiffnesses on ever finer faces."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import eliminate, mortar_tie
     from fe_drivetrain.mesh import brick
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     rows = []
     n = 4

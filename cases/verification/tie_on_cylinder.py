@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 RADII = 0.5, 1.0, 1.5  # m: bore, tied cylinder, outer surface
 WIDTH = 1.0  # m
@@ -260,7 +261,9 @@ def layers(turn: int) -> int:
 
 
 def one_ring(turn: int) -> Any:
-    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     return two_bodies.together(ring(RADII[0], RADII[2], turn, 2 * layers(turn)))
 
@@ -276,8 +279,10 @@ def tied_rings(own: int, other: int, multipliers: Any = "standard") -> tuple[Any
 
 
 def as_meshed(own: int, other: int, multipliers: Any = "standard") -> tuple[Any, Any]:
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.interfaces import mortar_tie
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     bodies = two_bodies.together(
         ring(RADII[0], RADII[1], own, layers(own)),
@@ -291,9 +296,11 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     """Stiffness in torsion and radially; energy of rigid motions beside that of unit strain."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
     from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import freedoms, held_freedoms
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     points, n = bodies.points, bodies.points.size
     K = bodies.stiffness(lame())
@@ -336,7 +343,9 @@ def traction_error(turn: int, multipliers: Any, settle: bool) -> float:
     """
     import numpy as np
 
-    from fe_drivetrain.cases.verification import two_bodies
+    from fe_drivetrain.validation import (
+        two_bodies,
+    )
 
     bodies, tie = (tied_rings if settle else as_meshed)(turn, round(0.8 * turn), multipliers)
     error = 0.0

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Radii at the ends [m] and half angle of the cone [degrees].
 RADII, HALF_ANGLE = (0.15, 0.3), 10.0
@@ -14,14 +15,22 @@ def run(run: Run) -> Any:
     """A cone between flat ends: Michell's displacements prescribed there, then rigid ends."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import michell_torque, parabola_shortfall
-    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
+    from fe_drivetrain.cases.verification import shaft_inputs
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import MATERIALS
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
+        michell_torque,
+        parabola_shortfall,
+    )
+    from fe_drivetrain.validation.torsion_meridian import (
+        torsion_bounds,
+    )
 
     steel = MATERIALS["steel"]
     G = steel.shear_modulus
@@ -154,12 +163,12 @@ def run(run: Run) -> Any:
             Section(
                 title="Cone",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("radius at the thin end", RADII[0], "m", "chosen"),
                         ("radius at the thick end", RADII[1], "m", "chosen"),
                         ("half angle of the cone", HALF_ANGLE, "degrees", "chosen"),
                         ("length", shaft.length, "m", "of these"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "How much too stiff the integral of dx / GJ is: against rigid flat ends, "

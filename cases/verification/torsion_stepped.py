@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 LARGE, LENGTH = 0.6, 0.6
 SMALL = 0.4
@@ -16,14 +17,22 @@ def run(run: Run) -> Any:
     """Two bounds from the meridian, the solid in three dimensions, and the series sum."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import parabola_shortfall, polar_moment
-    from fe_drivetrain.cases.verification.torsion_meridian import torsion_bounds
+    from fe_drivetrain.cases.verification import shaft_inputs
     from fe_drivetrain.geometry import Section as Length
     from fe_drivetrain.geometry import Shaft
     from fe_drivetrain.mesh import Grading
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
+        parabola_shortfall,
+        polar_moment,
+    )
+    from fe_drivetrain.validation.torsion_meridian import (
+        torsion_bounds,
+    )
 
     steel = MATERIALS["steel"]
     G = steel.shear_modulus
@@ -137,13 +146,13 @@ def run(run: Run) -> Any:
             Section(
                 title="What a step adds",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("large diameter", LARGE, "m", "chosen"),
                         ("small diameter", SMALL, "m", "chosen"),
                         ("bore of the bored shaft", BORE, "m", "chosen"),
                         ("length of each part", LENGTH, "m", "chosen"),
                         ("fillet", 0.0, "m", "sharp step: the most that a step can add"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "Length of the thin part that twists as the step does beside the series "

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 #: Outer diameter, bores and length [m].
 OUTER, BORES, LENGTH = 0.4, (0.0, 0.28), 0.8
@@ -14,17 +15,20 @@ def run(run: Run) -> Any:
     """Turn the ends by an exact rotation, on three meshes each."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification import solid_shafts
-    from fe_drivetrain.cases.verification.shaft_theory import (
+    from fe_drivetrain.cases.verification import shaft_inputs
+    from fe_drivetrain.compare import grid_convergence
+    from fe_drivetrain.operator import nodal_stresses
+    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    from fe_drivetrain.scene import MATERIALS
+    from fe_drivetrain.validation import (
+        solid_shafts,
+    )
+    from fe_drivetrain.validation.shaft_theory import (
         Tube,
         parabola_shortfall,
         parabola_slope,
         recovery_error,
     )
-    from fe_drivetrain.compare import grid_convergence
-    from fe_drivetrain.operator import nodal_stresses
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
 
     steel = MATERIALS["steel"]
     refinements = QUICK_REFINEMENTS if run.quick else REFINEMENTS
@@ -134,11 +138,11 @@ def run(run: Run) -> Any:
             Section(
                 title="Torsional stiffness",
                 items=[
-                    solid_shafts.inputs(
+                    shaft_inputs.inputs(
                         ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
                         ("bore of the bored shaft", BORES[-1], "m", "chosen"),
                         ("length", LENGTH, "m", "chosen: the answer does not depend on it"),
-                        *solid_shafts.steel_rows(steel),
+                        *shaft_inputs.steel_rows(steel),
                     ),
                     chart(
                         "Relative error of the stiffness; the line is no fit, but four times the "

@@ -2,8 +2,12 @@
 
 from typing import Any
 
-from fe_drivetrain.cases.verification.units import INCH, PSI
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.cases.verification.units import (
+    INCH,
+    PSI,
+)
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 RADIUS, THICKNESS = 40.0 * INCH, 1.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -25,13 +29,20 @@ def run(run: Run) -> Any:
     """Solve both plates as solids, their edges carried by the shear that plate theory has there."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.quarter_disc import quarter_disc
-    from fe_drivetrain.cases.verification.ring_solids import band_of, node_at
+    from fe_drivetrain.compare import (
+        band_of,
+    )
     from fe_drivetrain.interfaces import held_freedoms
     from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import Material
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.quarter_disc import (
+        quarter_disc,
+    )
+    from fe_drivetrain.validation.ring_solids import (
+        node_at,
+    )
 
     steel = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
     middle = 0.5 * THICKNESS

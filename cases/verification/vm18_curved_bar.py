@@ -2,8 +2,13 @@
 
 from typing import Any
 
-from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.cases.verification.units import (
+    INCH,
+    POUND,
+    PSI,
+)
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 RADIUS, DIAMETER = 100.0 * INCH, 2.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -23,17 +28,23 @@ def run(run: Run) -> Any:
     """Solve the bar on three meshes and look at its root and its end."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.bar_sections import (
-        round_bar,
-        section_motion,
-        section_stresses,
+    from fe_drivetrain.compare import (
+        band_of,
     )
-    from fe_drivetrain.cases.verification.ring_solids import band_of, facets_where, node_at
     from fe_drivetrain.interfaces import fixed
     from fe_drivetrain.operator import nodal_stresses, tensor, traction_loads
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import Material
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.bar_sections import (
+        round_bar,
+        section_motion,
+        section_stresses,
+    )
+    from fe_drivetrain.validation.ring_solids import (
+        facets_where,
+        node_at,
+    )
 
     steel = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
     area, inertia = 0.25 * np.pi * DIAMETER**2, np.pi * DIAMETER**4 / 64.0

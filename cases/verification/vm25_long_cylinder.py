@@ -2,8 +2,12 @@
 
 from typing import Any
 
-from fe_drivetrain.cases.verification.units import INCH, PSI
-from fe_drivetrain.suite import Case, Run
+from fe_drivetrain.cases.verification.units import (
+    INCH,
+    PSI,
+)
+from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Run
 
 INNER, INSIDE, OUTER = 4.0 * INCH, 5.43 * INCH, 8.0 * INCH
 E, NU = 30e6 * PSI, 0.3
@@ -34,20 +38,27 @@ def run(run: Run) -> Any:
     """Solve a sector of the cylinder, and of a thin disc."""
     import numpy as np
 
-    from fe_drivetrain.cases.verification.plane_rings import Lame, Plane, Rotating, plane_strain
-    from fe_drivetrain.cases.verification.ring_solids import (
+    from fe_drivetrain.compare import (
         band_of,
-        moves_as_one,
-        node_at,
-        polar_stresses,
-        ring_sector,
-        sector_symmetry,
     )
     from fe_drivetrain.interfaces import held_nodes
     from fe_drivetrain.operator import body_loads, nodal_stresses, pressure, traction_loads
     from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
     from fe_drivetrain.scene import Material
     from fe_drivetrain.solve import solve_solid
+    from fe_drivetrain.validation.plane_rings import (
+        Lame,
+        Plane,
+        Rotating,
+        plane_strain,
+    )
+    from fe_drivetrain.validation.ring_solids import (
+        moves_as_one,
+        node_at,
+        polar_stresses,
+        ring_sector,
+        sector_symmetry,
+    )
 
     lame = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
     middle = 0.5 * (INNER + OUTER)

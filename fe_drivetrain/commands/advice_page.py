@@ -12,7 +12,8 @@ from fe_drivetrain.fidelity.adviser import Advice, Quantity, Rung, advise
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, Text, judge
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Run
 
 _LEAST = 1e-6  # what statics decides has no error, and a place on a logarithmic axis
 

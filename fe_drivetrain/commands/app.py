@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from fe_drivetrain.report.results import Problem, Results, Verdict
     from fe_drivetrain.scene.component import Component
     from fe_drivetrain.scene.scene import Scene
-    from fe_drivetrain.suite.case import Case, Run
+    from fe_drivetrain.suite.case import AnyCase as Case
+    from fe_drivetrain.suite.case import OldCase, Run
 
 PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
 
@@ -81,11 +82,11 @@ _QuickOption = Annotated[
 ]
 
 
-def main() -> None:
-    """Entry point of ``fe-drivetrain``."""
+def main(arguments: list[str] | None = None) -> None:
+    """Entry point of ``fe-drivetrain``; with the words of the shell where none are given."""
     _forgive_narrow_encodings()
     warnings.showwarning = _show_warning
-    _app(prog_name="fe-drivetrain")
+    _app(arguments, prog_name="fe-drivetrain")
 
 
 def main_of_case(case: Case) -> None:
@@ -633,10 +634,11 @@ def _run_on_scene(
     scene: str,
     title: str,
     out: Path | None,
-    study: Callable[[Case, Run], Results],
+    study: Callable[[OldCase, Run], Results],
 ) -> int:
     """Run what a command makes of a scene as a case of its own, and say how it ended."""
-    from fe_drivetrain.suite.case import Case, run_case
+    from fe_drivetrain.suite.case import OldCase as Case
+    from fe_drivetrain.suite.case import run_case
 
     name = Path(scene).stem
     case = Case(
@@ -871,12 +873,12 @@ def _outcome(results: Results, page: Path) -> str:
 
 
 def _line(verdict: Verdict) -> str:
+    from fe_drivetrain.report.results import expectation
+
     unit = f" {verdict.unit}" if verdict.unit not in ("", "-") else ""
-    allowed = f"{100 * verdict.tolerance:.3g} %" if verdict.relative else f"{verdict.tolerance:.3g}"
     return (
         f"{'pass' if verdict.passed else 'FAIL'}  {verdict.quantity}: "
-        f"computed {verdict.computed:.5g}{unit}, reference {verdict.reference:.5g}{unit}, "
-        f"tolerance {allowed}{'' if verdict.relative else unit}"
+        f"computed {verdict.computed:.5g}{unit}, {expectation(verdict)}"
     )
 
 

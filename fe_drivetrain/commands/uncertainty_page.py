@@ -14,7 +14,8 @@ from fe_drivetrain.fidelity.quantities import Number
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, Text, Verdict, judge
 from fe_drivetrain.scene.scene import Scene, Spread
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Run
 from fe_drivetrain.uncertainty.input_study import Study, level_error, rung_of, study
 from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
 

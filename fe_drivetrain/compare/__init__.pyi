@@ -6,6 +6,7 @@ from .calibration import hypercube as hypercube
 from .calibration import nearest as nearest
 from .convergence import DOUBTFUL as DOUBTFUL
 from .convergence import GridConvergence as GridConvergence
+from .convergence import band_of as band_of
 from .convergence import grid_convergence as grid_convergence
 from .convergence import observed_order as observed_order
 from .convergence import richardson as richardson

@@ -30,6 +30,9 @@ from scipy.optimize import brentq
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
+SOLVER_ROUND_OFF = 1e-8
+"""Relative; solutions are refined or iterated to about 1e-9 in energy."""
+
 Behaviour = Literal["monotone", "oscillatory", "divergent", "converged"]
 
 #: Orders that are looked for: below, a series as good as stands still; above, the last difference
@@ -269,3 +272,29 @@ def _checked(sizes: ArrayLike, values: ArrayLike) -> tuple[Floats, Floats]:
 
 def _shown(value: float) -> str:
     return f"{value:.{_DIGITS}g}" if abs(value) < 10**_DIGITS else f"{value:,.0f}"
+
+
+def band_of(sizes: ArrayLike, values: ArrayLike, order: float | None = None) -> float:
+    """Half width of the uncertainty of the finest value of a series, in its unit.
+
+    Parameters
+    ----------
+    sizes : array_like
+        Element sizes, coarse to fine, in any unit.
+    values : array_like
+        What each mesh gave.
+    order : float, optional
+        Expected order of convergence.
+
+    Returns
+    -------
+    band : float
+        By the grid convergence index; where differences do not shrink, as of first order at least.
+    """
+    found = grid_convergence(sizes, values, expected_order=order, round_off=SOLVER_ROUND_OFF)
+    if np.isfinite(found.uncertainty):
+        return found.uncertainty
+    # differences that do not shrink: at least of first order, as whatever is not singular is
+    return grid_convergence(
+        sizes, values, expected_order=order, least_order=1.0, round_off=SOLVER_ROUND_OFF
+    ).uncertainty

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.report.results import expectation
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Problem, Results
@@ -46,11 +47,7 @@ def write_junit(
                     suite, "testcase", classname=name, name=verdict.quantity
                 )
                 if not verdict.passed:
-                    allowed = f"{verdict.tolerance:g} {'relative' if verdict.relative else 'in it'}"
-                    message = (
-                        f"computed {verdict.computed:.6g}, reference {verdict.reference:.6g} "
-                        f"{verdict.unit}, tolerance {allowed}"
-                    )
+                    message = f"computed {verdict.computed:.6g}, {expectation(verdict)}"
                     failure = ElementTree.SubElement(test, "failure", message=message)
                     failure.text = f"{verdict.reason}\n{verdict.source}"
         for kind, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):

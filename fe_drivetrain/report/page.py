@@ -175,6 +175,8 @@ def _environment() -> jinja2.Environment:
         "seconds": lambda s: f"{s:.3g}" if abs(s) < 1000 else f"{s:.0f}",
         "cell": formatted,
         "band": band_text,
+        "computed": computed_text,
+        "expected": expected_text,
         "error": error_text,
         "tolerance": tolerance_text,
         "safe_range": safe_range,
@@ -248,8 +250,29 @@ def formatted(value: float | int | str | bool | None, digits: int = DIGITS) -> s
     return f"{number}\u00a0×\u00a010{str(power).translate(_SUPERSCRIPTS)}" if power else number
 
 
+def computed_text(verdict: Verdict) -> str:
+    """The computed value; of a statement, whether it holds."""
+    if verdict.check == "holds":
+        return "yes" if verdict.computed == 1.0 else "no"
+    return formatted(verdict.computed)
+
+
+def expected_text(verdict: Verdict) -> str:
+    """What a check asks for: a reference, zero, a bound, a range, or that a statement holds."""
+    reference = formatted(verdict.reference)
+    if verdict.check == "at most":
+        return f"≤\u00a0{reference}"
+    if verdict.check == "at least":
+        return f"≥\u00a0{reference}"
+    if verdict.check == "between":
+        return f"{reference} to {formatted(verdict.upper)}"
+    return {"vanishes": "0", "holds": "yes"}.get(verdict.check, reference)
+
+
 def error_text(verdict: Verdict) -> str:
-    """The error of a verdict: in percent of the reference, or in the unit."""
+    """The error of a verdict: in percent of the reference, or in the unit; none of a bound."""
+    if verdict.check not in ("equals", "vanishes"):
+        return "–"
     error = verdict.computed - verdict.reference
     if verdict.relative and verdict.reference != 0:
         return _signed(100 * error / abs(verdict.reference), "%")
@@ -274,7 +297,9 @@ def safe_range(limit: Limit) -> str:
 
 
 def tolerance_text(verdict: Verdict) -> str:
-    """The tolerance of a verdict, in percent or in the unit."""
+    """The tolerance of a verdict, in percent or in the unit; none of a bound."""
+    if verdict.check not in ("equals", "vanishes"):
+        return "–" if verdict.check == "holds" else ""
     if verdict.relative:
         return f"±{formatted(100 * verdict.tolerance, 3)}\u00a0%"
     return f"±{_with_unit(formatted(verdict.tolerance, 3), verdict.unit)}"

@@ -29,27 +29,71 @@ class _Result(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
+Check = Literal["equals", "vanishes", "at most", "at least", "between", "holds"]
+"""What a verdict asks of the computed value; a NaN passes none of them."""
+
+Basis = Literal["independent", "self-consistency", "second-hand"]
+"""What a reference is worth: independent of the computed value; true by construction, so that only
+a fault of the program could break it; or quoted from a source that was not read itself."""
+
+
 class Verdict(_Result):
-    """One quantity judged against a reference, with the tolerance and its reason."""
+    """One quantity judged, with what is asked of it and why."""
 
     # a case that computes NaN has failed, and its page must be able to say so
     model_config = ConfigDict(ser_json_inf_nan="strings")
 
     quantity: str
     unit: str
+    check: Check = "equals"
     computed: float
-    reference: float
+    reference: float = Field(
+        description="the value to be met; the bound of 'at most' and 'at least'; the lower one of "
+        "'between'; 0 where it vanishes, 1 where it holds"
+    )
+    upper: float | None = Field(default=None, description="upper bound, of 'between' alone")
     source: str = Field(description="where the reference comes from")
     tolerance: float = Field(description="allowed |computed - reference|, relative or in the unit")
     relative: bool = Field(description="whether tolerance is relative to the reference")
-    reason: str = Field(description="why the tolerance is what it is")
+    reason: str = Field(description="why the tolerance or the bound is what it is")
     measure: Measure | None = Field(default=None, description="kind of quantity, for statistics")
+    basis: Basis = "independent"
     band: float | None = Field(
         default=None,
         ge=0,
-        description="half width of the numerical uncertainty of computed, in its unit",
+        description="half width of the numerical uncertainty of computed, in its unit; computed "
+        "itself, or absent",
     )
     passed: bool
+
+
+def is_met(verdict: Verdict) -> bool:
+    """Whether the computed value is what the check asks for."""
+    computed, reference = verdict.computed, verdict.reference
+    if verdict.check == "at most":
+        return computed <= reference
+    if verdict.check == "at least":
+        return computed >= reference
+    if verdict.check == "between":
+        return verdict.upper is not None and reference <= computed <= verdict.upper
+    size = abs(reference) if verdict.relative else 1.0
+    return abs(computed - reference) <= verdict.tolerance * size
+
+
+def expectation(verdict: Verdict) -> str:
+    """What a check asks of the computed value, in words and plain digits."""
+    unit = f" {verdict.unit}" if verdict.unit not in ("", "-") else ""
+    share = f"{100 * verdict.tolerance:.3g} %" if verdict.relative else ""
+    allowed = share or f"{verdict.tolerance:.3g}{unit}"
+    if verdict.check == "vanishes":
+        return f"vanishes within {allowed}"
+    if verdict.check == "holds":
+        return "holds where it is 1"
+    if verdict.check == "between":
+        return f"between {verdict.reference:.5g} and {verdict.upper:.5g}{unit}"
+    if verdict.check in ("at most", "at least"):
+        return f"{verdict.check} {verdict.reference:.5g}{unit}"
+    return f"reference {verdict.reference:.5g}{unit}, tolerance {allowed}"
 
 
 def judge(
@@ -60,27 +104,32 @@ def judge(
     tolerance: float,
     reason: str,
     source: str,
+    check: Check = "equals",
+    upper: float | None = None,
     unit: str = "",
     relative: bool = True,
     measure: Measure | None = None,
+    basis: Basis = "independent",
     band: float | None = None,
 ) -> Verdict:
     """Judge one quantity; a NaN never passes. For the arguments see `Verdict`."""
-    size = abs(reference) if relative else 1.0
-    passed = bool(abs(computed - reference) <= tolerance * size)
-    return Verdict(
+    verdict = Verdict(
         quantity=quantity,
         unit=unit,
+        check=check,
         computed=float(computed),
         reference=float(reference),
+        upper=None if upper is None else float(upper),
         source=source,
         tolerance=tolerance,
         relative=relative,
         reason=reason,
         measure=measure,
+        basis=basis,
         band=None if band is None else float(band),
-        passed=passed,
+        passed=False,
     )
+    return verdict.model_copy(update={"passed": is_met(verdict)})
 
 
 @dataclass(frozen=True)
@@ -109,10 +158,16 @@ class Statistic:
 
 
 def bias_and_scatter(verdicts: Iterable[Verdict]) -> list[Statistic]:
-    """Statistics of each measure, over verdicts that are relative to a reference other than 0."""
+    """Statistics of each measure, over verdicts that are relative to a reference other than 0.
+
+    References that are true by construction, or second-hand, say nothing of bias: they are left
+    out.
+    """
     errors: dict[str, list[float]] = {}
     for v in verdicts:
-        if v.measure in (None, "identity") or not v.relative or v.reference == 0.0:
+        if v.measure in (None, "identity") or v.basis != "independent" or v.check != "equals":
+            continue
+        if not v.relative or v.reference == 0.0:
             continue
         errors.setdefault(str(v.measure), []).append((v.computed - v.reference) / abs(v.reference))
     return [
@@ -209,7 +264,7 @@ class Problem(NamedTuple):
 class Results(_Result):
     """All that a case found."""
 
-    schema_version: Literal[1] = 1
+    schema_version: Literal[1, 2] = 2
     case: str
     title: str
     source: str

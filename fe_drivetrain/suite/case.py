@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import importlib.util
 import pkgutil
@@ -10,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
@@ -19,6 +21,7 @@ from fe_drivetrain.common.processes import Job, Processes, Report, silent
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
+    from fe_drivetrain.suite.page import Page
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -64,6 +67,13 @@ class Run:
         start = time.perf_counter()
         yield step
         self.add_time(step.name, time.perf_counter() - start)
+
+    def timed(
+        self, name: str, function: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs
+    ) -> _T:
+        """What the function returns, called as a step of that name."""
+        with self.step(name):
+            return function(*args, **kwargs)
 
     def add_time(self, name: str, seconds: float) -> None:
         """Add to the wall time of a step."""
@@ -147,7 +157,7 @@ def _with_own_run(
 
 
 @dataclass(frozen=True)
-class Case:
+class OldCase:
     """A validation case: it describes, runs and judges.
 
     Attributes
@@ -197,18 +207,116 @@ class Case:
         )
 
 
-def all_cases() -> dict[str, Case]:
-    """Every case by name, in order."""
+@dataclass(frozen=True)
+class Case:
+    """A validation case: it describes, runs and judges.
+
+    Attributes
+    ----------
+    name : str
+        "GROUP/NAME", as under ``cases/``.
+    title : str
+        One line.
+    source : str
+        Where the problem and its reference come from.
+    run : callable
+        Does the work: takes a `Run` and fills a `Page`.
+    alone : bool
+        It measures time or memory: nothing may run beside it, and nothing it uses comes from the
+        cache.
+    """
+
+    name: str
+    title: str
+    source: str
+    run: Callable[[Run, Page], None]
+    alone: bool = False
+
+    def results(self, run: Run) -> Results:
+        """Run the case; what it found."""
+        from fe_drivetrain.report.environment import environment
+        from fe_drivetrain.report.results import Results
+        from fe_drivetrain.suite.page import Page
+
+        page = Page()
+        self.run(run, page)
+        return Results(
+            case=self.name,
+            title=self.title,
+            source=self.source,
+            summary=page.summary,
+            verdicts=page.verdicts,
+            sections=page.sections,
+            limits=page.limits,
+            assumptions=page.assumptions,
+            times=run.times,
+            figures=page.figures,
+            environment=environment(run.settings, page.seed),
+        )
+
+
+AnyCase = Case | OldCase
+
+
+def all_cases() -> dict[str, AnyCase]:
+    """Every case by name, in order.
+
+    What a script declares is read from its source: importing all of them, and the solvers with
+    them, would take many times as long as a list may.
+    """
     import fe_drivetrain.cases as package
 
-    found = {}
+    found: dict[str, AnyCase] = {}
     for info in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
-        # What cases share is slow to import, and is no case: look before.
-        if info.ispkg or not _states_a_case(info.name):
-            continue
-        module = importlib.import_module(info.name)
-        found[module.CASE.name] = module.CASE
+        if not info.ispkg:
+            for case in _declared_in(info.name):
+                found[case.name] = case
+            if _states_a_case(info.name):
+                module = importlib.import_module(info.name)
+                found[module.CASE.name] = module.CASE
     return dict(sorted(found.items()))
+
+
+_DECLARATION = re.compile(r"^@(cases?)\((.*?)\)\ndef (\w+)\(", re.MULTILINE | re.DOTALL)
+
+
+def _declared_in(module: str) -> list[Case]:
+    """The cases that a module declares, without importing it."""
+    spec = importlib.util.find_spec(module)
+    if spec is None or spec.origin is None:
+        return []
+    file = Path(spec.origin)
+    declaration = _DECLARATION.search(file.read_text(encoding="utf-8"))
+    if declaration is None:
+        return []
+    kind, call, function = declaration.groups()
+    *_, group, name = module.split(".")
+    arguments = ast.parse(f"f({call})", mode="eval").body
+    assert isinstance(arguments, ast.Call)
+    (first,) = [ast.literal_eval(value) for value in arguments.args]
+    named = {str(key.arg): ast.literal_eval(key.value) for key in arguments.keywords}
+    if kind == "case":
+        run = partial(_run_declared, module, function)
+        return [Case(f"{group}/{name}", first, run=run, **named)]
+    import yaml
+
+    from fe_drivetrain.common.strict_yaml import PlainLoader
+
+    rows = yaml.load(file.with_name(first).read_text(encoding="utf-8"), Loader=PlainLoader)
+    return [
+        Case(
+            f"{group}/{key}",
+            row["title"],
+            row["source"],
+            partial(_run_declared, module, function, row=row),
+            row.get("alone", False),
+        )
+        for key, row in rows.items()
+    ]
+
+
+def _run_declared(module: str, function: str, run: Run, page: Page, **more: Any) -> None:
+    getattr(importlib.import_module(module), function)(run, page, **more)
 
 
 def _states_a_case(module: str) -> bool:
@@ -218,7 +326,7 @@ def _states_a_case(module: str) -> bool:
     return source is None or re.search(r"^CASE\b", source, re.MULTILINE) is not None
 
 
-def find_cases(name: str) -> list[Case]:
+def find_cases(name: str) -> list[AnyCase]:
     """The case of that name, its last part being enough where it is unique; or a group's cases.
 
     Raises
@@ -240,7 +348,7 @@ def find_cases(name: str) -> list[Case]:
 
 
 def run_case(
-    case: Case,
+    case: AnyCase,
     out: Path,
     settings: Mapping[str, Any] | None = None,
     quick: bool = False,
@@ -277,7 +385,7 @@ def run_case(
 
 
 def run_into(
-    case: Case, folder: Path, settings: Mapping[str, Any], quick: bool, report: Report
+    case: AnyCase, folder: Path, settings: Mapping[str, Any], quick: bool, report: Report
 ) -> Results:
     """Run a case and write its results and its page into a folder as it goes; see `run_case`."""
     from fe_drivetrain.common import cache
@@ -285,7 +393,7 @@ def run_into(
 
     run = Run(settings, quick, folder, report)
     with cache.switched_off() if case.alone else nullcontext():
-        results = case.run(run)
+        results = case.run(run) if isinstance(case, OldCase) else case.results(run)
     with run.step("report"):
         (folder / "results.json").write_text(results.model_dump_json(indent=1), "utf-8")
         write_page(folder)

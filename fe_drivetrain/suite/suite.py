@@ -11,7 +11,8 @@ from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.files import HiddenFolder, sentence_about
 from fe_drivetrain.common.processes import Job, Processes, Report, silent
 from fe_drivetrain.report.results import Problem
-from fe_drivetrain.suite.case import Case, new_folder, put_in_place, run_into
+from fe_drivetrain.suite.case import AnyCase as Case
+from fe_drivetrain.suite.case import new_folder, put_in_place, run_into
 
 
 def result_folder(out: Path, case: Case) -> Path:

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.cases.verification.manufactured import LAME
 from fe_drivetrain.common import Floats, InputError, Ints
 from fe_drivetrain.mesh import FACES, Block, brick, element_kind, jacobian, straightened
 from fe_drivetrain.operator import Traction, strains, stresses, tensor
+from fe_drivetrain.validation.manufactured import (
+    LAME,
+)
 
 DIVISIONS = 3  # two layers of corners are inside
 SIZE = 1.0 / DIVISIONS  # of an element [m]

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.verification.manufactured import LAME
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.interfaces import rigid_face, rigid_point
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation.manufactured import (
+    LAME,
+)
 
 _NAMES = ("first end", "second end")
 

@@ -8,13 +8,16 @@ from dataclasses import dataclass
 import gmsh
 import numpy as np
 
-from fe_drivetrain.cases.verification.rigid_ended_shafts import LOADS, MATERIAL
 from fe_drivetrain.common import Floats, InputError, Ints
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, build, gmsh_session
 from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh import Mesh, jacobians, lattice, read_gmsh
 from fe_drivetrain.operator import nodal_stresses, von_mises
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation.rigid_ended_shafts import (
+    LOADS,
+    MATERIAL,
+)
 
 RADIUS = 0.08  # of the fillet [m]
 

@@ -11,12 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.cases.verification.ring_solids import facets_where
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import averaged_point
 from fe_drivetrain.mesh import element_kind, shaft_hexahedra
 from fe_drivetrain.operator import stresses, traction_loads
+from fe_drivetrain.validation.ring_solids import (
+    facets_where,
+)
 
 BEHIND = 2.0
 """Diameters between root and clamp: self-equilibrated stress of a round bar decays at least as

@@ -10,13 +10,17 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, onenormest, splu
 
-from fe_drivetrain.cases.verification.exact_blocks import LENGTH, SIDE, E
 from fe_drivetrain.common import Floats, InputError, Ints
 from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.interfaces import Constraint, eliminate, held_nodes
 from fe_drivetrain.mesh import EDGES, Mesh, boundary
 from fe_drivetrain.operator import assemble, traction_loads
 from fe_drivetrain.solve import System, reduce, solve
+from fe_drivetrain.validation.exact_blocks import (
+    LENGTH,
+    SIDE,
+    E,
+)
 
 LAME = (0.0, E / 2.0)
 FORCE = 1e6  # [N]

@@ -8,12 +8,14 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from fe_drivetrain.cases.verification import fillets
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import LocalSizes, MeshSizes, Shaft
 from fe_drivetrain.mesh import Mesh, generate
 from fe_drivetrain.operator import Traction, nodal_stresses, tensor, traction_loads
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation import (
+    fillet_factors,
+)
 
 SIZES = MeshSizes(shaft=0.4, elements_per_turn=12)
 """Away from the fillet, in the thinner diameter."""
@@ -88,13 +90,13 @@ def solve(wide: float, radius: float, per_fillet: int) -> SolidFillet:
     per_fillet
         Elements along the fillet.
     """
-    shaft = fillets.shouldered(wide, radius)
+    shaft = fillet_factors.shouldered(wide, radius)
     mesh = _fine_at_fillet(shaft, radius, per_fillet)
     points = mesh.points
-    F = np.zeros((points.size, len(fillets.LOADS)))
+    F = np.zeros((points.size, len(fillet_factors.LOADS)))
     for face, diameter, sign in (("front", wide, -1.0), ("rear", 1.0, 1.0)):
         facets = mesh.faces[f"shaft.{face}"]
-        for column, load in enumerate(fillets.LOADS):
+        for column, load in enumerate(fillet_factors.LOADS):
             F[:, column] += traction_loads(points, facets, _traction(load, diameter, sign))
     # three nodes of the rear face hold the shaft as a whole, and carry nothing
     rear = mesh.face_nodes("shaft.rear")
@@ -103,7 +105,7 @@ def solve(wide: float, radius: float, per_fillet: int) -> SolidFillet:
     held = [(right, 0), (right, 1), (right, 2), (left, 0), (left, 2), (top, 0)]
     which = np.array([3 * node + axis for node, axis in held])
     found = solve_solid(
-        points, mesh.cells, fillets.STEEL.lame, [], F, (which, np.zeros(len(which)))
+        points, mesh.cells, fillet_factors.STEEL.lame, [], F, (which, np.zeros(len(which)))
     )
     r = np.hypot(points[:, 1], points[:, 2])
     out = np.hypot(points[:, 0] - radius, r - 0.5 - radius)
@@ -114,8 +116,10 @@ def solve(wide: float, radius: float, per_fillet: int) -> SolidFillet:
     arc = np.cos(angle)[:, None] * along_x - np.sin(angle)[:, None] * outward
     circle = np.cross(along_x, outward)
     stress = {}
-    for column, load in enumerate(fillets.LOADS):
-        s = tensor(nodal_stresses(points, mesh.cells, found.u[:, column], fillets.STEEL.lame)[near])
+    for column, load in enumerate(fillet_factors.LOADS):
+        s = tensor(
+            nodal_stresses(points, mesh.cells, found.u[:, column], fillet_factors.STEEL.lame)[near]
+        )
         across = circle if load == "torsion" else arc
         stress[load] = np.einsum("ni,nij,nj->n", arc, s, across)
     return SolidFillet(
@@ -142,7 +146,7 @@ def _traction(load: str, diameter: float, sign: float) -> Traction:
     def traction(at: Floats, normal: Floats) -> Floats:
         height, r = at[:, 2], np.hypot(at[:, 1], at[:, 2])
         places = np.column_stack([at[:, 0], height if load == "bending" else r])
-        along, _, around = fillets.end_stress(load, places, diameter).T
+        along, _, around = fillet_factors.end_stress(load, places, diameter).T
         safe = np.where(r > 0, r, 1.0)
         circle = np.column_stack([0.0 * r, -at[:, 2] / safe, at[:, 1] / safe])
         axis = np.array([1.0, 0.0, 0.0])

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.verification.manufactured import LAME
 from fe_drivetrain.common import Floats
 from fe_drivetrain.interfaces import fixed
 from fe_drivetrain.mesh import Block, brick, joined
 from fe_drivetrain.operator import traction_loads
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation.manufactured import (
+    LAME,
+)
 
 SHEAR_MODULUS = LAME[1]
 INNER, OUTER = 0.15, 0.35  # radii [m]

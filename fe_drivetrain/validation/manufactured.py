@@ -13,7 +13,6 @@ from skfem.quadrature import get_quadrature
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.mesh import Block, brick, element_kind, jacobian
 from fe_drivetrain.operator import body_loads, traction_loads
-from fe_drivetrain.report import Chart, Table, trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import solve_solid
 
@@ -349,55 +348,3 @@ def convergence(
         unknowns.append(3 * len(block.points))
     orders = dict(zip(NORMS, theory, strict=True))
     return Series(label, [1.0 / n for n in divisions], unknowns, errors, orders)
-
-
-def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Chart:
-    """Errors over element size, both logarithmic, with the slopes of theory through the finest.
-
-    Parameters
-    ----------
-    size
-        What the sizes are, with their unit.
-    """
-    colours = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")
-    data = []
-    for colour, one in zip(colours, series, strict=False):
-        h = np.array(one.sizes)
-        for k, (name, values) in enumerate(one.errors.items()):
-            style = {"color": colour, "dash": ("solid", "dash", "dashdot")[k]}
-            label = f"{one.label}, {name}: {one.order(name)[0]:.2f}"
-            data.append(trace(label, h, values, mode="lines+markers", line=style))
-            theory = values[-1] * (h / h[-1]) ** one.orders[name]
-            dots = {"color": colour, "dash": "dot", "width": 1}
-            label = f"order {one.orders[name]:g}"
-            data.append(trace(label, h, theory, line=dots, showlegend=False))
-    return Chart(
-        caption=f"{caption}. In the legend the observed order of the two finest meshes; thin "
-        "dotted lines have the order of theory",
-        figure={
-            "data": data,
-            "layout": {
-                "xaxis": {"title": {"text": size}, "type": "log"},
-                "yaxis": {
-                    "title": {"text": "relative error"},
-                    "type": "log",
-                    "exponentformat": "power",
-                },
-            },
-        },
-    )
-
-
-def convergence_table(series: Sequence[Series], size: str) -> Table:
-    """Errors and observed orders mesh by mesh."""
-    rows: list[list[Any]] = []
-    for one in series:
-        for name, values in one.errors.items():
-            slopes = [None, *(float(s) for s in one.slopes(name))]
-            for h, n, error, slope in zip(one.sizes, one.unknowns, values, slopes, strict=True):
-                rows.append([one.label, name, h, n, error, slope, one.orders[name]])
-    return Table(
-        caption="Errors, and observed order from the mesh before",
-        columns=["element", "error in", size, "unknowns", "relative error", "order", "theory"],
-        rows=rows,
-    )

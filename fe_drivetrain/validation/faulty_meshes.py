@@ -8,11 +8,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain.cases.stability import slivers
-from fe_drivetrain.cases.verification.exact_blocks import LENGTH, SIDE
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import EDGES, FACETS, Block, Mesh, brick, generate, joined
+from fe_drivetrain.validation import (
+    slivers,
+)
+from fe_drivetrain.validation.exact_blocks import (
+    LENGTH,
+    SIDE,
+)
 
 SIZES = MeshSizes(shaft=0.3, bearing=0.12, housing=0.2, bearing_edge=0.12, elements_per_turn=8)
 

@@ -10,13 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain.cases.verification.plane_rings import Lame, plane_strain
-from fe_drivetrain.cases.verification.ring_solids import (
-    plane_strain_hold,
-    polar_stresses,
-    ring_sector,
-    sector_symmetry,
-)
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import Constraint, eliminate, held_freedoms
@@ -25,6 +18,16 @@ from fe_drivetrain.operator import incompressible, pressure, stresses, traction_
 from fe_drivetrain.revolution import freedoms, harmonic_response, meridian
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import TOLERANCE, Solution, multigrid, reduce, solve_solid
+from fe_drivetrain.validation.plane_rings import (
+    Lame,
+    plane_strain,
+)
+from fe_drivetrain.validation.ring_solids import (
+    plane_strain_hold,
+    polar_stresses,
+    ring_sector,
+    sector_symmetry,
+)
 
 Assembly = Callable[..., sparse.bsr_array]
 

@@ -10,7 +10,6 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.cases.verification import two_bodies
 from fe_drivetrain.common import Floats, InputError, rigid_motions
 from fe_drivetrain.interfaces import (
     Constraint,
@@ -22,6 +21,9 @@ from fe_drivetrain.interfaces import (
 )
 from fe_drivetrain.mesh import Block, brick, element_kind, joined, shape_functions
 from fe_drivetrain.operator import stresses, tensor
+from fe_drivetrain.validation import (
+    two_bodies,
+)
 
 BORE, TIED, OUTSIDE = 0.5, 1.0, 1.5  # m: radii
 WIDTH = 0.2  # m

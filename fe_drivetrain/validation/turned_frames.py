@@ -7,13 +7,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain.cases.verification.manufactured import HEIGHT, INNER, LAME, OUTER, quarter_ring
 from fe_drivetrain.common import Floats
 from fe_drivetrain.interfaces import Constraint, ReferencePoint, constraints
 from fe_drivetrain.mesh import MEANS, brick, face_weights
 from fe_drivetrain.operator import assemble, body_loads, pressure, traction_loads
 from fe_drivetrain.response import Model, Response, joint_pairs
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation.manufactured import (
+    HEIGHT,
+    INNER,
+    LAME,
+    OUTER,
+    quarter_ring,
+)
 
 #: Divisions of the quarter ring.
 DIVISIONS = (2, 4, 2)

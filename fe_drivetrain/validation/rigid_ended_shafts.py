@@ -11,7 +11,6 @@ import numpy as np
 from fe_drivetrain.geometry import LocalSizes, MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh import Mesh, generate
-from fe_drivetrain.report import Verdict, judge
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import ErrorEstimate, recovery_estimate, solve_solid
@@ -96,20 +95,6 @@ def solved(mesh: Mesh, shaft: Shaft, loads: tuple[str, ...] = tuple(LOADS)) -> S
             for k, load in enumerate(loads)
         },
         float(np.abs(2.0 * found.energy / work - 1.0).max()),
-    )
-
-
-def balance_verdict(imbalances: list[float]) -> Verdict:
-    """Whether the solver solved: Clapeyron's theorem on every mesh."""
-    return judge(
-        "work of the loads less twice the energy stored, relative, worst of all meshes",
-        max(imbalances),
-        0.0,
-        tolerance=1e-7,
-        relative=False,
-        source="Clapeyron's theorem",
-        reason="iterations end at 1e-9 in the energy norm; round-off of slender solids is above",
-        measure="identity",
     )
 
 

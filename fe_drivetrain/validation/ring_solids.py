@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from scipy import sparse
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.compare import grid_convergence
 from fe_drivetrain.interfaces import Constraint, held_nodes
 from fe_drivetrain.mesh import Block, brick, local_facets
 
@@ -133,17 +132,6 @@ def facets_where(cells: Ints, chosen: Ints) -> Ints:
     inside = facets[np.isin(facets, chosen).all(axis=1)]
     _, first = np.unique(np.sort(inside, axis=1), axis=0, return_index=True)
     return np.asarray(inside[first])
-
-
-def band_of(sizes: ArrayLike, values: ArrayLike, order: float | None = None) -> float:
-    """Half width of the uncertainty of the finest value of a series, in its unit."""
-    found = grid_convergence(sizes, values, expected_order=order, round_off=ROUND_OFF)
-    if np.isfinite(found.uncertainty):
-        return found.uncertainty
-    # differences that do not shrink: at least of first order, as whatever is not singular is
-    return grid_convergence(
-        sizes, values, expected_order=order, least_order=1.0, round_off=ROUND_OFF
-    ).uncertainty
 
 
 def _rows(coefficients: Floats, nodes: Ints, n_freedoms: int) -> sparse.csr_array:

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import sparse
 
-from fe_drivetrain.cases.verification.shaft_theory import Tube
 from fe_drivetrain.common import Floats, InputError, Ints
 from fe_drivetrain.compare import DOUBTFUL, grid_convergence
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Section, Shaft
@@ -31,9 +30,11 @@ from fe_drivetrain.mesh import (
     shaft_hexahedra,
 )
 from fe_drivetrain.operator import body_loads
-from fe_drivetrain.report import Table
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import Static, solve_solid
+from fe_drivetrain.validation.shaft_theory import (
+    Tube,
+)
 
 SLICE = 3.0
 """Length along x of the elements of the coarsest mesh, per radius."""
@@ -388,24 +389,6 @@ def twist(mesh: Solid, material: Material, angle: float = 1e-3) -> tuple[Static,
     )
     torque = axial_torque(mesh, found)
     return found, torque / angle, 2 * float(found.energy[0]) / angle**2
-
-
-def inputs(*rows: tuple[str, float | str, str, str]) -> Table:
-    """The table of a case's inputs: name, value, unit, source."""
-    return Table(
-        caption="Inputs",
-        columns=["input", "value", "unit", "source"],
-        rows=[list(row) for row in rows],
-    )
-
-
-def steel_rows(material: Material) -> list[tuple[str, float | str, str, str]]:
-    """E, nu and what follows, for `inputs`."""
-    return [
-        ("E", material.youngs_modulus / 1e9, "GPa", "steel, assumed"),
-        ("nu", material.poisson_ratio, "-", "steel, assumed"),
-        ("G = E / (2 (1 + nu))", material.shear_modulus / 1e9, "GPa", "of these"),
-    ]
 
 
 #: What a load that enters evenly over a section of a solid shaft adds to its deflection, as a share

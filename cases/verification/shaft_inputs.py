@@ -1,0 +1,22 @@
+"""Tables of what the cases of shafts start from."""
+
+from fe_drivetrain.report import Table
+from fe_drivetrain.scene import Material
+
+
+def inputs(*rows: tuple[str, float | str, str, str]) -> Table:
+    """The table of a case's inputs: name, value, unit, source."""
+    return Table(
+        caption="Inputs",
+        columns=["input", "value", "unit", "source"],
+        rows=[list(row) for row in rows],
+    )
+
+
+def steel_rows(material: Material) -> list[tuple[str, float | str, str, str]]:
+    """E, nu and what follows, for `inputs`."""
+    return [
+        ("E", material.youngs_modulus / 1e9, "GPa", "steel, assumed"),
+        ("nu", material.poisson_ratio, "-", "steel, assumed"),
+        ("G = E / (2 (1 + nu))", material.shear_modulus / 1e9, "GPa", "of these"),
+    ]

@@ -1,0 +1,384 @@
+"""What a case finds, in the order in which its page shows it: checks, sweeps, charts, words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.report.charts import chart, rounded, trace
+from fe_drivetrain.report.results import (
+    AssumptionRow,
+    Basis,
+    Cell,
+    Chart,
+    Image,
+    Limit,
+    Measure,
+    Section,
+    Table,
+    Text,
+    Verdict,
+    judge,
+)
+from fe_drivetrain.suite.records import Record, column, grouped
+
+
+class Page:
+    """Collects what a case finds.
+
+    Checks stand in a table of their own, whatever section is open; what else is added goes below
+    the heading of the last `section`.
+
+    Attributes
+    ----------
+    verdicts : list of Verdict
+        Of all checks so far.
+    summary : list of str
+        The answer, in sentences.
+    sections : list of Section
+        Headings, and what stands under them.
+    limits : list of Limit
+        Where methods fail.
+    assumptions : list of AssumptionRow
+        Values that the sources do not give.
+    figures : dict
+        Named numbers for other programs.
+    seed : int or None
+        Of random numbers; None where there are none.
+    """
+
+    def __init__(self) -> None:
+        self.verdicts: list[Verdict] = []
+        self.summary: list[str] = []
+        self.sections: list[Section] = []
+        self.limits: list[Limit] = []
+        self.assumptions: list[AssumptionRow] = []
+        self.figures: dict[str, Any] = {}
+        self.seed: int | None = 0
+
+    # checks
+
+    def equals(
+        self,
+        quantity: str,
+        computed: float,
+        reference: float,
+        *,
+        within: float,
+        why: str,
+        source: str,
+        unit: str = "",
+        relative: bool = True,
+        measure: Measure | None = None,
+        basis: Basis = "independent",
+        band: float | None = None,
+    ) -> None:
+        """The computed value is the reference, within a tolerance.
+
+        Parameters
+        ----------
+        quantity : str
+            What was computed.
+        computed, reference : float
+            In `unit`.
+        within : float
+            Allowed difference, relative to the reference.
+        why : str
+            Why the tolerance is what it is: a physical or numerical reason.
+        source : str
+            Where the reference comes from.
+        unit : str
+            Of both; empty for a pure number.
+        relative : bool
+            False where `within` is in the unit.
+        measure : str, optional
+            Kind of quantity, for bias and scatter over all cases.
+        basis : str
+            "self-consistency" of what is true by construction, "second-hand" of a source that was
+            not read itself: both are shown as such, and stay out of bias and scatter.
+        band : float, optional
+            Half width of the numerical uncertainty of `computed`, in its unit. It is computed, from
+            a series of meshes or an error estimate; where there is none, it is left out.
+        """
+        self._judge(
+            "equals",
+            quantity,
+            computed,
+            reference,
+            why,
+            source,
+            tolerance=within,
+            relative=relative,
+            unit=unit,
+            measure=measure,
+            basis=basis,
+            band=band,
+        )
+
+    def vanishes(
+        self,
+        quantity: str,
+        computed: float,
+        *,
+        within: float,
+        why: str,
+        source: str,
+        unit: str = "",
+        measure: Measure | None = "identity",
+        basis: Basis = "independent",
+        band: float | None = None,
+    ) -> None:
+        """The computed value is zero, but for `within`, in its unit; see `equals`."""
+        self._judge(
+            "vanishes",
+            quantity,
+            computed,
+            0.0,
+            why,
+            source,
+            tolerance=within,
+            relative=False,
+            unit=unit,
+            measure=measure,
+            basis=basis,
+            band=band,
+        )
+
+    def at_most(
+        self, quantity: str, computed: float, bound: float, *, why: str, source: str, **more: Any
+    ) -> None:
+        """The computed value is no larger than a bound; `more` is unit, measure, basis, band."""
+        self._judge("at most", quantity, computed, bound, why, source, **more)
+
+    def at_least(
+        self, quantity: str, computed: float, bound: float, *, why: str, source: str, **more: Any
+    ) -> None:
+        """The computed value is no smaller than a bound; `more` is unit, measure, basis, band."""
+        self._judge("at least", quantity, computed, bound, why, source, **more)
+
+    def between(
+        self,
+        quantity: str,
+        computed: float,
+        low: float,
+        high: float,
+        *,
+        why: str,
+        source: str,
+        **more: Any,
+    ) -> None:
+        """The computed value is no smaller than `low`, and no larger than `high`."""
+        self._judge("between", quantity, computed, low, why, source, upper=high, **more)
+
+    def holds(self, statement: str, condition: bool, *, why: str, source: str) -> None:
+        """A statement is true.
+
+        Parameters
+        ----------
+        statement : str
+            In words, as a sentence that is true or false.
+        condition : bool
+            Whether it is.
+        why : str
+            What would follow if it were not.
+        source : str
+            Where the statement comes from.
+        """
+        truth = float(bool(condition))
+        self._judge("holds", statement, truth, 1.0, why, source, measure="identity")
+
+    def _judge(
+        self,
+        check: Any,
+        quantity: str,
+        computed: float,
+        reference: float,
+        why: str,
+        source: str,
+        tolerance: float = 0.0,
+        relative: bool = False,
+        **more: Any,
+    ) -> None:
+        self.verdicts.append(
+            judge(
+                quantity,
+                computed,
+                reference,
+                check=check,
+                tolerance=tolerance,
+                relative=relative,
+                reason=why,
+                source=source,
+                **more,
+            )
+        )
+
+    # words, charts, tables
+
+    def answer(self, *sentences: str) -> None:
+        """The answer first: added to the summary on top of the page."""
+        self.summary.extend(sentences)
+
+    def section(self, title: str) -> None:
+        """Begin a section; what is added from now on stands under its heading."""
+        self.sections.append(Section(title=title, items=[]))
+
+    def add(self, *items: Text | Table | Chart | Image) -> None:
+        """Add to the section that was begun last; without one, to a section "Results"."""
+        if not self.sections:
+            self.section("Results")
+        last = self.sections[-1]
+        self.sections[-1] = Section(title=last.title, items=[*last.items, *items])
+
+    def text(self, text: str) -> None:
+        """Add a paragraph."""
+        self.add(Text(text=text))
+
+    def table(
+        self,
+        caption: str,
+        rows: Sequence[Record] | Sequence[Sequence[Cell]],
+        columns: Sequence[str] | None = None,
+    ) -> None:
+        """Add a table.
+
+        Parameters
+        ----------
+        caption : str
+            What it shows.
+        rows : sequence of dict, or of sequences of cells
+            Records, whose keys are the headings, with units; or plain rows.
+        columns : sequence of str, optional
+            Headings: of plain rows, or which keys of the records are shown; all of the first one's
+            where left out.
+        """
+        if columns is None:
+            first = rows[0] if rows else {}
+            if not isinstance(first, Mapping):
+                raise TypeError(f"table {caption!r}: rows without keys need columns")
+            columns = list(first)
+        cells = [
+            [row.get(name) for name in columns] if isinstance(row, Mapping) else list(row)
+            for row in rows
+        ]
+        self.add(Table(caption=caption, columns=list(columns), rows=[_plain(c) for c in cells]))
+
+    def image(self, caption: str, file: str) -> None:
+        """Add a PNG of the run's folder."""
+        self.add(Image(caption=caption, file=file))
+
+    def chart(
+        self,
+        caption: str,
+        traces: Sequence[Any],
+        x: str,
+        y: str,
+        logarithmic: Iterable[str] = (),
+        safe: tuple[float | None, float | None] | None = None,
+    ) -> None:
+        """Add a chart of traces; see `fe_drivetrain.report.chart`."""
+        self.add(chart(caption, traces, x, y, logarithmic, safe))
+
+    def sweep(
+        self,
+        caption: str,
+        rows: Sequence[Record],
+        x: str,
+        y: str,
+        *,
+        by: str | None = None,
+        log: str = "",
+        reference: Mapping[str, float] | None = None,
+        safe: tuple[float | None, float | None] | None = None,
+        points: bool = False,
+        table: Sequence[str] | bool = True,
+    ) -> None:
+        """One list of records, of which chart, table and data are made.
+
+        Parameters
+        ----------
+        caption : str
+            What was varied, and what came of it; the records stand under it among `figures`.
+        rows : sequence of dict
+            One for each point, the same keys in each, with units in the keys; table and data take
+            the keys of numbers and words, not of arrays.
+        x, y : str
+            Keys of the chart's axes.
+        by : str, optional
+            Key that tells the curves apart.
+        log : str
+            Which axes are logarithmic: "", "x", "y" or "xy".
+        reference : dict, optional
+            Horizontal lines: name and value of y.
+        safe : tuple, optional
+            Range of x that is shaded as safe.
+        points : bool
+            Points without lines.
+        table : bool or sequence of str
+            Whether there is a table, or which keys it shows.
+        """
+        mode = "markers" if points else "lines+markers"
+        curves = grouped(rows, by) if by else [(y, rows)]
+        traces = [trace(str(name), column(of, x), column(of, y), mode=mode) for name, of in curves]
+        ends = rounded([min(column(rows, x)), max(column(rows, x))])
+        traces += [
+            trace(name, ends, [value, value], line={"dash": "dot"})
+            for name, value in (reference or {}).items()
+        ]
+        self.chart(caption, traces, x, y, tuple(log), safe)
+        plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
+        if table is not False:
+            self.table(caption, rows, plain if table is True else table)
+        self.data(caption, [{key: row[key] for key in plain} for row in rows])
+
+    def data(self, name: str, value: Any) -> None:
+        """Keep numbers for other programs in results.json, under a name with its unit."""
+        self.figures[name] = _as_json(value)
+
+    # the atlas, and what was assumed
+
+    def limit(
+        self,
+        method: str,
+        parameter: str,
+        *,
+        low: float | None = None,
+        high: float | None = None,
+        criterion: str,
+        beyond: str,
+        program: str,
+        remedy: str,
+    ) -> None:
+        """State how far a method can be trusted; see `fe_drivetrain.report.Limit`."""
+        self.limits.append(
+            Limit(
+                method=method,
+                parameter=parameter,
+                low=low,
+                high=high,
+                criterion=criterion,
+                beyond=beyond,
+                program=program,
+                remedy=remedy,
+            )
+        )
+
+    def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
+        """State a value that the sources do not give, and where it comes from."""
+        self.assumptions.append(AssumptionRow(name=name, value=value, unit=unit, source=source))
+
+
+def _plain(cells: Sequence[Any]) -> list[Cell]:
+    """Cells without NumPy's scalars."""
+    return [cell.item() if hasattr(cell, "item") else cell for cell in cells]
+
+
+def _as_json(value: Any) -> Any:
+    """The same data without NumPy's arrays and scalars."""
+    if isinstance(value, Mapping):
+        return {str(key): _as_json(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_as_json(inner) for inner in value]
+    return value.tolist() if hasattr(value, "tolist") else value

@@ -1,0 +1,53 @@
+"""Records of a sweep: dicts with the same keys, units in the keys; columns, groups, bands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+Record = Mapping[str, Any]
+"""One point of a sweep: its parameters and what was found there."""
+
+
+def column(rows: Sequence[Record], name: str) -> list[Any]:
+    """The values of one key, in the order of the rows."""
+    return [row[name] for row in rows]
+
+
+def grouped(rows: Sequence[Record], by: str) -> list[tuple[Any, list[Record]]]:
+    """Rows of each value of a key, in the order in which the values come first."""
+    groups: dict[Any, list[Record]] = {}
+    for row in rows:
+        groups.setdefault(row[by], []).append(row)
+    return list(groups.items())
+
+
+def band_of_rows(
+    rows: Sequence[Record],
+    unknowns: str,
+    value: str,
+    dimension: int = 3,
+    order: float | None = None,
+) -> float:
+    """Numerical uncertainty of the last row's value, from a series of ever finer meshes.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        Of one series, coarse to fine.
+    unknowns, value : str
+        Keys of the number of unknowns, and of the value.
+    dimension : int
+        Of the mesh: the size of elements goes as unknowns^(-1/dimension).
+    order : float, optional
+        Expected order of convergence.
+
+    Returns
+    -------
+    band : float
+        Half width, in the unit of the value; see `fe_drivetrain.compare.band_of`.
+    """
+    from fe_drivetrain.compare.convergence import band_of
+
+    sizes = [float(n) ** (-1.0 / dimension) for n in column(rows, unknowns)]
+    return band_of(sizes, column(rows, value), order)
