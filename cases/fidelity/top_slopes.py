@@ -30,8 +30,7 @@ from fe_drivetrain.fidelity import (
     unit_numbers,
 )
 from fe_drivetrain.geometry import MeshSizes, unit_solids
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.operator import volume_weights
+from fe_drivetrain.mesh import Mesh, volume_weights
 from fe_drivetrain.report import (
     Cell,
     Chart,

@@ -91,7 +91,7 @@ def unit_stiffness(
         constraints.fixed(base, mesh.face_nodes(base), n_freedoms),
         constraints.fixed("parts left out", left_out, n_freedoms),
     ]
-    springs = []
+    springs: list[tuple[constraints.ReferencePoint, Floats]] = []
     if unit.rollers is not None:
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
         ground = free.T @ free
@@ -100,7 +100,7 @@ def unit_stiffness(
     stiffness = np.linalg.inv(compliance)
     if unit.rollers is not None:
         carried = np.eye(6) - np.linalg.pinv(free) @ free
-        stiffness = carried.T @ (stiffness - ground) @ carried
+        stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
     if unit.bedplate is not None:
         # the base moves as a rigid body, so this is exact
         lever = wrench_transport(np.array([0.0, 0.0, unit.housing.centre_height])).T

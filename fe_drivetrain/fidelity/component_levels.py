@@ -56,7 +56,7 @@ def rigid_level(component: Component) -> LevelModel:
         return LevelModel(0, "rigid body", ("every stiffness",), cost, {"hub": resultants})
     parts = {name: motions[6 * k : 6 * k + 6] for k, name in enumerate(names)}
     springs = component.supports
-    K = sum(parts[name].T @ k @ parts[name] for name, k in springs.items())
+    K = np.asarray(sum(parts[name].T @ k @ parts[name] for name, k in springs.items()))
     if least_eigenvalue(K) < 1e-13:
         raise InputError(_FREE)
     reactions = {

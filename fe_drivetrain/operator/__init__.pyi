@@ -1,6 +1,5 @@
 from .elasticity import assemble as assemble
 from .elasticity import sparsity as sparsity
-from .elasticity import volume_weights as volume_weights
 from .loads import Traction as Traction
 from .loads import body_loads as body_loads
 from .loads import pressure as pressure

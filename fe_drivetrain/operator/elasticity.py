@@ -10,14 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from skfem import (
-    ElementTetP2,
-)
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTet
 
-from fe_drivetrain.common.arrays import Floats, Ints, chunks
-from fe_drivetrain.mesh.shapes import element_kind, is_straight, jacobian, shape_functions
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.mesh.shapes import element_kind, is_straight
 from fe_drivetrain.operator import kernels
 
 
@@ -100,15 +95,3 @@ def assemble(
     return sparse.bsr_array(
         (data, pattern.indices, pattern.indptr), shape=(3 * n_blocks, 3 * n_blocks)
     )
-
-
-def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
-    """Integrals of the shape functions over the elements; (n_nodes,) [m^3]."""
-    X, W = get_quadrature(RefTet, 4)
-    values, gradients = shape_functions(ElementTetP2(), X)
-    weights = np.zeros(n_nodes)
-    for rows in chunks(len(cells)):
-        part = cells[rows]
-        determinant = jacobian(points, part, gradients)[1]
-        np.add.at(weights, part, (np.abs(determinant) * W) @ values)
-    return weights

@@ -16,9 +16,8 @@ from fe_drivetrain.interfaces.joints import SECTORS, roller_joint, spring_joint
 from fe_drivetrain.interfaces.mechanisms import refuse_mechanisms, warn_of_weak_restraints
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.checks import refuse_unsound
-from fe_drivetrain.mesh.facets import MEANS, face_weights
+from fe_drivetrain.mesh.facets import MEANS, face_weights, volume_weights
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.operator.elasticity import volume_weights
 from fe_drivetrain.operator.incompressible import assemble_unlocked, warn_of_averaging
 from fe_drivetrain.scene.scene import BearingUnit, Scene, Springs, as_numbers
 
