@@ -467,7 +467,7 @@ def test_shares_that_statics_cannot_tell_are_refused():
         [RigiditySection(2.0, inf, inf, inf, inf)],
         [Support("a", 0.0, TORQUE_BALL), Support("b", 1.0, ROLLER), Support("c", 2.0, ROLLER)],
     )
-    with pytest.raises(InputError, match="shares cannot be told"):
+    with pytest.raises(InputError, match="shares are indeterminate"):
         unit_load_response(rigid, 0.0)
 
 

@@ -253,13 +253,49 @@ def element_integrals(
     return result
 
 
+def gauss_points(begin: float, end: float, points: int) -> tuple[Floats, Floats]:
+    """Places (points,) of Gauss quadrature from `begin` to `end`, and their weights [m]."""
+    abscissa, weight = np.polynomial.legendre.leggauss(points)
+    return begin + (end - begin) * (abscissa + 1.0) / 2.0, weight * (end - begin) / 2.0
+
+
+def flexibility(compliance: Floats, arm: Floats) -> Floats:
+    """Motion of the right end of a beam for forces there, its left end clamped.
+
+    Parameters
+    ----------
+    compliance : ndarray, (q, 6)
+        Strains of pieces of the beam per force and moment in them, times their lengths: weights of
+        a quadrature over rigidities.
+    arm : ndarray, (q,)
+        From each piece to the right end, m.
+
+    Returns
+    -------
+    ndarray, (6, 6)
+    """
+    carried = wrench_transport(along_x(arm))
+    return np.asarray(np.einsum("iab,ia,iac->bc", carried, compliance, carried))
+
+
+def stiffness_of_ends(compliance: Floats, length: float) -> Floats:
+    """(12, 12) stiffness of both ends of a free beam from the flexibility (6, 6) of its right end.
+
+    The forces on the left end balance those on the right one (Przemieniecki 1968, Theory of Matrix
+    Structural Analysis, section 5.6).
+    """
+    stiffness = np.linalg.inv(compliance)
+    stiffness = (stiffness + stiffness.T) / 2.0
+    balance = np.vstack([-wrench_transport(along_x(length)), np.eye(6)])
+    return np.asarray(balance @ stiffness @ balance.T)
+
+
 def _integrate(
     section: Section, material: Material, shear: bool, begin: float, end: float, points: int
 ) -> ElementIntegrals:
-    abscissa, weight = np.polynomial.legendre.leggauss(points)
-    s = begin + (end - begin) * (abscissa + 1.0) / 2.0
+    s, weight = gauss_points(begin, end, points)
     compliance, _ = _properties(section, material, shear, s)
-    weighted = compliance * (weight * (end - begin) / 2.0)[:, None]
+    weighted = compliance * weight[:, None]
     carried = wrench_transport(along_x(end - s))
 
     # The weight to the right of s. Three points are exact: mass is at most a quadratic, times arm.
@@ -270,7 +306,7 @@ def _integrate(
     piece = mass.reshape(t.shape) * inner_weight * (end - left) / 2.0
     beyond = np.einsum("ij,ijab->iab", piece, wrench_transport(along_x(t - left)))[:, :, :3]
     return ElementIntegrals(
-        flexibility=np.einsum("iab,ia,iac->bc", carried, weighted, carried),
+        flexibility=flexibility(weighted, end - s),
         sag=np.einsum("iab,ia,iac->bc", carried, weighted, beyond[:-1]),
         weight=beyond[-1],
     )
@@ -305,9 +341,11 @@ def _properties(
 
 def _check_positive(what: str, value: float, unit: str) -> None:
     if not (value > 0.0 and np.isfinite(value)):
-        raise InputError(f"{what} {value:g} {unit} must be positive and finite: mend the value.")
+        raise InputError(f"{what} {value:g} {unit} must be positive and finite: correct the value.")
 
 
 def _check_not_negative(what: str, value: float, unit: str) -> None:
     if not (value >= 0.0 and np.isfinite(value)):
-        raise InputError(f"{what} {value:g} {unit} must be 0 or more and finite: mend the value.")
+        raise InputError(
+            f"{what} {value:g} {unit} must be 0 or more and finite: correct the value."
+        )

@@ -24,7 +24,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fe_drivetrain.beam.sections import Section, element_integrals
+from fe_drivetrain.beam.sections import Section, element_integrals, stiffness_of_ends
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
@@ -438,10 +438,7 @@ def shaft_stiffness(beam: Beam, first: float, second: float) -> Floats:
             f"shaft between {first:g} m and {second:g} m is rigid in some direction and has no "
             "finite stiffness: give its sections finite rigidities."
         )
-    stiffness = np.linalg.inv(compliance)
-    stiffness = (stiffness + stiffness.T) / 2.0
-    balance = np.vstack([-wrench_transport(along_x(second - first)), np.eye(6)])
-    return np.asarray(balance @ stiffness @ balance.T)
+    return stiffness_of_ends(compliance, second - first)
 
 
 def _elements(beam: Beam, nodes: Floats) -> tuple[Floats, Floats, Floats]:
@@ -497,7 +494,7 @@ def _held_directions(
             if key in rigid:
                 raise InputError(
                     f"supports '{rigid[key]}' and '{support.name}' are both rigid in "
-                    f"{_AXES[axis]} at x = {support.x:g} m and their shares cannot be told: "
+                    f"{_AXES[axis]} at x = {support.x:g} m and their shares are indeterminate: "
                     "give at least one of them a finite stiffness."
                 )
             rigid[key] = support.name
@@ -572,13 +569,13 @@ def _solve_saddle(
         )
         if soft > _SOFT:
             raise InputError(
-                f"a spring of the supports is {soft:.1g} times softer than the shaft, and cannot "
-                "be told from none: take it away, or make it stiffer."
+                f"a spring of the supports is {soft:.1g} times softer than the shaft, too soft to "
+                "be distinguished from no support: remove it or make it stiffer."
             )
         names = ", ".join(f"'{support.name}'" for support in beam.supports)
         raise InputError(
             f"supports {names} are rigid and so is the shaft between them, and their shares "
-            "cannot be told: give a support or a section a finite stiffness."
+            "are indeterminate: give a support or a section a finite stiffness."
         )
     right = np.vstack([row[:, None] * gap, column[:, None] * resultant])
     solved = np.linalg.solve(matrix, right)
@@ -621,7 +618,7 @@ def _check_support_matrix(name: str, matrix: Floats) -> None:
     if np.isnan(matrix).any() or not np.all(diagonal >= 0.0):
         raise InputError(
             f"support '{name}': stiffness {diagonal.tolist()} must be 0 or more in each "
-            "direction, inf for rigid: mend the negative or missing value."
+            "direction, inf for rigid: correct the negative or missing value."
         )
     off = matrix - np.diag(np.where(np.isinf(diagonal), 0.0, diagonal))
     off[np.isinf(diagonal), np.isinf(diagonal)] = 0.0

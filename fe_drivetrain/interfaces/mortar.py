@@ -614,18 +614,18 @@ def _check_coverage(name: str, points: Floats, slave: Ints, master: Ints, pieces
     if abs(share - 1.0) > _COVERED + curved or (covered < 0.5 * areas).any():
         far = _pieces(points, slave, master, _FAR)
         if share < 1.0 and far.area.sum() > 1.01 * covered.sum():
-            mend = (
+            fix = (
                 "which must be all of it; in part they face one another but lie further apart than "
                 f"{_REACH:g} of a master facet: take the finer face as the slave, mesh curved "
                 "faces finer or with curved elements, or bring the faces together"
             )
         else:
-            mend = (
+            fix = (
                 "which must be all of it, once: take the smaller face as the slave, or cut the "
                 "slave face to what both have in common"
             )
         raise InputError(
-            f"tie {name!r}: the master face covers {100.0 * share:.6g} % of the slave face, {mend}"
+            f"tie {name!r}: the master face covers {100.0 * share:.6g} % of the slave face, {fix}"
         )
 
 

@@ -30,25 +30,9 @@ def assemble(
     n_freedoms: int | None = None,
     pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
-    """Assemble the stiffness with incompatible modes; as `elasticity.assemble` otherwise.
+    """Assemble the stiffness with incompatible modes.
 
-    Parameters
-    ----------
-    points
-        (n, 3) node coordinates [m].
-    cells
-        (n_cells, 8) node numbers in VTK's order.
-    lame
-        Lame's constants (lambda, mu) [Pa].
-    n_freedoms
-        Order of the matrix; 3 n where not given.
-    pattern
-        As for `elasticity.assemble`.
-
-    Returns
-    -------
-    stiffness
-        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
+    Arguments and result are those of `elasticity.assemble`, for hexahedra of 8 nodes.
 
     Raises
     ------

@@ -44,25 +44,10 @@ def assemble(
     n_freedoms: int | None = None,
     pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
-    """Assemble the stiffness, the dilatation projected; as `elasticity.assemble` otherwise.
+    """Assemble the stiffness, the dilatation projected.
 
-    Parameters
-    ----------
-    points
-        (n, 3) node coordinates [m].
-    cells
-        (n_cells, k) node numbers in VTK's order; tetrahedra of 10, hexahedra of 8, 20 or 27 nodes.
-    lame
-        Lame's constants (lambda, mu) [Pa].
-    n_freedoms
-        Order of the matrix; 3 n where not given.
-    pattern
-        As for `elasticity.assemble`.
-
-    Returns
-    -------
-    stiffness
-        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
+    Arguments and result are those of `elasticity.assemble`, for tetrahedra of 10 and hexahedra
+    of 8, 20 or 27 nodes.
 
     Raises
     ------

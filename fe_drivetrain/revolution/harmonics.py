@@ -524,7 +524,7 @@ def _check_held(mesh: Meridian, n: int, which: Ints) -> None:
         names = ("along x and about x", "sideways and about its diameter")[n]
         raise InputError(
             f"the body of revolution is free to move {names} in harmonic {n}: hold at least "
-            f"{motions.shape[1]} freedoms that stop this"
+            f"{motions.shape[1]} degrees of freedom that prevent this"
         )
 
 

@@ -1,7 +1,8 @@
 """The system that is solved: constraints eliminated, still in 3x3 node blocks.
 
-Eliminated freedoms keep their place, with a diagonal entry and nothing else. So nodes stay blocks,
-whatever an interface took from them, and solvers learn of nodes, rigid motions and corner nodes.
+Eliminated degrees of freedom keep their place, with a diagonal entry and nothing else. So nodes
+stay blocks, whatever an interface took from them, and solvers learn of nodes, rigid motions and
+corner nodes.
 """
 
 from dataclasses import dataclass

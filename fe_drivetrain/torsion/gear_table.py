@@ -62,7 +62,7 @@ class _Stage(Part):
         if self.teeth is not None and not 0 < self.teeth[1] < self.teeth[0]:
             raise InputError(
                 f"{kind}: teeth are {list(self.teeth)} but must be two numbers above 0, the larger "
-                "first: swap or mend them"
+                "first: swap or correct them"
             )
         return self
 
