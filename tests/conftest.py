@@ -1,18 +1,25 @@
-"""Scenes that several test modules solve: coarse, and built once a session."""
+"""What several test modules use: coarse scenes, built once a session, and commands in a folder."""
 
 import os
 import signal
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import hypothesis
 import numpy as np
 import pytest
+from tiny_case import SCRIPT, Result, count
 
+from fe_drivetrain.commands.app import main
 from fe_drivetrain.common import cache, processes
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.scene import Scene, change_scene, library_scene
+from fe_drivetrain.suite import case as case_module
+from fe_drivetrain.suite.case import OldCase as Case
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.
@@ -84,3 +91,36 @@ def spherical_responses(spherical_mesh: Mesh) -> dict[str, tuple[Model, Response
 @pytest.fixture
 def rng() -> np.random.Generator:
     return np.random.default_rng(1)
+
+
+@pytest.fixture
+def invoke(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., Result]:
+    """Run the command in an empty folder, with one case that does the given work."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str, work: Any = count, main: Callable[[], None] = main) -> Result:
+        cases = {
+            "group/tiny": Case("group/tiny", "A tiny case", "nobody", work),
+            "group/other": Case("group/other", "Another [bold] case", "nobody", work),
+            "next/third": Case("next/third", "A third", "nobody", work),
+        }
+        monkeypatch.setattr(case_module, "all_cases", lambda: dict(sorted(cases.items())))
+        monkeypatch.setattr(sys, "argv", ["fe-drivetrain", *arguments])
+        with pytest.raises(SystemExit) as end:
+            main()
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.out + printed.err
+        code = end.value.code
+        return (0 if code is None else int(code)), printed.out, printed.err
+
+    return run
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Path:
+    """A script of a case, as under cases/."""
+    path = tmp_path / "tiny.py"
+    path.write_text(SCRIPT, "utf-8")
+    return path

@@ -10,7 +10,7 @@ from conftest import coarse_scene
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.export.calculix_deck import (
@@ -348,7 +348,7 @@ def test_export_writes_what_the_ending_says(tmp_path, monkeypatch, capsys):
     def run(*arguments: str) -> int:
         monkeypatch.setattr("sys.argv", ["fe-drivetrain", "export", *arguments])
         with pytest.raises(SystemExit) as end:
-            app.main()
+            main()
         return int(end.value.code or 0)
 
     assert run("mine.yaml", "--out", "mine.inp", "--set", "gearbox.weight=1") == 0

@@ -22,7 +22,8 @@ from fe_drivetrain.beam.frame import (
 )
 from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.beam.shaft import Beam, shaft_stiffness
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.app import app
+from fe_drivetrain.commands.terminal import MISTAKE
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.component_solid import component_mesh
@@ -264,7 +265,7 @@ def test_a_follower_of_one_rigid_body_moves_with_it() -> None:
 
 
 def _export(*arguments: str) -> tuple[int, str]:
-    outcome = CliRunner().invoke(app._app, ["export", *arguments])
+    outcome = CliRunner().invoke(app, ["export", *arguments])
     return outcome.exit_code, outcome.output
 
 
@@ -299,24 +300,24 @@ def test_a_component_s_mesh_is_written(tmp_path: Path) -> None:
         (["--level", "1", "--at", "rim"], "point 'rim' is unknown: use hub, pin_1"),
         (["--level", "1", "--at", "hub,hub"], "must be one or more, each once"),
         (["--level", "1", "--what", "supported", "--at", "hub"], "'hub' is held rigidly"),
-        (["--modes", "3"], "--modes are of the shaft of a scene"),
+        (["--modes", "3"], "--modes works for the level-2 shaft in json only"),
     ],
 )
 def test_what_cannot_be_exported_is_said(tmp_path: Path, options: list[str], message: str) -> None:
     out = tmp_path / "c.json"
     status, said = _export("planet_carrier", "--format", "json", "--out", str(out), *options)
-    assert status == app.MISTAKE
+    assert status == MISTAKE
     assert message in said
     assert not list(tmp_path.iterdir())
 
 
 def test_a_component_is_no_model_for_calculix(tmp_path: Path) -> None:
     status, said = _export("planet_carrier", "--out", str(tmp_path / "c.inp"))
-    assert status == app.MISTAKE
+    assert status == MISTAKE
     assert ".vtu or .msh" in said
 
 
 def test_advice_is_for_scenes() -> None:
-    outcome = CliRunner().invoke(app._app, ["advise", "planet_carrier", "--quantity", "hub.Fx"])
-    assert outcome.exit_code == app.MISTAKE
+    outcome = CliRunner().invoke(app, ["advise", "planet_carrier", "--quantity", "hub.Fx"])
+    assert outcome.exit_code == MISTAKE
     assert "is a component" in outcome.output

@@ -10,7 +10,8 @@ from conftest import coarse_scene
 from typer.testing import CliRunner
 
 from fe_drivetrain import export
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.app import app
+from fe_drivetrain.commands.terminal import MISTAKE
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.craig_bampton import craig_bampton_shaft
 from fe_drivetrain.export.formats.craig_bampton_json import (
@@ -115,15 +116,15 @@ def test_the_command_writes_summary_and_seats(tmp_path: Path) -> None:
     coarse = [word for size in sizes for word in ("--set", size)]
     command = ["export", "main_bearing_bonded", *coarse, "--format", "json"]
     path = tmp_path / "summary.json"
-    done = CliRunner().invoke(app._app, [*command, "--what", "summary", "--out", str(path)])
+    done = CliRunner().invoke(app, [*command, "--what", "summary", "--out", str(path)])
     assert done.exit_code == 0, done.output
     assert set(read_summary(path).parts) == {"shaft", "main_bearing", "main_bearing.housing"}
     seats = tmp_path / "seats.json"
-    done = CliRunner().invoke(app._app, [*command, "--what", "seats", "--out", str(seats)])
+    done = CliRunner().invoke(app, [*command, "--what", "seats", "--out", str(seats)])
     assert done.exit_code == 0, done.output
     assert export.read(seats, "json").points == ("main_bearing",)
     wrong = [*command[:-1], "csv", "--what", "summary", "--out", str(tmp_path / "a.csv")]
-    assert CliRunner().invoke(app._app, wrong).exit_code == app.MISTAKE
+    assert CliRunner().invoke(app, wrong).exit_code == MISTAKE
 
 
 def test_compliance_is_written_where_there_is_one(tmp_path: Path) -> None:
@@ -140,7 +141,7 @@ def test_compliance_is_written_where_there_is_one(tmp_path: Path) -> None:
 def test_modes_by_the_command_come_back(tmp_path: Path) -> None:
     path = tmp_path / "modes.json"
     command = ["export", "main_bearing_bonded", "--format", "json", "--out", str(path)]
-    done = CliRunner().invoke(app._app, [*command, "--at", "hub,gearbox", "--modes", "4"])
+    done = CliRunner().invoke(app, [*command, "--at", "hub,gearbox", "--modes", "4"])
     assert done.exit_code == 0, done.output
     body = read_craig_bampton(path)
     assert body.points == ("hub", "gearbox")
@@ -153,4 +154,4 @@ def test_modes_by_the_command_come_back(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a column for each of"):
         read_craig_bampton(path)
     other = [*command[:-1], str(tmp_path / "a"), "--what", "drivetrain", "--modes", "4"]
-    assert CliRunner().invoke(app._app, other).exit_code == app.MISTAKE
+    assert CliRunner().invoke(app, other).exit_code == MISTAKE

@@ -21,7 +21,7 @@ from conftest import coarse_scene
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.run import run_and_print
 from fe_drivetrain.common import files
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
 from fe_drivetrain.common.files import HiddenFolder, atomic_path
@@ -131,7 +131,7 @@ def run_quietly(case: Case, out: Path) -> int:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.dup2(nowhere, 2)
-    return app._run(lambda: [case], out, [], quick=False)
+    return run_and_print(lambda: [case], out)
 
 
 def hidden(folder: Path) -> list[str]:
@@ -200,7 +200,7 @@ def test_a_disk_that_is_full_at_any_size_of_file_is_told(tmp_path: Path, size: i
         read, write = os.pipe()
         os.set_blocking(read, False)
         sys.stdout = sys.stderr = open(write, "w")  # noqa: SIM115
-        status = app._run(lambda: [marked(NEW)], out, [], quick=False)
+        status = run_and_print(lambda: [marked(NEW)], out)
         sys.stderr.flush()
         said = os.read(read, 10_000).decode()
         return status if "Traceback" not in said and "File too large" in said else 98
@@ -465,14 +465,13 @@ def test_a_mesh_leaves_the_terminate_signal_to_python() -> None:
 # --- a real scene, killed from outside ------------------------------------------------------------
 
 SCRIPT = """
-from fe_drivetrain.case import Case
-from fe_drivetrain.cli import main_of_case
+from fe_drivetrain.commands import main_of_case
+from fe_drivetrain.suite import OldCase as Case
 
 def run(run):
     from conftest import coarse_scene
     from fe_drivetrain.mesh import write
-    from fe_drivetrain.model import build_model, mesh_scene
-    from fe_drivetrain.response import unit_load_response
+    from fe_drivetrain.response import build_model, mesh_scene, unit_load_response
     from test_faults import results
     with run.step("mesh"):
         mesh = mesh_scene(coarse_scene("bonded"))
@@ -515,7 +514,7 @@ def test_a_signal_while_it_meshes_solves_or_writes_leaves_the_old_results(
     ) as process:
         assert process.stderr is not None
         said = ""
-        while not said.endswith(f"{step} ... "):
+        while not said.endswith(f"{step} ...\n"):
             character = process.stderr.read(1)
             assert character, said
             said += character

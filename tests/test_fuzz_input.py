@@ -22,7 +22,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.app import main
+from fe_drivetrain.commands.settings import parse_settings
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry.part import LARGEST, SMALLEST
 from fe_drivetrain.hub_loads.histories import LARGEST_LOAD, read_hub_loads
@@ -392,7 +393,7 @@ def invoke(arguments: list[str]) -> tuple[int, str, set[str]]:
         stack.enter_context(mock.patch.object(sys, "argv", ["fe-drivetrain", *arguments]))
         stack.enter_context(mock.patch.object(case_module, "all_cases", return_value=CASES))
         with pytest.raises(SystemExit) as end:
-            app.main()
+            main()
         left = {str(p.relative_to(top)) for p in Path(top).rglob("*")}
         code = end.value.code
     return (0 if code is None else int(code)), said.getvalue(), left
@@ -445,7 +446,7 @@ def test_the_command_line_that_is_fuzzed_can_run() -> None:
 @given(st.lists(st.one_of(word, yaml_text, st.tuples(word, yaml_text).map("=".join)), max_size=3))
 def test_settings_are_plain_values_or_refused(texts: list[str]) -> None:
     try:
-        settings = app.parse_settings(texts)
+        settings = parse_settings(texts)
     except InputError as error:
         one_sentence(error)
         return

@@ -510,7 +510,7 @@ def test_the_program_says_what_is_wrong_with_a_history(
     tmp_path, capsys, monkeypatch, rows, says
 ) -> None:
     """Before any work: one sentence and status 2."""
-    from fe_drivetrain.commands import app
+    from fe_drivetrain.commands.app import main
 
     header = "time [s],Fx [kN],Fy [kN],Fz [kN],Mx [kN m],My [kN m],Mz [kN m]"
     file = tmp_path / "loads.csv"
@@ -518,7 +518,7 @@ def test_the_program_says_what_is_wrong_with_a_history(
     words = ["run", "main_bearing/rmse", "--set", f"loads={file}", "--out", str(tmp_path / "out")]
     monkeypatch.setattr("sys.argv", ["fe-drivetrain", *words])
     with pytest.raises(SystemExit) as stopped:
-        app.main()
+        main()
     said = capsys.readouterr().err.strip().splitlines()[-1]
     assert stopped.value.code == 2
     assert says in said

@@ -5,7 +5,8 @@ import pytest
 from conftest import coarse_scene
 from typer.testing import CliRunner
 
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.app import app
+from fe_drivetrain.commands.terminal import MISTAKE, PASSED
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.adviser import Quantity, advise
@@ -124,22 +125,22 @@ def test_a_quantity_that_is_zero_is_refused() -> None:
     ("options", "message"),
     [
         (["--quantity", "main_bearing.Mq"], "unknown: use one of"),
-        (["--quantity", "main_bearing.My", "--tolerance", "much"], "share between 0 and 100 %"),
+        (["--quantity", "main_bearing.My", "--tolerance", "much"], "must be between 0 and 100 %"),
         (["--quantity", "main_bearing.My", "--load", "hub.Fq=1"], "'hub.Fq' is unknown"),
         (["--quantity", "main_bearing.My", "--load", "hub.Fz=no"], "must be a number"),
         (["--quantity", "main_bearing.My", "--load", "hub.Fz=0"], "all loads are zero"),
     ],
 )
 def test_a_wrong_option_gets_one_sentence(options: list[str], message: str) -> None:
-    outcome = CliRunner().invoke(app._app, ["advise", "main_bearing_spherical", *options])
-    assert outcome.exit_code == app.MISTAKE
+    outcome = CliRunner().invoke(app, ["advise", "main_bearing_spherical", *options])
+    assert outcome.exit_code == MISTAKE
     assert message in outcome.stderr
 
 
 def test_advise_writes_a_page(tmp_path) -> None:  # type: ignore[no-untyped-def]
     arguments = ["advise", "main_bearing_spherical", "--quantity", "main_bearing.Fz"]
-    outcome = CliRunner().invoke(app._app, [*arguments, "--out", str(tmp_path / "out")])
-    assert outcome.exit_code == app.PASSED, outcome.output
+    outcome = CliRunner().invoke(app, [*arguments, "--out", str(tmp_path / "out")])
+    assert outcome.exit_code == PASSED, outcome.output
     assert "level 0" in outcome.stdout
     assert read_results(tmp_path / "out" / "results.json").passed
     assert (tmp_path / "out" / "report.html").exists()

@@ -7,7 +7,8 @@ import pytest
 from conftest import coarse_scene
 from typer.testing import CliRunner
 
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.app import app
+from fe_drivetrain.commands.terminal import FAILED, MISTAKE, PASSED
 from fe_drivetrain.commands.uncertainty_page import bands, figures, inputs
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
@@ -287,11 +288,11 @@ def test_the_model_error_of_a_level_without_a_top_is_half_its_bounds(found: Stud
 
 def test_the_page_has_every_number(found: Study) -> None:
     sections = {section.title: section for section in (bands(found), inputs(found))}
-    (table,) = (i for i in sections["How certain the results are"].items if i.kind == "table")
+    (table,) = (i for i in sections["Uncertainty of the results"].items if i.kind == "table")
     assert [row[0] for row in table.rows] == stiffness_names(found.scene)
-    values, surfaces = (i for i in sections["What is uncertain"].items if i.kind == "table")
+    values, surfaces = (i for i in sections["Uncertain values"].items if i.kind == "table")
     assert [row[1] for row in values.rows] == list(SPREADS)
-    assert [row[1] for row in surfaces.rows] == ["in shape", "on average"]
+    assert [row[1] for row in surfaces.rows] == ["rigid", "averaged"]
     numbers = figures(found)["quantities"]
     assert numbers["main_bearing.tilt"]["half_band"] > 0
     assert len(numbers["main_bearing.tilt"]["samples"]) == COUNT
@@ -325,7 +326,7 @@ def scene_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def _run(scene_file: Path, out: Path, *options: str) -> tuple[int, str, str]:
     arguments = [str(scene_file) if a == "SCENE" else a for a in RUN]
-    outcome = CliRunner().invoke(app._app, [*arguments, *options, "--out", str(out)])
+    outcome = CliRunner().invoke(app, [*arguments, *options, "--out", str(out)])
     return outcome.exit_code, outcome.stdout, outcome.stderr
 
 
@@ -335,7 +336,7 @@ def test_the_command_writes_a_page_and_the_same_again(scene_file: Path, tmp_path
         status, said, steps = _run(
             scene_file, tmp_path / name, "--quantity", "main_bearing.My", "--seed", "5", "--sobol"
         )
-        assert status == app.PASSED, steps
+        assert status == PASSED, steps
         assert "main_bearing.My of hub.My" in said
         assert "samples ..." in steps
         assert "samples of Sobol's shares ..." in steps
@@ -358,7 +359,7 @@ def test_the_command_writes_a_page_and_the_same_again(scene_file: Path, tmp_path
         (["--level", "3"], "cannot be sampled: use 1 (beam) or 2 (meridian)"),
         (["--quantity", "main_bearing.My", "--load", "hub.Fy=1"], "is zero at level 1"),
         (["--load", "hub.Fq=1"], "'hub.Fq' is unknown"),
-        (["--tolerance", "much"], "share between 0 and 100 %"),
+        (["--tolerance", "much"], "must be between 0 and 100 %"),
         (["--set", f"uncertainty.{STEEL}=3"], "uncertainty"),
     ],
 )
@@ -366,7 +367,7 @@ def test_a_wrong_option_gets_one_sentence_and_no_file(
     scene_file: Path, tmp_path: Path, options: list[str], message: str
 ) -> None:
     status, _, said = _run(scene_file, tmp_path / "out", *options)
-    assert status == app.MISTAKE
+    assert status == MISTAKE
     assert message in said
     assert "Traceback" not in said
     assert list(tmp_path.iterdir()) == []
@@ -374,9 +375,9 @@ def test_a_wrong_option_gets_one_sentence_and_no_file(
 
 def test_a_scene_without_spreads_says_what_to_add(tmp_path: Path) -> None:
     outcome = CliRunner().invoke(
-        app._app, ["uncertainty", "main_bearing_bonded", "--out", str(tmp_path / "out")]
+        app, ["uncertainty", "main_bearing_bonded", "--out", str(tmp_path / "out")]
     )
-    assert outcome.exit_code == app.MISTAKE
+    assert outcome.exit_code == MISTAKE
     assert "add some under 'uncertainty'" in outcome.stderr
     assert list(tmp_path.iterdir()) == []
 
@@ -385,8 +386,8 @@ def test_the_adviser_chooses_the_level_and_judges_it(scene_file: Path, tmp_path:
     """A tolerance that no cheap level meets: the results are there, and the status says so."""
     out = tmp_path / "out"
     arguments = ["uncertainty", str(scene_file), "--tolerance", "0.1%", "--samples", "40"]
-    outcome = CliRunner().invoke(app._app, [*arguments, "--out", str(out)])
-    assert outcome.exit_code == app.FAILED, outcome.stderr
+    outcome = CliRunner().invoke(app, [*arguments, "--out", str(out)])
+    assert outcome.exit_code == FAILED, outcome.stderr
     results = read_results(out / "results.json")
     (verdict,) = results.verdicts
     level = results.figures["level"]

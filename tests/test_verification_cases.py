@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands.app import app
+from fe_drivetrain.commands.terminal import FAILED, PASSED
 from fe_drivetrain.report.results import Chart, Image, Results, read_results
 from fe_drivetrain.solve import solid
 from fe_drivetrain.suite.case import find_cases
@@ -64,9 +65,9 @@ def test_a_modulus_that_is_five_per_cent_wrong_is_caught(
     assert changed != right
     monkeypatch.setattr(solid.solve_solid, "__defaults__", changed)
     arguments = ["run", "verification/thick_cylinder", "--quick", "--out", str(tmp_path / "out")]
-    outcome = CliRunner().invoke(app._app, [*arguments, "--junit", str(tmp_path / "out.xml")])
-    assert outcome.exit_code == app.FAILED
+    outcome = CliRunner().invoke(app, [*arguments, "--junit", str(tmp_path / "out.xml")])
+    assert outcome.exit_code == FAILED
     assert "FAIL" in outcome.stdout
     assert "<failure" in (tmp_path / "out.xml").read_text()
     monkeypatch.undo()
-    assert CliRunner().invoke(app._app, arguments).exit_code == app.PASSED
+    assert CliRunner().invoke(app, arguments).exit_code == PASSED

@@ -23,7 +23,7 @@ import gmsh
 import meshio
 import numpy as np
 
-from fe_drivetrain.commands import app
+from fe_drivetrain.commands import run_and_print, show_steps
 from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions
 from fe_drivetrain.geometry import MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
@@ -187,15 +187,15 @@ def ended(pid: int, read: int) -> tuple[int, str]:
 
 def run_new(out: Path) -> int:
     """As the command line does it."""
-    return app._run(lambda: [CASE_KILLED], out, [f"mark={NEW}"], quick=False)
+    return run_and_print(lambda: [CASE_KILLED], out, [f"mark={NEW}"])
 
 
 def run_in_place(out: Path) -> int:
     """As a program does it that knows no better: it empties the folder and writes into it."""
     shutil.rmtree(out)
     out.mkdir()
-    with app._progress() as page:
-        run_into(CASE_KILLED, out, {"mark": NEW}, False, page)
+    with show_steps() as report:
+        run_into(CASE_KILLED, out, {"mark": NEW}, False, report)
     return 0
 
 
@@ -234,7 +234,7 @@ def experiment(folder: Path, moments: int) -> Found:
             moment = time.perf_counter() - start
             os.kill(pid, signal.SIGKILL)
             status, said = ended(pid, read)
-            steps = [line.split(" ... ")[0] for line in said.splitlines() if " ... " in line]
+            steps = [line.split(" ...")[0] for line in said.splitlines() if " ..." in line]
             during = "over" if status == 0 else steps[-1] if steps else "start"
             found.append(Killed(moment, during, state(out), hidden(out.parent, caches)))
             at += step

@@ -1,6 +1,6 @@
-"""The command line: what each command takes, does and prints, and the pages of advice.
+"""The command line: options, messages and exit statuses of each command, and pages of studies.
 
-In: words of a shell. Out: files, lines on a terminal, an exit status.
+In: words typed in a shell. Out: files, lines on a terminal, and an exit status.
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-"""What the adviser found, as a table, a chart of error against time, and a tornado chart."""
+"""The adviser's result as a table, a chart of error over time, and a tornado chart."""
 
 from __future__ import annotations
 
@@ -15,11 +15,21 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.case import OldCase as Case
 from fe_drivetrain.suite.case import Run
 
-_LEAST = 1e-6  # what statics decides has no error, and a place on a logarithmic axis
+_LEAST = 1e-6  # in percent; statics has no error, but a logarithmic axis needs one
 
 
 def ladder(advice: Advice) -> Section:
-    """The levels: error, time, and what each leaves out."""
+    """The model levels: error, time, and effects that each neglects.
+
+    Parameters
+    ----------
+    advice : Advice
+        The levels that were run.
+
+    Returns
+    -------
+    Section
+    """
     rows: list[list[Cell]] = []
     for number, rung in enumerate(advice.rungs):
         model = rung.model
@@ -33,21 +43,21 @@ def ladder(advice: Advice) -> Section:
                 rung.seconds,
                 advice.top.seconds / rung.seconds,
                 "chosen" if number == advice.chosen else "",
-                "; ".join(model.neglects) or "nothing that the scene has",
+                "; ".join(model.neglects) or "nothing in this scene",
             ]
         )
     unit = advice.quantity.unit
-    value = f"value [{unit}]" if len(advice.top.values) == 1 else "norm of the row [-]"
+    value = f"value [{unit}]" if len(advice.top.values) == 1 else "norm over the hub loads [-]"
     table = Table(
         caption=f"{advice.quantity.name} at each level",
         columns=[
             "level",
             value,
-            "error against the last [%]",
-            "against the next [%]",
-            "own estimate ± [%]",
+            "error relative to the last level [%]",
+            "difference to the next level [%]",
+            "estimated own error ± [%]",
             "time [s]",
-            "times faster than the last",
+            "speed-up over the last level",
             "",
             "neglects",
         ],
@@ -60,12 +70,26 @@ def ladder(advice: Advice) -> Section:
         Text(text=_NOTE),
     ]
     if advice.quantity.load is None and len(advice.top.values) > 1:
-        items.append(Text(text=_ROW))
-    return Section(title="The ladder", items=items)
+        items.append(Text(text=_EACH_LOAD))
+    return Section(title="Model levels", items=items)
 
 
 def tornado(advice: Advice, level: str, found: Sequence[Effect]) -> Section:
-    """Details, ranked by what they do to the quantity."""
+    """Details of the scene, ranked by their effect on the quantity.
+
+    Parameters
+    ----------
+    advice : Advice
+        The quantity and its tolerance.
+    level : str
+        The model level at which details were left out, in words.
+    found : sequence of Effect
+        Change of the quantity for each detail, largest first.
+
+    Returns
+    -------
+    Section
+    """
     shown = list(reversed(found))
     bars = {
         "type": "bar",
@@ -75,8 +99,8 @@ def tornado(advice: Advice, level: str, found: Sequence[Effect]) -> Section:
     }
     tolerance = 100 * advice.tolerance
     figure = chart(
-        f"Change of {advice.quantity.name} when one detail is left out, at level {level}; the "
-        "shaded range is within the tolerance",
+        f"Change of {advice.quantity.name} when one detail is left out, at level {level}; "
+        "shaded: within the tolerance",
         [bars],
         x="change [%]",
         y="",
@@ -84,25 +108,25 @@ def tornado(advice: Advice, level: str, found: Sequence[Effect]) -> Section:
     )
     figure.figure["layout"]["yaxis"]["automargin"] = True
     table = Table(
-        caption="The same in numbers",
-        columns=["left out", "change [%]"],
+        caption="Values of the chart",
+        columns=["detail left out", "change [%]"],
         rows=[[effect.detail, 100 * effect.change] for effect in found],
     )
-    return Section(title="Which detail matters", items=[figure, table])
+    return Section(title="Influence of each detail", items=[figure, table])
 
 
 _NOTE = (
-    "Error: difference to the last level that was run, relative to it. Own estimate: of statics 0 "
-    "where equilibrium alone decides; of a shaft on housings solved apart, half the difference "
-    "between a housing's face that is held in shape and one that moves on average, and the change "
-    "from beam to meridian; of the assembly the band of its mesh, from two coarser ones. A level "
-    "is good enough where its error and the last one's own estimate together are within the "
-    "tolerance. Times are those of a level's value, meshes included; a mesh that was made before "
-    "comes from the cache, and what an estimate takes comes on top."
+    "Error: relative difference to the last level that was run. Estimated own error: zero for "
+    "statics if equilibrium alone determines the quantity; for a shaft on separately solved "
+    "housings, half the difference between a rigid and an averaged housing face, and the change "
+    "from beam to meridian; for the assembly, the discretization error from two coarser meshes. A "
+    "level is accurate enough if its error plus the own error of the last level is within the "
+    "tolerance. Times include meshing, unless the mesh came from the cache, but not the error "
+    "estimate."
 )
-_ROW = (
-    "No load was given: what is compared is the quantity's answer to each of the six hub loads, a "
-    "moment counting as a force at the length of the shaft."
+_EACH_LOAD = (
+    "No load was given: the levels are compared by the response of the quantity to each of the six "
+    "hub loads. Moments are scaled to forces by the length of the shaft."
 )
 
 
@@ -124,8 +148,8 @@ def _against_time(advice: Advice) -> Chart:
         trace("tolerance", [min(times), max(times)], [limit, limit], line={"dash": "dash"})
     )
     return chart(
-        "Error against time; of the last level its own band. The largest marker is the level that "
-        f"is enough. What statics decides is drawn at {_LEAST:g} %",
+        "Error over time; for the last level its estimated own error. The largest marker is the "
+        f"level that is accurate enough. Errors of zero are drawn at {_LEAST:g} %",
         traces,
         x="time [s]",
         y="error [%]",
@@ -149,16 +173,33 @@ def _percent(share: float) -> Cell:
 def advised(
     case: Case, run: Run, scene: Scene, quantity: Quantity, tolerance: float, to_the_top: bool
 ) -> Results:
-    """Climb the ladder, rank the details, and say both.
+    """Find the cheapest level that is accurate enough, and rank the details of the scene.
 
     Parameters
     ----------
-    case, run
-        Whose results these are.
-    scene, quantity, tolerance, to_the_top
-        See `adviser.advise`.
+    case : Case
+        The case that the results belong to.
+    run : Run
+        Its run.
+    scene : Scene
+        The scene.
+    quantity : Quantity
+        The quantity that must be accurate.
+    tolerance : float
+        Allowed relative error.
+    to_the_top : bool
+        Whether to run every level, even if a cheaper one is accurate enough.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    InputError
+        See `fe_drivetrain.fidelity.adviser.advise`.
     """
-    with run.step("the ladder"):
+    with run.step("model levels"):
         advice = advise(scene, quantity, tolerance, to_the_top, run.report)
     sections = [ladder(advice)]
     level = 2 if advice.chosen is not None and advice.rungs[advice.chosen].model.level == 2 else 1
@@ -181,8 +222,8 @@ def advised(
         0.0,
         tolerance=tolerance,
         relative=False,
-        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own band",
-        reason="asked for",
+        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
+        reason="the tolerance that was requested",
     )
     return case.results(
         run,

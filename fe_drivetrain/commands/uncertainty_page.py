@@ -1,4 +1,4 @@
-"""What uncertain values do to the results, as tables and charts beside the model's own error."""
+"""Effect of uncertain values on the results, as tables and charts, next to the model error."""
 
 from __future__ import annotations
 
@@ -20,13 +20,23 @@ from fe_drivetrain.uncertainty.input_study import Study, level_error, rung_of, s
 from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
 
 _BINS = 16
-_LEAST = 1e-4
-_SEEN = 0.01
-_CHARTED = 6  # quantities with charts of their own; all are in the tables
+_LEAST = 1e-4  # smaller numbers in tables are round-off
+_SEEN = 0.01  # smallest total Sobol index in the table
+_CHARTED = 6  # quantities with their own charts; the tables have all of them
 
 
 def inputs(found: Study) -> Section:
-    """What is uncertain, and how."""
+    """The uncertain values and their distributions.
+
+    Parameters
+    ----------
+    found : Study
+        The study.
+
+    Returns
+    -------
+    Section
+    """
     rows: list[list[Cell]] = []
     for k, (key, spread) in enumerate(found.scene.uncertainty.items(), 1):
         nominal = nominal_value(found.scene, key)
@@ -40,7 +50,7 @@ def inputs(found: Study) -> Section:
             "no.",
             "value",
             "nominal [SI]",
-            "how certain",
+            "distribution",
             "2.5 % [SI]",
             "97.5 % [SI]",
             "standard deviation [%]",
@@ -50,11 +60,21 @@ def inputs(found: Study) -> Section:
     items: list[Table | Text] = [table]
     if found.surfaces:
         items += [_surfaces(found), Text(text=_SURFACE)]
-    return Section(title="What is uncertain", items=items)
+    return Section(title="Uncertain values", items=items)
 
 
 def bands(found: Study) -> Section:
-    """The band of every number, beside the error of the level."""
+    """The band of every quantity, next to the error of the model level.
+
+    Parameters
+    ----------
+    found : Study
+        The study.
+
+    Returns
+    -------
+    Section
+    """
     rows: list[list[Cell]] = []
     for number in found.numbers:
         samples, error = found.samples[number.name], found.errors[number.name]
@@ -76,7 +96,7 @@ def bands(found: Study) -> Section:
         )
     table = Table(
         caption=f"Bands of {100 * SHARE:g} % from {_count(found)} samples at level {found.level}, "
-        "beside what the model itself may be off",
+        "next to the error of the model",
         columns=[
             "quantity",
             "unit",
@@ -85,7 +105,7 @@ def bands(found: Study) -> Section:
             "97.5 %",
             "inputs: half the band [%]",
             "its standard error [%]",
-            "half the band, faces on average [%]",
+            "inputs: half the band, averaged faces [%]",
             "model: error [%]",
             "larger",
         ],
@@ -94,19 +114,29 @@ def bands(found: Study) -> Section:
     sources: dict[str, list[str]] = {}
     for number in found.numbers:
         sources.setdefault(found.errors[number.name].source, []).append(number.name)
-    said = "; ".join(f"of {', '.join(names)}: {source}" for source, names in sources.items())
-    items: list[Table | Text | Chart] = [_beside(found), table, Text(text=_BAND)]
-    items.append(Text(text=f"The model's error is, {said}."))
+    origins = "; ".join(f"for {', '.join(names)}: {source}" for source, names in sources.items())
+    items: list[Table | Text | Chart] = [_half_bands(found), table, Text(text=_BAND)]
+    items.append(Text(text=f"The model error is, {origins}."))
     items += [_histogram(n, found.samples[n.name]) for n in _charted(found) if _varies(found, n)]
-    return Section(title="How certain the results are", items=items)
+    return Section(title="Uncertainty of the results", items=items)
 
 
 def slopes(found: Study) -> Section:
-    """First-order sensitivities of every number."""
+    """First-order sensitivities of every quantity.
+
+    Parameters
+    ----------
+    found : Study
+        The study.
+
+    Returns
+    -------
+    Section
+    """
     keys = list(found.scene.uncertainty)
     table = Table(
-        caption="Relative change of each quantity for the relative change of each value, by the "
-        "values' numbers",
+        caption="Relative change of each quantity per relative change of each value; columns are "
+        "numbered as the uncertain values",
         columns=["quantity", *_numbered(keys)],
         rows=[
             [n.name, *(_small(found.slopes[n.name][key]) for key in keys)] for n in found.numbers
@@ -115,11 +145,21 @@ def slopes(found: Study) -> Section:
     items: list[Table | Text | Chart] = [
         _tornado(found, number) for number in _charted(found) if _varies(found, number)
     ]
-    return Section(title="Which value matters", items=[*items, table, Text(text=_SLOPE)])
+    return Section(title="Influence of each value", items=[*items, table, Text(text=_SLOPE)])
 
 
 def variance(found: Study) -> Section:
-    """Shares of the variance: of a plane through the samples, and Sobol's where they were asked."""
+    """Shares of the variance: of a linear fit to the samples, and Sobol indices if requested.
+
+    Parameters
+    ----------
+    found : Study
+        The study.
+
+    Returns
+    -------
+    Section
+    """
     varying = [n for n in found.numbers if _varies(found, n)]
     keys = list(found.scene.uncertainty)
     rows: list[list[Cell]] = []
@@ -138,19 +178,29 @@ def variance(found: Study) -> Section:
     items: list[Table | Text] = [
         Table(
             caption="Standard deviation of the samples and of first order, share of the variance "
-            "that a plane through the samples explains (R²), and what each value contributes to it "
-            "[%], by the values' numbers",
+            "that a linear fit to the samples explains (R²), and the contribution of each value "
+            "[%]; columns are numbered as the uncertain values",
             columns=["quantity", "sampled [%]", "first order [%]", "R² [-]", *_numbered(keys)],
             rows=rows,
         )
     ]
     if found.shares:
         items += [_sobol(found, varying), Text(text=_SOBOL)]
-    return Section(title="Where the uncertainty comes from", items=items)
+    return Section(title="Contributions to the variance", items=items)
 
 
 def ladder(found: Study) -> Section:
-    """Why this level."""
+    """The errors of the model levels, and the level that was chosen.
+
+    Parameters
+    ----------
+    found : Study
+        The study.
+
+    Returns
+    -------
+    Section
+    """
     rows: list[list[Cell]] = []
     for advice in found.advices:
         for rung in advice.rungs:
@@ -165,29 +215,51 @@ def ladder(found: Study) -> Section:
                 ]
             )
     table = Table(
-        caption="The ladder of what was asked",
+        caption="Model levels for the requested quantities",
         columns=[
             "quantity",
             "level",
-            "error against the last [%]",
-            "own estimate ± [%]",
+            "error relative to the last level [%]",
+            "estimated own error ± [%]",
             "time [s]",
             "",
         ],
         rows=rows,
     )
-    said = [Text(text=advice.sentence()) for advice in found.advices]
-    return Section(title="Which level", items=[*said, table])
+    answers = [Text(text=advice.sentence()) for advice in found.advices]
+    return Section(title="Model level", items=[*answers, table])
 
 
 def half_band(samples: Samples) -> float:
-    """Half the width of a band, relative to the nominal value."""
+    """Half the width of the band, relative to the nominal value.
+
+    Parameters
+    ----------
+    samples : Samples
+        Of one quantity.
+
+    Returns
+    -------
+    float
+    """
     band = samples.band()
     return (band.high - band.low) / 2 / abs(samples.nominal)
 
 
 def first_order(found: Study, number: Number) -> float:
-    """Relative standard deviation that the slopes predict, inputs being independent."""
+    """Relative standard deviation predicted by the sensitivities, for independent inputs.
+
+    Parameters
+    ----------
+    found : Study
+        The study.
+    number : Number
+        The quantity.
+
+    Returns
+    -------
+    float
+    """
     parts = [
         found.slopes[number.name][key] * relative_spread(spread)
         for key, spread in found.scene.uncertainty.items()
@@ -196,7 +268,17 @@ def first_order(found: Study, number: Number) -> float:
 
 
 def relative_spread(spread: Spread) -> float:
-    """Standard deviation of a value relative to its nominal one."""
+    """Standard deviation of a value, relative to its nominal value.
+
+    Parameters
+    ----------
+    spread : Spread
+        Its distribution.
+
+    Returns
+    -------
+    float
+    """
     return float(distribution(spread, 1.0).std())
 
 
@@ -212,14 +294,39 @@ def uncertain(
     seed: int,
     sobol: int,
 ) -> Results:
-    """Propagate a scene's uncertain values, and say what came out.
+    """Propagate the uncertain values of a scene to its reactions and stiffnesses.
 
     Parameters
     ----------
-    case, run
-        Whose results these are.
-    scene, asked, load, tolerance, level, count, seed, sobol
-        See `uncertainty_study.study`.
+    case : Case
+        The case that the results belong to.
+    run : Run
+        Its run.
+    scene : Scene
+        The scene.
+    asked : sequence of str
+        Names of the quantities for which the level must be accurate.
+    load : ndarray or None
+        (10,) factors of the unit loads; None for each hub load by itself.
+    tolerance : float
+        Allowed relative error of the level.
+    level : int or None
+        The level to sample; None to let the adviser choose it.
+    count : int
+        Samples of the Latin hypercube.
+    seed : int
+        Of all random samples.
+    sobol : int
+        Base samples of Sobol indices, a power of two; 0 for none.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    InputError
+        See `fe_drivetrain.uncertainty.input_study.study`.
     """
     with run.step("uncertainty"):
         found = study(scene, asked, load, tolerance, level, count, seed, sobol, run.report)
@@ -239,7 +346,18 @@ def uncertain(
 
 
 def figures(found: Study) -> dict[str, Any]:
-    """All numbers, for other programs."""
+    """All numbers, for other programs.
+
+    Parameters
+    ----------
+    found : Study
+        The study.
+
+    Returns
+    -------
+    dict
+        As JSON.
+    """
     quantities = {}
     for number in found.numbers:
         samples, error = found.samples[number.name], found.errors[number.name]
@@ -280,44 +398,45 @@ def figures(found: Study) -> dict[str, Any]:
 
 
 _BAND = (
-    "Half the band of the inputs stands beside the error of the model: the larger one says whether "
-    "to know the inputs better or to take a better model. The band's standard error is from "
-    "resampling the samples as if they were independent. Bands are of housings whose face keeps "
-    "its shape; beside them stands what the band is where it moves on average: the shaft's hold "
-    "is between the two."
+    "Half the band of the inputs is compared with the error of the model: if that of the inputs is "
+    "larger, better input data help; if that of the model is larger, a better model helps. The "
+    "standard error of the band is from resampling the samples as if they were independent. The "
+    "bands are for housings with a rigid face; the column for averaged faces is the other bound, "
+    "and the true support of the shaft is between the two."
 )
 _SLOPE = (
-    "Central differences of the level that was sampled. A chart's bar is the change of the "
+    "Central differences at the level that was sampled. A bar of a chart is the change of the "
     "quantity for one standard deviation of the value."
 )
 _SOBOL = (
-    "First: share of the variance that would go if this value were known; total: share that would "
-    "stay if all others were. Standard errors from resampling; an estimate may fall outside of 0 "
-    "to 1 by that."
+    "First: share of the variance that would vanish if this value were known. Total: share that "
+    "would remain if all other values were known. Standard errors are from resampling; because of "
+    "them an estimate may be below 0 or above 1."
 )
 _SURFACE = (
-    "Bearing units that depend on uncertain values were solved at two values of each beside the "
-    "nominal one, and the logarithm of their stiffness is taken as quadratic and additive between "
-    "these; values drawn from the distributions, solved by themselves, check that. What is off "
-    "includes the noise of meshes made anew. All else was solved anew for each sample."
+    "Bearing units that depend on uncertain values were solved at the nominal values and at two "
+    "other values of each. Between these, the logarithm of the stiffness is interpolated as a sum "
+    "of quadratic functions of one value each. Further solutions at values drawn from the "
+    "distributions check the interpolation; its error includes the noise of remeshing. Everything "
+    "else was solved again for each sample."
 )
 
 
 def _surfaces(found: Study) -> Table:
     return Table(
-        caption="Bearing units as surfaces",
+        caption="Bearing units as response surfaces",
         columns=[
             "bearing unit",
             "face",
             "values",
             "solid solutions",
             "largest error at the checks [%]",
-            "sensitivities off by up to [-]",
+            "largest error of a sensitivity [-]",
         ],
         rows=[
             [
                 s.name,
-                "in shape" if s.coupling == "rigid" else "on average",
+                s.coupling,
                 ", ".join(s.keys),
                 s.solutions,
                 _short(100 * s.error),
@@ -328,12 +447,12 @@ def _surfaces(found: Study) -> Table:
     )
 
 
-def _beside(found: Study) -> Chart:
-    """Half bands and model errors, a pair of bars a quantity."""
+def _half_bands(found: Study) -> Chart:
+    """Half bands and model errors, a pair of bars for each quantity."""
     shown = [number.name for number in reversed(found.numbers)]
     halves = [100 * half_band(found.samples[name]) for name in shown]
     figure = chart(
-        "What the inputs do, and what the model itself may be off",
+        "Uncertainty from the inputs, and error of the model",
         [
             _bars("model: error of the level", [100 * found.errors[n].share for n in shown], shown),
             _bars("inputs: half the band", halves, shown),
@@ -400,24 +519,24 @@ def _sobol(found: Study, varying: Sequence[Number]) -> Table:
             values = (shares.first, shares.first_error, shares.total, shares.total_error)
             rows.append([number.name, key, *(_small(float(v[k])) for v in values)])
     return Table(
-        caption=f"Sobol's shares of the variance, totals from {_SEEN:g} on",
+        caption=f"Sobol indices (shares of the variance) with a total of at least {_SEEN:g}",
         columns=["quantity", "value", "first [-]", "±", "total [-]", "± "],
         rows=rows,
     )
 
 
 def _summary(found: Study) -> list[str]:
-    said = []
+    sentences = []
     for number in _charted(found):
         samples, error = found.samples[number.name], found.errors[number.name]
         band = samples.band()
         low, high = (100 * (end / samples.nominal - 1.0) for end in (band.low, band.high))
-        said.append(
+        sentences.append(
             f"{number.name}: {samples.nominal:.4g} {number.unit}, {min(low, high):+.2g} to "
-            f"{max(low, high):+.2g} % for the inputs ({100 * SHARE:g} % of {_count(found)} "
-            f"samples), ± {100 * error.share:.2g} % for the model at level {found.level}."
+            f"{max(low, high):+.2g} % from the inputs ({100 * SHARE:g} % of {_count(found)} "
+            f"samples), ± {100 * error.share:.2g} % from the model at level {found.level}."
         )
-    return said
+    return sentences
 
 
 def _verdict(advice: Advice, level: int, tolerance: float) -> Verdict:
@@ -428,13 +547,13 @@ def _verdict(advice: Advice, level: int, tolerance: float) -> Verdict:
         0.0,
         tolerance=tolerance,
         relative=False,
-        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own band",
-        reason="asked for",
+        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
+        reason="the tolerance that was requested",
     )
 
 
 def _charted(found: Study) -> list[Number]:
-    """What was asked for; else the stiffness in bending, which most depends on."""
+    """The requested quantities; if there are none, the stiffnesses at the hub."""
     asked = [number for number in found.numbers if found.is_asked(number)]
     return (asked or [n for n in found.numbers if n.name.startswith("hub.stiffness.")])[:_CHARTED]
 
@@ -449,7 +568,7 @@ def _count(found: Study) -> int:
 
 def _words(spread: Spread) -> str:
     if spread.uniform is not None:
-        return f"even, ± {100 * spread.uniform:g} %"
+        return f"uniform, ± {100 * spread.uniform:g} %"
     if spread.normal is not None:
         return f"normal, standard deviation {100 * spread.normal:g} %"
     return f"lognormal, coefficient of variation {100 * float(spread.lognormal or 0):g} %"
@@ -464,7 +583,7 @@ def _short(value: float, digits: int = 3) -> float:
 
 
 def _small(value: float, digits: int = 3) -> float:
-    """The same, and 0 for what is round-off."""
+    """The same, with 0 instead of round-off."""
     return 0.0 if abs(value) < _LEAST else _short(value, digits)
 
 

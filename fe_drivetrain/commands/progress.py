@@ -1,0 +1,104 @@
+"""Progress of a command on standard error: each step as it begins, and the time that it took.
+
+On a terminal, steps that run are live lines, one for each parallel process (lane); a step that has
+ended stays above them as a line of its own. In a log file there is a line at the beginning and one
+at the end of each step.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import IO, TYPE_CHECKING, NamedTuple, cast
+
+from fe_drivetrain.commands.terminal import write
+
+if TYPE_CHECKING:
+    from rich.progress import TaskID
+
+    from fe_drivetrain.common.processes import Report
+
+
+class _Step(NamedTuple):
+    name: str
+    task: TaskID
+    began: float
+
+
+class _Stream(io.TextIOBase):
+    """Standard error as it is now, for rich; it is no error when its reader has gone away."""
+
+    def __init__(self) -> None:
+        self._stream = sys.stderr
+
+    def write(self, text: str) -> int:
+        write(self._stream, text)
+        return len(text)
+
+    def isatty(self) -> bool:
+        return self._stream.isatty()
+
+    def fileno(self) -> int:
+        return self._stream.fileno()
+
+
+@contextmanager
+def show_steps() -> Iterator[Report]:
+    """Show steps, each from its report until the next one of its lane.
+
+    Yields
+    ------
+    Report
+        Called with a step and its lane: 0 for this process, 1 and on for those in parallel to it.
+        An empty step ends the last one. A step that counts, as in "loads (12 of 144)", is one step.
+    """
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(file=cast(IO[str], _Stream()), highlight=False)
+    display = Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}", markup=False),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    )
+    lock = threading.Lock()  # parallel processes report from threads
+    running: dict[int, _Step] = {}
+
+    def show(line: str) -> None:
+        console.print(line, markup=False, soft_wrap=True)
+
+    def end(lane: int, outcome: str = "") -> None:
+        if lane in running:
+            step = running.pop(lane)
+            display.remove_task(step.task)
+            show(f"{step.name} ... {outcome or f'{time.perf_counter() - step.began:.1f} s'}")
+
+    def report(step: str, lane: int = 0) -> None:
+        name = re.sub(r" \(\d+ of \d+\)$", "", step)
+        with lock:
+            if lane in running and running[lane].name == name:
+                display.update(running[lane].task, description=step)
+                return
+            end(lane)
+            if name:
+                if not console.is_terminal:
+                    show(f"{name} ...")
+                running[lane] = _Step(name, display.add_task(step, total=None), time.perf_counter())
+
+    with display:
+        try:
+            yield report
+        except BaseException:
+            for lane in list(running):
+                end(lane, "not finished")
+            raise
+        for lane in list(running):
+            end(lane)

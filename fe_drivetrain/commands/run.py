@@ -1,0 +1,275 @@
+"""The commands ``list`` and ``run``: find cases, run them, and print each verdict."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fe_drivetrain.commands.progress import show_steps
+from fe_drivetrain.commands.settings import CaseSettings, parse_settings
+from fe_drivetrain.commands.terminal import FAILED, KEPT, MISTAKE, PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.processes import hold_threads
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Problem, Results, Verdict
+    from fe_drivetrain.suite.case import AnyCase as Case
+
+_SUMMARY_SENTENCES = 3
+
+OutFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        help="Result folder: new, empty, or with results of an earlier run, which are replaced. "
+        "Default: reports/GROUP/NAME in the current folder. For several cases, the folder above "
+        "their result folders: DIR/GROUP/NAME.",
+    ),
+]
+Quick = Annotated[bool, typer.Option("--quick", help="Coarser and smaller, for a first look.")]
+
+
+def list_command() -> None:
+    """List the validation cases."""
+
+    def work() -> int:
+        from fe_drivetrain.suite.case import all_cases
+
+        write(sys.stdout, cases_text({name: case.title for name, case in all_cases().items()}))
+        return PASSED
+
+    raise typer.Exit(guarded(work))
+
+
+def run_command(
+    cases: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="CASE", help="GROUP/NAME, NAME if it is unique, or GROUP for all its cases."
+        ),
+    ] = None,
+    all_: Annotated[bool, typer.Option("--all", help="Run every case.")] = False,
+    out: OutFolder = None,
+    set_: CaseSettings = None,
+    quick: Quick = False,
+    junit: Annotated[
+        Path | None,
+        typer.Option(
+            "--junit", metavar="FILE", help="Write the verdicts as JUnit XML, for CI servers."
+        ),
+    ] = None,
+) -> None:
+    """Run validation cases and write their reports.
+
+    Several cases run in parallel processes, as many as there are cores, except those that measure
+    time, which run one by one at the end. An index.html lists all of them.
+
+    The exit status is 0 if every check passes, 1 if one fails, 2 for a wrong option or setting,
+    and 130 if stopped. A case that needs a program that is not installed is listed as skipped.
+    """
+    names = cases or []
+
+    def find() -> list[Case]:
+        from fe_drivetrain.suite.case import all_cases, find_cases
+
+        if all_ and names:
+            raise InputError(f"--all runs {', '.join(names)} too: drop one of the two")
+        if not all_ and not names:
+            raise InputError("Missing CASE: name one or more, or give --all")
+        if all_:
+            return list(all_cases().values())
+        found = [case for name in names for case in find_cases(name)]
+        return list({case.name: case for case in found}.values())
+
+    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit))
+
+
+def run_and_print(
+    find: Callable[[], Sequence[Case]],
+    out: Path | None = None,
+    settings: Sequence[str] = (),
+    quick: bool = False,
+    junit: Path | None = None,
+) -> int:
+    """Run cases, several of them in parallel, and print the verdicts.
+
+    Parameters
+    ----------
+    find : callable
+        Returns the cases.
+    out : Path or None
+        Result folder of one case, or the folder above those of several; None for ``reports``.
+    settings : sequence of str
+        Each "KEY=VALUE".
+    quick : bool
+        Coarser and smaller.
+    junit : Path or None
+        File for the verdicts as JUnit XML.
+
+    Returns
+    -------
+    int
+        Exit status.
+    """
+
+    def work() -> int:
+        hold_threads()
+        values = parse_settings(settings)
+        if junit is not None and not junit.resolve().parent.is_dir():
+            raise InputError(f"--junit {junit}: there is no folder {junit.parent}: create it first")
+        cases = find()
+        results: dict[str, Results]
+        problems: dict[str, Problem] = {}
+        if len(cases) == 1:
+            results = {cases[0].name: _run_one(cases[0], out, values, quick)}
+        else:
+            results, problems = _run_several(cases, out, values, quick)
+        if junit is not None:
+            from fe_drivetrain.report.junit import write_junit
+
+            write_junit(junit, [case.name for case in cases], results, problems)
+        if any(not problem.is_missing_tool for problem in problems.values()):
+            return MISTAKE
+        return PASSED if all(found.passed for found in results.values()) else FAILED
+
+    return guarded(work, f"finished cases are kept, {KEPT}")
+
+
+def _run_one(case: Case, out: Path | None, settings: Mapping[str, Any], quick: bool) -> Results:
+    from fe_drivetrain.suite.case import run_case
+
+    folder = Path("reports", *case.name.split("/")) if out is None else out
+    with show_steps() as report:
+        # a link or "." is resolved, so that the folder it leads to is replaced, not the link
+        results = run_case(case, folder.resolve(), settings, quick, report)
+    write(sys.stdout, results_text(results, folder / "report.html"))
+    return results
+
+
+def _run_several(
+    cases: Sequence[Case], out: Path | None, settings: Mapping[str, Any], quick: bool
+) -> tuple[dict[str, Results], dict[str, Problem]]:
+    from fe_drivetrain.report.results import read_results
+    from fe_drivetrain.suite.suite import result_folder, run_cases
+
+    folder = Path("reports") if out is None else out
+    with show_steps() as report:
+        problems = run_cases(cases, folder.resolve(), settings, quick, report)
+    results = {
+        case.name: read_results(result_folder(folder, case) / "results.json")
+        for case in cases
+        if case.name not in problems
+    }
+    names = [case.name for case in cases]
+    write(sys.stdout, several_results_text(names, results, problems, folder / "index.html"))
+    return results, problems
+
+
+def cases_text(titles: Mapping[str, str]) -> str:
+    """Names and titles of cases, one a line, under their groups.
+
+    Parameters
+    ----------
+    titles : mapping
+        Title by "GROUP/NAME", in order.
+
+    Returns
+    -------
+    str
+    """
+    width = max((len(name) for name in titles), default=0)
+    groups = []
+    for group, names in groupby(titles, lambda name: name.partition("/")[0]):
+        groups.append("".join([f"{group}\n", *(f"  {n:<{width}}  {titles[n]}\n" for n in names)]))
+    return "\n".join(groups)
+
+
+def results_text(results: Results, page: Path) -> str:
+    """Outcome of one case: each check, the first sentences, and where its report is.
+
+    Parameters
+    ----------
+    results : Results
+        Of the case.
+    page : Path
+        Its report.
+
+    Returns
+    -------
+    str
+    """
+    lines = [verdict_line(verdict) for verdict in results.verdicts]
+    lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
+    lines += [f"{_count(results)}: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def several_results_text(
+    names: Sequence[str],
+    results: Mapping[str, Results],
+    problems: Mapping[str, Problem],
+    page: Path,
+) -> str:
+    """Outcome of several cases: a line for each, its failed checks, and where the list is.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the cases, in order.
+    results : mapping
+        Results by name.
+    problems : mapping
+        Why there are no results, by name.
+    page : Path
+        The page that lists the cases.
+
+    Returns
+    -------
+    str
+    """
+    lines = []
+    for name in names:
+        if name in problems:
+            problem = problems[name]
+            kind = "skip" if problem.is_missing_tool else "none"
+            lines.append(f"{kind}  {name}: {problem.message}")
+            continue
+        found = results[name]
+        outcome = "pass" if found.passed else "FAIL"
+        lines.append(f"{outcome}  {name}: {_count(found)}, {sum(found.times.values()):.1f} s")
+        lines += [f"      {verdict_line(v)}" for v in found.verdicts if not v.passed]
+    passed = sum(found.passed for found in results.values())
+    lines += ["", f"{passed} of {len(names)} cases pass: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _count(results: Results) -> str:
+    passed = sum(verdict.passed for verdict in results.verdicts)
+    return f"{passed} of {len(results.verdicts)} checks pass"
+
+
+def verdict_line(verdict: Verdict) -> str:
+    """One check: outcome, quantity, computed value, reference and tolerance.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The check.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.report.results import expectation
+
+    unit = f" {verdict.unit}" if verdict.unit not in ("", "-") else ""
+    return (
+        f"{'pass' if verdict.passed else 'FAIL'}  {verdict.quantity}: "
+        f"computed {verdict.computed:.5g}{unit}, {expectation(verdict)}"
+    )

@@ -1,0 +1,201 @@
+"""The commands ``advise`` and ``uncertainty``: studies of one scene, each with a report."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.commands.progress import show_steps
+from fe_drivetrain.commands.run import results_text
+from fe_drivetrain.commands.scenes import named_scene
+from fe_drivetrain.commands.settings import (
+    Loads,
+    SceneSettings,
+    Tolerance,
+    parse_loads,
+    parse_settings,
+    parse_tolerance,
+)
+from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
+from fe_drivetrain.common.processes import hold_threads
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Results
+    from fe_drivetrain.suite.case import OldCase, Run
+
+_Scene = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENE", help="A scene file, or a name of the library, as in main_bearing_bonded."
+    ),
+]
+_OutFolder = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/COMMAND/SCENE."),
+]
+
+
+def advise_command(
+    scene: _Scene,
+    quantity: Annotated[
+        str,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="The quantity that must be accurate: a reaction, as in main_bearing.My or "
+            "gearbox.Fz, or a stiffness, hub.stiffness.ux to hub.stiffness.rz.",
+        ),
+    ],
+    tolerance: Tolerance = "1%",
+    load: Loads = None,
+    to_the_top: Annotated[
+        bool,
+        typer.Option(
+            "--to-the-top", help="Run every level, even if a cheaper one is accurate enough."
+        ),
+    ] = False,
+    out: _OutFolder = None,
+    set_: SceneSettings = None,
+) -> None:
+    """Find the cheapest model of a scene that is accurate enough for a quantity.
+
+    Runs models of rising cost until one is accurate enough: statics, beam, meridian in Fourier
+    harmonics, assembly of solids. Ranks the details of the scene by the change that leaving each
+    one out causes.
+
+    The exit status is 0 if a level is known to be within the tolerance, 1 if none is.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.commands.advice_page import advised
+        from fe_drivetrain.fidelity.adviser import Quantity
+
+        asked = Quantity(quantity, parse_loads(load or ()))
+        asked.check(found)
+        share = parse_tolerance(tolerance)
+        return _run_on_scene(
+            "advise",
+            scene,
+            f"{found.title}: the model level that {quantity} needs",
+            out,
+            lambda case, run: advised(case, run, found, asked, share, to_the_top),
+        )
+
+    raise typer.Exit(guarded(work))
+
+
+def uncertainty_command(
+    scene: _Scene,
+    quantity: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="A quantity for which the model level must be accurate, as in main_bearing.My; it "
+            "is reported in addition to every stiffness. May be repeated. Default: "
+            "hub.stiffness.uz.",
+        ),
+    ] = None,
+    load: Loads = None,
+    tolerance: Tolerance = "5%",
+    level: Annotated[
+        int | None,
+        typer.Option(
+            "--level",
+            metavar="LEVEL",
+            help="Sample level 1 (beam) or 2 (meridian) without running the adviser. The assembly "
+            "of solids is then not solved, and the model error is known only as bounds.",
+        ),
+    ] = None,
+    samples: Annotated[
+        int,
+        typer.Option(
+            "--samples",
+            metavar="COUNT",
+            min=40,
+            max=100_000,
+            help="Number of samples of the Latin hypercube.",
+        ),
+    ] = 128,
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="NUMBER", min=0, help="Seed of all random samples.")
+    ] = 0,
+    sobol: Annotated[
+        bool,
+        typer.Option(
+            "--sobol",
+            help="Also estimate Sobol indices (shares of the variance). This takes N (k + 2) "
+            "evaluations, N the largest power of two up to --samples, k the number of uncertain "
+            "values.",
+        ),
+    ] = False,
+    out: _OutFolder = None,
+    set_: SceneSettings = None,
+) -> None:
+    """Propagate the uncertainty of a scene's values to its reactions and stiffnesses.
+
+    The scene states under 'uncertainty' how each uncertain value is distributed. The adviser finds
+    the cheapest model level that is accurate enough; sensitivities and the 95 % band of each
+    result, from a Latin hypercube, are computed at that level and compared with its own error.
+
+    The exit status is 0 if the level is known to be within the tolerance, 1 if not.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.commands.uncertainty_page import uncertain
+
+        factors = parse_loads(load or ())
+        share = parse_tolerance(tolerance)
+        sobol_samples = 2 ** (samples.bit_length() - 1) if sobol else 0
+        return _run_on_scene(
+            "uncertainty",
+            scene,
+            f"{found.title}: uncertainty of the results",
+            out,
+            lambda case, run: uncertain(
+                case,
+                run,
+                found,
+                quantity or (),
+                factors,
+                share,
+                level,
+                samples,
+                seed,
+                sobol_samples,
+            ),
+        )
+
+    raise typer.Exit(guarded(work))
+
+
+def _run_on_scene(
+    command: str,
+    scene: str,
+    title: str,
+    out: Path | None,
+    study: Callable[[OldCase, Run], Results],
+) -> int:
+    """Run a study as a case of its own and print its outcome; returns the exit status."""
+    from fe_drivetrain.suite.case import OldCase, run_case
+
+    name = Path(scene).stem
+    case = OldCase(
+        name=f"{command}/{name}",
+        title=title,
+        source=f"the scene {name}",
+        run=lambda run: study(case, run),
+    )
+    folder = Path("reports", command, name) if out is None else out
+    with show_steps() as report:
+        results = run_case(case, folder.resolve(), report=report)
+    write(sys.stdout, results_text(results, folder / "report.html"))
+    return PASSED if results.passed else FAILED
