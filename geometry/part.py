@@ -16,7 +16,8 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.strict_yaml import no_truth_value, shown
+from fe_drivetrain.common.reading import fault_sentence
+from fe_drivetrain.common.strict_yaml import no_truth_value
 
 LENGTH_TOLERANCE = 1e-9
 """Two lengths closer than this (m) are the same length."""
@@ -76,39 +77,6 @@ def _extra(field: FieldInfo, key: str) -> str:
     return str(extra.get(key, "")) if isinstance(extra, dict) else ""
 
 
-_RANGES = {
-    "greater_than": "greater than {gt}",
-    "greater_than_equal": "at least {ge}",
-    "less_than": "less than {lt}",
-    "less_than_equal": "at most {le}",
-}
-
-
-def _sentence(owner: str, fields: dict[str, FieldInfo], error: ValidationError) -> str:
-    """First complaint of pydantic, as one sentence: object, value, allowed range, mend."""
-    # A misspelt key first: what is missing is often the same key, spelt right.
-    faults = error.errors(include_url=False)
-    first = min(faults, key=lambda fault: fault["type"] != "extra_forbidden")
-    path = ".".join(str(step) for step in first["loc"])
-    name = str(first["loc"][0]) if first["loc"] else ""
-    field = fields.get(name)
-    meaning = field.description if field is not None else ""
-    kind = first["type"]
-    if kind == "missing":
-        return f"{owner} lacks {path} ({meaning}): add it"
-    if kind == "extra_forbidden":
-        return f"{owner} has no {shown(path)}: use one of {', '.join(fields)}"
-    if kind in _RANGES:
-        allowed = _RANGES[kind].format(**first["ctx"])
-        if first["ctx"].get("ge") == SMALLEST:
-            allowed = f"greater than 0, at least {SMALLEST:g} m"
-        return f"{owner}: {path} is {shown(first['input'])} but must be {allowed}: give {meaning}"
-    message = str(first["msg"]).removeprefix("Value error, ").lower()
-    return f"{owner}: {path} is {shown(first['input'])}: {message}" + (
-        f": give {meaning}" if meaning else ""
-    )
-
-
 class Part(BaseModel):
     """Base of every part: a wrong value raises `InputError` with one sentence.
 
@@ -126,7 +94,7 @@ class Part(BaseModel):
         try:
             return handler(data)
         except ValidationError as error:
-            raise InputError(_sentence(cls.__name__, cls.model_fields, error)) from None
+            raise InputError(f"{cls.__name__}: {fault_sentence(error, cls)}") from None
 
     def assumptions(self) -> list[Assumption]:
         """List every dimension with its value, unit and source.

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.mesh.adaptivity import cell_sizes, marked, refined_sizes
-from fe_drivetrain.mesh.mesh import generate, volume
+from fe_drivetrain.mesh.generation import generate
+from fe_drivetrain.mesh.measures import volume
 
 TUBE = Shaft(front=-1.0, sections=(Section(length=2.0, outer_diameter=0.6, inner_diameter=0.2),))
 SIZES = MeshSizes(shaft=0.25, elements_per_turn=8)

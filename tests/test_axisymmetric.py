@@ -13,19 +13,21 @@ from fe_drivetrain.mesh.hexahedra import shaft_hexahedra
 from fe_drivetrain.revolution.harmonics import (
     along_sides,
     element_matrices,
-    end_stiffness,
     freedoms,
     harmonic_response,
     harmonic_solver,
     rigid_motions,
-    seat_stiffness,
-    stiffness_between_ends,
     stress_at,
     stresses,
     surface_loads,
     turn,
 )
 from fe_drivetrain.revolution.meridian_mesh import meridian
+from fe_drivetrain.revolution.rigid_seats import (
+    end_stiffness,
+    seat_stiffness,
+    stiffness_between_ends,
+)
 from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.solve.solid import solve_solid
 

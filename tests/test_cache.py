@@ -15,7 +15,7 @@ from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.report.results import Environment, Results, read_results
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
-from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite.case import OldCase as Case
 from fe_drivetrain.suite.case import Run, find_cases, run_case
 

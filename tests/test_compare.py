@@ -5,6 +5,7 @@ import pytest
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare import statistics as cp
+from fe_drivetrain.compare.comparison import compare
 
 NAMES, UNITS = ("Fy", "Fz", "My", "Mz"), ("N", "N", "N m", "N m")
 
@@ -191,7 +192,7 @@ def test_compare_is_every_statistic_of_every_history_and_quantity():
     rng = np.random.default_rng(8)
     r = rng.normal(1.0, 1.0, (3, 50, 4))
     m = 1.1 * r + rng.normal(0.0, 0.1, r.shape)
-    out = cp.compare(r, m, NAMES, UNITS)
+    out = compare(r, m, NAMES, UNITS)
     assert (out.names, out.units, out.samples) == (NAMES, UNITS, 50)
     a, b = np.moveaxis(r, 1, -1), np.moveaxis(m, 1, -1)
     slope, cov = cp.model_uncertainty(a, b)
@@ -219,7 +220,7 @@ def test_negligible_reference_counts_as_zero_in_its_quantity_only():
     rng = np.random.default_rng(1)
     r = rng.normal(1.0, 1.0, (2, 30, 2)) * [1e5, 1e-6]
     m = r * [1.01, 0.0]
-    out = cp.compare(r, m, ["Fz", "My"], ["N", "N m"], negligible=[0.0, 1.0])
+    out = compare(r, m, ["Fz", "My"], ["N", "N m"], negligible=[0.0, 1.0])
     for name in ("relative_scatter", "relative_error", "mean_percentage_error", "slope", "cov"):
         assert np.isnan(getattr(out, name)[:, 1]).all()
         assert np.isfinite(getattr(out, name)[:, 0]).all()
@@ -229,7 +230,7 @@ def test_negligible_reference_counts_as_zero_in_its_quantity_only():
 
 def test_a_reference_of_zero_is_undefined_without_being_told():
     r = np.zeros((1, 4, 1))
-    out = cp.compare(r, r + np.array([1.0, -1.0, 2.0, 0.0])[:, None], ["My"], ["N m"])
+    out = compare(r, r + np.array([1.0, -1.0, 2.0, 0.0])[:, None], ["My"], ["N m"])
     for name in ("relative_error", "mean_percentage_error", "correlation", "slope", "cov"):
         assert np.isnan(getattr(out, name)).all()
     assert out.rmse == pytest.approx(np.sqrt(1.5))
@@ -301,20 +302,20 @@ def test_bad_histories_are_named(statistic, r, m, says):
         (lambda: cp.by_group([1.0, np.nan], ["a", "a"]), "undefined"),
         (lambda: cp.by_group(1.0, []), "one label"),
         (lambda: cp.by_group([], []), "at least 1"),
-        (lambda: cp.compare(np.ones((5, 4)), np.ones((5, 4)), NAMES, UNITS), "histories, samples"),
+        (lambda: compare(np.ones((5, 4)), np.ones((5, 4)), NAMES, UNITS), "histories, samples"),
         (
-            lambda: cp.compare(np.ones((1, 5, 4)), np.ones((1, 5, 3)), NAMES, UNITS),
+            lambda: compare(np.ones((1, 5, 4)), np.ones((1, 5, 3)), NAMES, UNITS),
             "histories, samples",
         ),
-        (lambda: cp.compare(np.ones((1, 5, 4)), np.ones((1, 5, 4)), NAMES[:3], UNITS), "3 names"),
+        (lambda: compare(np.ones((1, 5, 4)), np.ones((1, 5, 4)), NAMES[:3], UNITS), "3 names"),
         (
-            lambda: cp.compare(np.ones((1, 5, 4)), np.ones((1, 5, 4)), NAMES, UNITS, [1.0, 2.0]),
+            lambda: compare(np.ones((1, 5, 4)), np.ones((1, 5, 4)), NAMES, UNITS, [1.0, 2.0]),
             "negligible",
         ),
-        (lambda: cp.compare(np.ones((1, 1, 4)), np.ones((1, 1, 4)), NAMES, UNITS), "at least 2"),
-        (lambda: cp.compare(np.ones((0, 5, 4)), np.ones((0, 5, 4)), NAMES, UNITS), "at least 1"),
+        (lambda: compare(np.ones((1, 1, 4)), np.ones((1, 1, 4)), NAMES, UNITS), "at least 2"),
+        (lambda: compare(np.ones((0, 5, 4)), np.ones((0, 5, 4)), NAMES, UNITS), "at least 1"),
         (
-            lambda: cp.compare(np.full((1, 5, 4), np.nan), np.ones((1, 5, 4)), NAMES, UNITS),
+            lambda: compare(np.full((1, 5, 4), np.nan), np.ones((1, 5, 4)), NAMES, UNITS),
             "reference holds",
         ),
     ],

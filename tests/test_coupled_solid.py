@@ -6,7 +6,8 @@ import pytest
 from fe_drivetrain.common.spatial import point_motions, rigid_motions
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces.constraints import fixed
-from fe_drivetrain.mesh.mesh import Mesh, generate
+from fe_drivetrain.mesh.generation import generate
+from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.solve.condensation import supported

@@ -387,13 +387,13 @@ generator: {inertia: 4.0}
     ("old", "new", "message"),
     [
         ("rotor: 100.0", "rotor: -1", "rotor is -1 but must be greater than 0"),
-        ("rotor: 100.0\n", "", "lacks rotor"),
+        ("rotor: 100.0\n", "", "rotor .inertia of the rotor, kg m.2. is missing"),
         ("ratio: 3.0", "ratio: 0.5", "stage 1: ParallelStage: ratio is 0.5 but must be greater"),
         ("ratio: 3.0", "ratio: 3.0, teeth: [60, 20]", "needs a ratio or the teeth, and not both"),
         ("ratio: 3.0, ", "", "needs a ratio or the teeth"),
         ("ratio: 3.0", "teeth: [20, 60]", "the larger first"),
         ("kind: parallel", "kind: worm", "stage 1: kind is 'worm' but must be one of planetary"),
-        ("mesh: 1e7", "mash: 1e7", "has no 'mash'"),
+        ("mesh: 1e7", "mash: 1e7", "unknown key 'mash'.*did you mean 'mesh'"),
         ("gear: 2.0", "gear: true", "truth value"),
         ("gear: 2.0", "gear: .nan", "stage 1: ParallelStage: gear is"),
         (

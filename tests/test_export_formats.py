@@ -18,7 +18,7 @@ from fe_drivetrain import export
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
-from fe_drivetrain.export.calculix_deck import ROUNDING, read_dat, run_calculix
+from fe_drivetrain.export.calculix_results import ROUNDING, read_dat
 from fe_drivetrain.export.formats import nastran
 from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
 from fe_drivetrain.export.formats.dmig import double
@@ -29,6 +29,7 @@ from fe_drivetrain.export.programs.calculix_runs import (
     frequencies_by_calculix,
     held,
 )
+from fe_drivetrain.export.programs.ccx import run_calculix
 from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level
 
@@ -149,7 +150,7 @@ def test_scipy_reads_matrix_market(tmp_path: Path, seed: int) -> None:
 def test_a_matrix_market_file_of_others_has_no_points(tmp_path: Path) -> None:
     path = tmp_path / "a.mtx"
     path.write_text("%%MatrixMarket matrix array real general\n1 1\n2.0\n")
-    with pytest.raises(InputError, match="does not say"):
+    with pytest.raises(InputError, match="does not state"):
         export.read(path, "mtx")
 
 
@@ -161,7 +162,7 @@ def test_a_matrix_market_file_of_others_has_no_points(tmp_path: Path) -> None:
         ("\n6 6\n", "\n6 6 6\n", "no Matrix Market file"),
         ("\n6 6\n", "\n6 6\n1.0 2.0\n", "no Matrix Market file"),
         ("array real", "array complex", "first line"),
-        ("% point 1", "% dot 1", "does not say"),
+        ("% point 1", "% dot 1", "does not state"),
     ],
 )
 def test_a_wrong_matrix_market_file_says_why(
@@ -240,7 +241,7 @@ def test_csv_is_one_table_with_labels(tmp_path: Path, shaft: Superelement) -> No
         ("stiffness,p0 uy,", "stiffness,p0 uz,", "line 1[0-9]: row 'p0 uz'"),
         ("stiffness,p0 ux,", "stiffness,p0 ux,x", "line 1[0-9]: could not convert"),
         ("mass,", "damping,", "matrices stiffness, damping"),
-        ("# level,", "# floor,", "does not say 'level'"),
+        ("# level,", "# floor,", "does not state 'level'"),
         ("# end", "", "cut off"),
         ("p0 at 0.0 0.0", "p0 at 0.0", "positions of shape"),
         ("# supports,in the stiffness", "# supports,perhaps", "perhaps"),

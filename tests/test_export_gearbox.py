@@ -16,7 +16,7 @@ from fe_drivetrain.export.formats.elastodyn import Torsion
 from fe_drivetrain.export.from_scene import unit_superelement
 from fe_drivetrain.export.seat_superelements import seats_superelement
 from fe_drivetrain.export.superelement import Origin, Superelement
-from fe_drivetrain.scene.scene import library_scene
+from fe_drivetrain.scene.reading import library_scene
 
 TURBINE = """\
 # a turbine, with a comment
@@ -200,7 +200,7 @@ def test_subvar_has_each_entry_once_and_keeps_every_digit(tmp_path: Path) -> Non
     ("old", "new", "message"),
     [
         ("!file", "! file", "must state its version"),
-        ("$_casing_K_3_9", "$_casing_K_3_99", "lacks the variable 'casing_K_3_9'"),
+        ("$_casing_K_3_9", "$_casing_K_3_99", "has no variable 'casing_K_3_9'"),
         ("str= '1.5'", "str= '1.5", "no SIMPACK|superelement|casing"),
         ("_M_2_2, str= '2.0'", "_M_2_2, str= '$_other'", "no number"),
     ],

@@ -22,7 +22,8 @@ from fe_drivetrain.export.programs import exudyn_system, ross_rotor
 from fe_drivetrain.fidelity.bearing_units import scene_supports
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.shafts import meridian_shaft, reference_points, shaft_meridian
-from fe_drivetrain.scene.scene import Scene, library_scene
+from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import Condensed, on_supports, supported
 
 #: Polynomial order of the meridians here: identities hold at any.

@@ -26,11 +26,13 @@ from fe_drivetrain.commands.app import main
 from fe_drivetrain.commands.settings import parse_settings
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry.part import LARGEST, SMALLEST
-from fe_drivetrain.hub_loads.histories import LARGEST_LOAD, read_hub_loads
+from fe_drivetrain.hub_loads.files import read_hub_loads
+from fe_drivetrain.hub_loads.histories import LARGEST_LOAD
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.report.results import Environment, Results, judge
 from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.scene.scene import Scene, change_scene, parse_scene, read_scene
+from fe_drivetrain.scene.reading import change_scene, parse_scene, read_scene
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import OldCase as Case
 from fe_drivetrain.suite.case import Run

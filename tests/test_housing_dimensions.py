@@ -13,7 +13,7 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     WIDTH,
 )
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.scene.scene import change_scene, library_scene
+from fe_drivetrain.scene.reading import change_scene, library_scene
 
 PLATE = np.array([0.14, 0.11, 0.5, 0.95, 0.1])
 

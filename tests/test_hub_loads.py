@@ -14,14 +14,10 @@ from hypothesis.extra.numpy import arrays
 
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.hub_loads.histories import (
-    LoadHistory,
-    read_csv,
-    read_hub_loads,
-    read_openfast,
-    turn_to_fixed,
-    write_csv,
-)
+from fe_drivetrain.hub_loads.csv_table import read_csv, write_csv
+from fe_drivetrain.hub_loads.files import read_hub_loads
+from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.openfast import read_openfast, turn_to_fixed
 
 REAL_FILE = Path(__file__).parents[2] / "shared" / "data" / "openfast" / "fastout_allnodes.outb"
 needs_real_file = pytest.mark.skipif(
@@ -197,19 +193,19 @@ def test_real_file_weighs_what_its_rotor_weighs() -> None:
 def test_real_file_gage_and_tip_moments_tell_one_story() -> None:
     from openfast_io.FAST_output_reader import load_binary_output
 
-    from fe_drivetrain.hub_loads import histories
+    from fe_drivetrain.hub_loads import openfast
 
     data, info, _ = load_binary_output(str(REAL_FILE))
     channels = {
-        name.lower(): histories._Channel(name, unit, values)
+        name.lower(): openfast.Channel(name, unit, values)
         for name, unit, values in zip(
             info["attribute_names"], info["attribute_units"], data.T, strict=True
         )
     }
-    _, at_tip = histories._loads_from_channels("real", channels)
+    _, at_tip = openfast._loads_from_channels("real", channels)
     only_gage = {n: c for n, c in channels.items() if not n.startswith("lsstipm")}
     # ShftGagL of the NREL 5 MW model is 1.912 m (Jonkman 2009).
-    _, from_gage = histories._loads_from_channels("real", only_gage, gage_distance=1.912)
+    _, from_gage = openfast._loads_from_channels("real", only_gage, gage_distance=1.912)
     # Each channel is packed in 16 bits; a few steps of the widest are the most they can differ.
     step = 1e3 * np.ptp(channels["lssgagmya"].values) / 65535.0
     np.testing.assert_allclose(from_gage, at_tip, atol=4.0 * step)

@@ -15,7 +15,7 @@ from fe_drivetrain.operator import elasticity, incompatible, incompressible, str
 from fe_drivetrain.operator.loads import pressure, traction_loads
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.scene.materials import HIGHEST_POISSON_RATIO, Material
-from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.solve.solid import solve_solid
 
 KINDS = [

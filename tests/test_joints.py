@@ -13,7 +13,8 @@ from fe_drivetrain.interfaces.joints import in_series, joint_stiffness, roller_l
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.scene import Scene, change_scene
+from fe_drivetrain.scene.reading import change_scene
+from fe_drivetrain.scene.scene import Scene
 
 HELD: list[Any] = ["rigid", "rigid", "rigid"]
 ROWS = [{"x": -0.05, "contact_angle": -20.0}, {"x": 0.05, "contact_angle": 20.0}]

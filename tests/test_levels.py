@@ -100,18 +100,18 @@ def test_what_a_level_does_not_have_is_said(bonded: Scene, assembly: LevelModel)
 
 def test_advice_stops_where_statics_decides() -> None:
     advice = advise(coarse_scene("spherical"), Quantity("main_bearing.Fz"), 1e-3)
-    assert [rung.model.level for rung in advice.rungs] == [0]
+    assert [result.model.level for result in advice.results] == [0]
     assert advice.chosen == 0
 
 
 def test_advice_goes_to_the_top_and_ranks_by_error(bonded: Scene) -> None:
     advice = advise(bonded, Quantity("main_bearing.My"), 0.2)
-    errors = {rung.model.title: rung.error for rung in advice.rungs}
+    errors = {result.model.title: result.error for result in advice.results}
     assert (
         errors["Timoshenko beam, housings as springs"] < errors["Timoshenko beam, rigid housings"]
     )
     assert advice.chosen is not None
-    assert advice.rungs[advice.chosen].model.level == 1
+    assert advice.results[advice.chosen].model.level == 1
 
 
 def test_a_quantity_that_is_zero_is_refused() -> None:

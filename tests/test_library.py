@@ -12,8 +12,9 @@ from fe_drivetrain.cases.fidelity.published_torsion import (
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.geometry import build, gmsh_session
-from fe_drivetrain.revolution.harmonics import end_stiffness
-from fe_drivetrain.scene.scene import COMPONENT_KINDS, library_scene
+from fe_drivetrain.revolution.rigid_seats import end_stiffness
+from fe_drivetrain.scene.component import COMPONENTS
+from fe_drivetrain.scene.reading import library_scene
 
 TEXTS = {
     file.name.removesuffix(".yaml"): file.read_text("utf-8")
@@ -22,7 +23,7 @@ TEXTS = {
 DRIVETRAINS = sorted(
     name
     for name, text in TEXTS.items()
-    if not re.search(rf"^({'|'.join(COMPONENT_KINDS)}):", text, re.MULTILINE)
+    if not re.search(rf"^({'|'.join(COMPONENTS)}):", text, re.MULTILINE)
 )
 #: Those of public turbines: every number of theirs has its place in the header.
 PUBLIC = (

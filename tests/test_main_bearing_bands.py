@@ -12,7 +12,7 @@ from fe_drivetrain.cases.main_bearing.bands import (
     LEAST_ORDER,
     Series,
 )
-from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite.case import Run
 
 

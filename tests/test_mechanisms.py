@@ -9,10 +9,10 @@ from fe_drivetrain.cases.main_bearing import (
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.mechanisms import find_mechanisms, named_bodies, weak_restraints
-from fe_drivetrain.mesh.mesh import quality
+from fe_drivetrain.mesh.measures import quality
 from fe_drivetrain.response.model import build_model
 from fe_drivetrain.response.unit_loads import unit_load_response
-from fe_drivetrain.scene.scene import change_scene
+from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite.case import Run
 
 

@@ -19,24 +19,20 @@ from fe_drivetrain.geometry import (
     build,
     gmsh_session,
 )
-from fe_drivetrain.mesh.mesh import (
+from fe_drivetrain.mesh.files import write
+from fe_drivetrain.mesh.generation import GMSH_TO_VTK, generate, relax_flat_cells
+from fe_drivetrain.mesh.measures import (
     CUBIC,
-    EDGES,
-    GMSH_TO_VTK,
-    Mesh,
     area,
     area_vectors,
-    boundary,
-    generate,
     inverted_cells,
     jacobians,
-    part_of,
     quality,
-    relax_flat_cells,
     scaled_jacobians,
     volume,
-    write,
 )
+from fe_drivetrain.mesh.mesh import Mesh, boundary, part_of
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 
 COARSE = MeshSizes(shaft=0.2, bearing=0.1, housing=0.12)
 TURN = COARSE.elements_per_turn
@@ -445,7 +441,9 @@ REFERENCE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 
 def one_cell(shift=0.0, seed=0):
     """The reference tetrahedron, its ten nodes moved at random by up to `shift`."""
-    nodes = np.concatenate([REFERENCE, [(REFERENCE[a] + REFERENCE[b]) / 2 for a, b in EDGES]])
+    nodes = np.concatenate(
+        [REFERENCE, [(REFERENCE[a] + REFERENCE[b]) / 2 for a, b in TETRAHEDRON_EDGES]]
+    )
     nodes = nodes + np.random.default_rng(seed).uniform(-shift, shift, nodes.shape)
     return Mesh(nodes, np.arange(10)[None], np.zeros(1, dtype=int), ("shaft",), {}, {})
 
@@ -542,7 +540,7 @@ def folded():
     cells, nodes, mids = [], list(corners), {}
     for tetrahedron in ((0, 1, 2, 3), (1, 2, 3, 4)):
         cell = list(tetrahedron)
-        for a, b in EDGES:
+        for a, b in TETRAHEDRON_EDGES:
             edge = tuple(sorted((tetrahedron[a], tetrahedron[b])))
             if edge not in mids:
                 mids[edge] = len(nodes)
@@ -572,7 +570,7 @@ def test_relaxing_leaves_seats_and_joints_exactly_where_they_are():
 
 
 def test_elements_that_stay_inverted_are_refused_with_their_place(monkeypatch):
-    monkeypatch.setattr("fe_drivetrain.mesh.mesh.inverted_cells", lambda mesh: np.array([0]))
+    monkeypatch.setattr("fe_drivetrain.mesh.generation.inverted_cells", lambda mesh: np.array([0]))
     with pytest.raises(InputError, match=r"part 'shaft': 1 of its .* near \(.*\) m.*reduce"):
         generate(plain_shaft(), sizes=COARSE)
 

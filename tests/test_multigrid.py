@@ -7,7 +7,7 @@ from scipy import linalg
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces.constraints import eliminate, fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh.blocks import brick
-from fe_drivetrain.mesh.mesh import generate
+from fe_drivetrain.mesh.generation import generate
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.solve import direct_solvers, multigrid, solvers

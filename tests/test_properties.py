@@ -16,7 +16,7 @@ from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces.constraints import fixed
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.operator.loads import traction_loads
-from fe_drivetrain.revolution.harmonics import end_stiffness
+from fe_drivetrain.revolution.rigid_seats import end_stiffness
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.solve.solid import Static, solve_solid
 

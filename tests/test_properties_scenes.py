@@ -9,11 +9,14 @@ from hypothesis import strategies as st
 
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.mesh import Mesh, inverted_cells, quality, volume
+from fe_drivetrain.common.reading import validated
+from fe_drivetrain.mesh.measures import inverted_cells, quality, volume
+from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.scene.scene import Scene, change_scene, validated
+from fe_drivetrain.scene.reading import change_scene
+from fe_drivetrain.scene.scene import Scene
 
 few = settings(max_examples=max(2, settings.default.max_examples // 15))  # type: ignore[union-attr]
 hundredths = st.integers(20, 40).map(lambda x: x / 100.0)

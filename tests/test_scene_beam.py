@@ -8,7 +8,7 @@ from fe_drivetrain.beam import shaft
 from fe_drivetrain.beam.closed_forms import pinned_model, torsional_spring_model
 from fe_drivetrain.beam.of_scene import beam_of_scene, main_bearing_beam
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.scene.scene import change_scene, library_scene
+from fe_drivetrain.scene.reading import change_scene, library_scene
 
 PINNED = (np.inf, np.inf, np.inf, 0.0, 0.0, 0.0)
 

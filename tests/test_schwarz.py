@@ -7,8 +7,8 @@ from scipy import linalg
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces.constraints import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.mesh.generation import generate
 from fe_drivetrain.mesh.hexahedra import shaft_hexahedra
-from fe_drivetrain.mesh.mesh import generate
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.solve import cost_model, direct_solvers, multigrid, schwarz, solvers

@@ -15,7 +15,7 @@ from fe_drivetrain.response.secant_stiffness import (
     secant,
     statement,
 )
-from fe_drivetrain.scene.scene import library_scene
+from fe_drivetrain.scene.reading import library_scene
 
 DIAGONAL = np.array([2e9, 3e9, 5e9, 4e8, 6e8, 9e8])
 

@@ -70,7 +70,7 @@ def test_energy_estimator_scales_with_the_housing_modulus(bonded_model):
         "bearing_units.0.bearing.material": "steel2",
         "bearing_units.0.housing.material": "iron2",
     }
-    from fe_drivetrain.scene.scene import change_scene
+    from fe_drivetrain.scene.reading import change_scene
 
     found = []
     for changes in ({}, twice):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.compare.statistics import compare
-from fe_drivetrain.compare.streaming import BLOCK, compare_streamed, moments
+from fe_drivetrain.compare.comparison import BLOCK, compare, compare_streamed
+from fe_drivetrain.compare.moments import moments
 
 NAMES, UNITS = ("Fy", "My"), ("N", "N m")
 

@@ -17,7 +17,7 @@ from fe_drivetrain.export.from_scene import (
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.shafts import meridian_shaft
-from fe_drivetrain.scene.scene import library_scene
+from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.solve.condensation import keep_points
 
 READABLE = [name for name in export.FORMATS if hasattr(export.format_module(name), "read")]

@@ -5,7 +5,8 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.scene.scene import Scene, change_scene
+from fe_drivetrain.scene.reading import change_scene
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.uncertainty.sampling import (
     Samples,
     nominal_value,
@@ -171,5 +172,7 @@ def test_a_sample_that_is_no_scene_names_what_is_wrong() -> None:
             "uncertainty": {"shaft.sections.0.inner_diameter": {"uniform": 0.9}},
         },
     )
-    with pytest.raises(InputError, match=r"within its uncertainty the scene cannot be: .*inner_di"):
+    with pytest.raises(
+        InputError, match=r"within its uncertainty gives no valid scene: .*inner_di"
+    ):
         sample(scene, torsion)

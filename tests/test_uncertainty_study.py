@@ -32,7 +32,8 @@ from fe_drivetrain.fidelity.quantities import (
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import LOADS, Model, build_model
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.scene import Scene, change_scene, library_scene
+from fe_drivetrain.scene.reading import change_scene, library_scene
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.uncertainty import resolver as resolver_module
 from fe_drivetrain.uncertainty.input_study import Study, study
 from fe_drivetrain.uncertainty.resolver import Resolver, shaft_content, unit_content

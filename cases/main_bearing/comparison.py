@@ -25,7 +25,7 @@ from fe_drivetrain.cases.main_bearing.study import (
     Tilt,
 )
 from fe_drivetrain.common import GRAVITY, Floats
-from fe_drivetrain.compare import statistics
+from fe_drivetrain.compare import compare, statistics
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Run
 
@@ -273,7 +273,7 @@ def _mean_error(reference: Floats, found: Floats) -> float:
 def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Row]:
     """Usable as a model uncertainty: means over all histories, one row a quantity."""
     columns = [COMPONENT[q] for q in QUANTITIES]
-    result = statistics.compare(
+    result = compare(
         reference[..., columns],
         model[..., columns],
         QUANTITIES,

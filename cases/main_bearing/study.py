@@ -8,7 +8,18 @@ import numpy as np
 
 from fe_drivetrain.common import FORCES, Floats, InputError
 from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
-from fe_drivetrain.report import AssumptionRow, Image, Section, Table, Text, Verdict, judge
+from fe_drivetrain.report import (
+    AssumptionRow,
+    Image,
+    NoPictureError,
+    Section,
+    Table,
+    Text,
+    Verdict,
+    judge,
+    picture_of_deformation,
+    picture_of_model,
+)
 from fe_drivetrain.response import (
     LOADS,
     PLANES,
@@ -357,16 +368,14 @@ def picture_section(run: Run, solved: Solved, loads: Floats, what: str) -> Secti
     what
         The loads in words.
     """
-    from fe_drivetrain.report import pictures
-
     items: list[Any] = []
     with run.step("pictures"):
         try:
-            pictures.picture_of_model(solved.model, run.folder / "model.png")
-            factor = pictures.picture_of_deformation(
+            picture_of_model(solved.model, run.folder / "model.png")
+            factor = picture_of_deformation(
                 solved.model, solved.response, loads, run.folder / "deformed.png"
             )
-        except pictures.NoPictureError as reason:
+        except NoPictureError as reason:
             items.append(Text(text=f"No picture: {reason}"))
         else:
             items += [

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.fidelity.ablation import Effect, effects
-from fe_drivetrain.fidelity.adviser import Advice, Quantity, Rung, advise
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, Text, judge
 from fe_drivetrain.scene.scene import Scene
@@ -31,17 +31,17 @@ def ladder(advice: Advice) -> Section:
     Section
     """
     rows: list[list[Cell]] = []
-    for number, rung in enumerate(advice.rungs):
-        model = rung.model
+    for number, result in enumerate(advice.results):
+        model = result.model
         rows.append(
             [
                 f"{model.level} {model.title}",
-                _value(rung),
-                _percent(rung.error),
+                _value(result),
+                _percent(result.error),
                 _percent(advice.step(number)),
-                _percent(rung.estimate),
-                rung.seconds,
-                advice.top.seconds / rung.seconds,
+                _percent(result.estimate),
+                result.seconds,
+                advice.top.seconds / result.seconds,
                 "chosen" if number == advice.chosen else "",
                 "; ".join(model.neglects) or "nothing in this scene",
             ]
@@ -131,18 +131,18 @@ _EACH_LOAD = (
 
 
 def _against_time(advice: Advice) -> Chart:
-    known = [rung for rung in advice.rungs if np.isfinite(rung.error)]
+    known = [result for result in advice.results if np.isfinite(result.error)]
     traces: list[Any] = [
         trace(
-            f"level {rung.model.level}, {rung.model.title}",
-            [rung.seconds],
-            [max(100 * (rung.error if rung is not advice.top else rung.estimate), _LEAST)],
+            f"level {result.model.level}, {result.model.title}",
+            [result.seconds],
+            [max(100 * (result.error if result is not advice.top else result.estimate), _LEAST)],
             points=True,
-            marker={"size": 14 if rung is _chosen(advice) else 9},
+            marker={"size": 14 if result is _chosen(advice) else 9},
         )
-        for rung in known
+        for result in known
     ]
-    times = [rung.seconds for rung in known]
+    times = [result.seconds for result in known]
     limit = 100 * advice.tolerance
     traces.append(
         trace("tolerance", [min(times), max(times)], [limit, limit], line={"dash": "dash"})
@@ -157,12 +157,14 @@ def _against_time(advice: Advice) -> Chart:
     )
 
 
-def _chosen(advice: Advice) -> Rung | None:
-    return None if advice.chosen is None else advice.rungs[advice.chosen]
+def _chosen(advice: Advice) -> LevelResult | None:
+    return None if advice.chosen is None else advice.results[advice.chosen]
 
 
-def _value(rung: Rung) -> Cell:
-    value = float(rung.values[0]) if len(rung.values) == 1 else float(np.linalg.norm(rung.values))
+def _value(result: LevelResult) -> Cell:
+    value = (
+        float(result.values[0]) if len(result.values) == 1 else float(np.linalg.norm(result.values))
+    )
     return value if np.isfinite(value) else None
 
 
@@ -202,15 +204,15 @@ def advised(
     with run.step("model levels"):
         advice = advise(scene, quantity, tolerance, to_the_top, run.report)
     sections = [ladder(advice)]
-    level = 2 if advice.chosen is not None and advice.rungs[advice.chosen].model.level == 2 else 1
+    level = 2 if advice.chosen is not None and advice.results[advice.chosen].model.level == 2 else 1
     if advice.springs:
         with run.step("details"):
             found = effects(scene, quantity, level, advice.springs, run.report)
         sections.append(tornado(advice, f"{level} with housings as springs", found))
     summary = [advice.sentence()]
-    if advice.chosen is not None and advice.rungs[advice.chosen].model.neglects:
-        summary.append(f"It neglects {', '.join(advice.rungs[advice.chosen].model.neglects)}.")
-    known = advice.top if advice.chosen is None else advice.rungs[advice.chosen]
+    if advice.chosen is not None and advice.results[advice.chosen].model.neglects:
+        summary.append(f"It neglects {', '.join(advice.results[advice.chosen].model.neglects)}.")
+    known = advice.top if advice.chosen is None else advice.results[advice.chosen]
     uncertain = (
         known.estimate
         if known.estimate == 0.0 or known is advice.top
@@ -233,14 +235,14 @@ def advised(
         figures={
             "rungs": [
                 {
-                    "level": rung.model.level,
-                    "title": rung.model.title,
-                    "values": rung.values.tolist(),
-                    "seconds": rung.seconds,
-                    "estimate": None if np.isnan(rung.estimate) else rung.estimate,
-                    "error": None if np.isnan(rung.error) else rung.error,
+                    "level": result.model.level,
+                    "title": result.model.title,
+                    "values": result.values.tolist(),
+                    "seconds": result.seconds,
+                    "estimate": None if np.isnan(result.estimate) else result.estimate,
+                    "error": None if np.isnan(result.error) else result.error,
                 }
-                for rung in advice.rungs
+                for result in advice.results
             ]
         },
     )

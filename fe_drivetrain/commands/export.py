@@ -15,7 +15,7 @@ from fe_drivetrain.commands.scenes import named_scene_or_component
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.processes import hold_threads
+from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
     from fe_drivetrain.export.superelement import Superelement
@@ -236,7 +236,7 @@ def _write_model(found: Scene | Component, out: Path) -> str:
     """Write the whole model, or the mesh, as the ending of the file says."""
     from fe_drivetrain.export.calculix_deck import write_inp
     from fe_drivetrain.fidelity.component_solid import component_mesh
-    from fe_drivetrain.mesh.mesh import write as write_mesh
+    from fe_drivetrain.mesh.files import write as write_mesh
     from fe_drivetrain.response.model import build_model, mesh_scene
     from fe_drivetrain.scene.scene import Scene
 

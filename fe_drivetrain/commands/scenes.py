@@ -30,7 +30,7 @@ def named_scene(name: str, changes: Mapping[str, Any]) -> Scene:
     InputError
         There is no such scene, it is a component, or a value is wrong.
     """
-    from fe_drivetrain.scene.scene import change_scene, library_scene, read_scene
+    from fe_drivetrain.scene.reading import change_scene, library_scene, read_scene
 
     if _is_file(name):
         return read_scene(name, changes)
@@ -39,10 +39,10 @@ def named_scene(name: str, changes: Mapping[str, Any]) -> Scene:
 
 def named_scene_or_component(name: str, changes: Mapping[str, Any]) -> Scene | Component:
     """The scene or component in a file or of the library; see `named_scene`."""
-    from fe_drivetrain.scene.component import is_component, parse_component
-    from fe_drivetrain.scene.scene import file_text, library_text
+    from fe_drivetrain.common.reading import read_text
+    from fe_drivetrain.scene.reading import is_component, library_text, parse_component
 
-    text = file_text(name) if _is_file(name) else library_text(name)
+    text = read_text(name, "scene") if _is_file(name) else library_text(name)
     return (
         parse_component(text, changes, name) if is_component(text) else named_scene(name, changes)
     )

@@ -16,7 +16,7 @@ from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, T
 from fe_drivetrain.scene.scene import Scene, Spread
 from fe_drivetrain.suite.case import OldCase as Case
 from fe_drivetrain.suite.case import Run
-from fe_drivetrain.uncertainty.input_study import Study, level_error, rung_of, study
+from fe_drivetrain.uncertainty.input_study import Study, level_error, result_at, study
 from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
 
 _BINS = 16
@@ -203,15 +203,15 @@ def ladder(found: Study) -> Section:
     """
     rows: list[list[Cell]] = []
     for advice in found.advices:
-        for rung in advice.rungs:
+        for result in advice.results:
             rows.append(
                 [
                     advice.quantity.name,
-                    f"{rung.model.level} {rung.model.title}",
-                    _percent(rung.error),
-                    _percent(rung.estimate),
-                    rung.seconds,
-                    "sampled" if rung is rung_of(advice, found.level) else "",
+                    f"{result.model.level} {result.model.title}",
+                    _percent(result.error),
+                    _percent(result.estimate),
+                    result.seconds,
+                    "sampled" if result is result_at(advice, found.level) else "",
                 ]
             )
     table = Table(
@@ -540,9 +540,9 @@ def _summary(found: Study) -> list[str]:
 
 
 def _verdict(advice: Advice, level: int, tolerance: float) -> Verdict:
-    rung = rung_of(advice, level)
+    result = result_at(advice, level)
     return judge(
-        f"{advice.quantity.name}: error of level {level}, {rung.model.title}",
+        f"{advice.quantity.name}: error of level {level}, {result.model.title}",
         level_error(advice, level),
         0.0,
         tolerance=tolerance,

@@ -11,10 +11,10 @@ from .components import MOTIONS as MOTIONS
 from .components import STRESSES as STRESSES
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
-from .processes import CORES_VARIABLE as CORES_VARIABLE
-from .processes import Report as Report
-from .processes import cores as cores
-from .processes import silent as silent
+from .interpreter import run_python as run_python
+from .processes import Processes as Processes
+from .progress import Progress as Progress
+from .progress import silent as silent
 from .scaling import diagonal_roots as diagonal_roots
 from .scaling import largest_difference as largest_difference
 from .scaling import least_eigenvalue as least_eigenvalue
@@ -27,3 +27,5 @@ from .spatial import resultant as resultant
 from .spatial import rigid_motions as rigid_motions
 from .spatial import stiffness_transport as stiffness_transport
 from .spatial import wrench_transport as wrench_transport
+from .threads import CORES_VARIABLE as CORES_VARIABLE
+from .threads import cores as cores

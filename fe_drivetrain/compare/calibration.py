@@ -3,7 +3,7 @@
 Stiffnesses are nearly products of powers of dimensions, so logs of results are taken as a low-order
 polynomial of logs of dimensions. A finite-element result jumps a little from one mesh to the next,
 by more than a small step of a dimension changes it: derivatives come from the surface, which
-averages over many meshes, and the model itself is only asked how far the surface is off (output
+averages over many meshes, and the model itself only gives the error of the surface (output
 space mapping: Bandler et al. 2004, IEEE Trans. Microwave Theory Tech. 52, 337-361).
 """
 
@@ -202,12 +202,13 @@ def calibrated(
 ) -> Calibrated:
     """Dimensions (d,) for which the model itself gives what is wanted.
 
-    Each round asks the model how far the surface is off there and solves for as much more or less.
+    Each round evaluates the error of the surface there with the model, and solves for results
+    shifted by it.
 
     Parameters
     ----------
     evaluate
-        The model, dear.
+        The model, expensive.
     surface
         Its surface, or that of a coarser one.
     start, free, wanted, low, high

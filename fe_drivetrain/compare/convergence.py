@@ -35,7 +35,7 @@ SOLVER_ROUND_OFF = 1e-8
 
 Behaviour = Literal["monotone", "oscillatory", "divergent", "converged"]
 
-#: Orders that are looked for: below, a series as good as stands still; above, the last difference
+#: Orders that are looked for: below, a series hardly changes; above, the last difference
 #: is small by chance.
 ORDERS = 0.2, 8.0
 

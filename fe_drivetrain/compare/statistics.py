@@ -1,4 +1,4 @@
-"""How far a model is from a reference, over load histories.
+"""Error of a model against a reference, over load histories.
 
 Every statistic takes `reference` and `model` of one shape and works along the last axis, the
 samples; the axes before it are histories, quantities or whatever they are. The difference is
@@ -61,7 +61,7 @@ def relative_scatter(reference: ArrayLike, model: ArrayLike) -> Floats:
 def relative_error(reference: ArrayLike, model: ArrayLike) -> Floats:
     """Mean absolute difference over mean absolute reference, a fraction, (..., n) -> (...).
 
-    The robust neighbour of `mean_percentage_error`: every newton counts alike, zero crossings do
+    The robust neighbour of `mean_percentage_error`: every newton counts equally, zero crossings do
     no harm. NaN for a reference that is zero throughout.
     """
     r, m = _pair(reference, model)
@@ -225,148 +225,6 @@ def by_group(values: ArrayLike, groups: Sequence[Hashable]) -> GroupStatistics:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
-    """Every statistic of a model against a reference; arrays (N, k) by history and quantity.
-
-    Parameters
-    ----------
-    names, units : tuple of str, (k,)
-        Of the quantities.
-    samples : int
-        Per history.
-    reference_rms, rmse, bias : ndarray
-        In the quantity's unit.
-    relative_scatter, relative_error : ndarray
-        Fractions of the reference's rms and of its mean magnitude.
-    mean_percentage_error : ndarray
-        Percent.
-    excluded_share : ndarray
-        Share of the samples that the percentage leaves out.
-    correlation : ndarray
-        Pearson.
-    slope, cov : ndarray
-        Model uncertainty, reference over model.
-    """
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    samples: int
-    reference_rms: Floats
-    rmse: Floats
-    bias: Floats
-    relative_scatter: Floats
-    relative_error: Floats
-    mean_percentage_error: Floats
-    excluded_share: Floats
-    correlation: Floats
-    slope: Floats
-    cov: Floats
-
-    def index(self, name: str) -> int:
-        """Column of a quantity.
-
-        Raises
-        ------
-        InputError
-            If there is no such quantity.
-        """
-        if name not in self.names:
-            raise InputError(
-                f"quantity '{name}' is not compared: choose one of {', '.join(self.names)}."
-            )
-        return self.names.index(name)
-
-
-def compare(
-    reference: ArrayLike,
-    model: ArrayLike,
-    names: Sequence[str],
-    units: Sequence[str],
-    negligible: float | Sequence[float] = 0.0,
-    exclude_below: float = 1e-3,
-) -> Comparison:
-    """All statistics of each history and quantity.
-
-    Parameters
-    ----------
-    reference, model : array_like, (N, n, k)
-        N histories of n samples of k quantities.
-    names, units : sequence of str, (k,)
-        Such as "Fy" and "N".
-    negligible : float or (k,)
-        A reference whose rms is at or below this, in the quantity's unit, counts as zero: its
-        relative statistics, correlation and model uncertainty are NaN rather than a ratio of
-        rounding errors. Give it for the moments of a spherical bearing; 0 leaves only a reference
-        that is zero throughout.
-    exclude_below : float
-        See `mean_percentage_error`.
-
-    Returns
-    -------
-    Comparison
-
-    Raises
-    ------
-    InputError
-        If a shape, name or unit does not fit, a value is not finite, or there are fewer than 2
-        samples.
-    """
-    r, m = np.asarray(reference, dtype=float), np.asarray(model, dtype=float)
-    if r.ndim != 3 or r.shape != m.shape:
-        raise InputError(
-            f"reference {r.shape} and model {m.shape} must have one shape (histories, samples, "
-            "quantities): add or reorder axes."
-        )
-    if not len(r):
-        raise InputError("0 histories to compare: give at least 1.")
-    if not len(names) == len(units) == r.shape[2]:
-        raise InputError(
-            f"{len(names)} names and {len(units)} units for {r.shape[2]} quantities: give one of "
-            "each for every quantity."
-        )
-    try:
-        limit = np.broadcast_to(np.asarray(negligible, dtype=float), r.shape[2:])
-    except ValueError:
-        raise InputError(
-            f"negligible of shape {np.shape(negligible)} must be one value or {r.shape[2]}: give "
-            "one for each quantity."
-        ) from None
-    rows = []
-    # One history at a time stays in the cache and never copies the whole data.
-    for i in range(r.shape[0]):
-        a, b = _pair(np.ascontiguousarray(r[i].T), np.ascontiguousarray(m[i].T))
-        size = _rms(a)
-        relative = np.array(
-            [
-                relative_scatter(a, b),
-                relative_error(a, b),
-                mean_percentage_error(a, b, exclude_below),
-                correlation(a, b),
-                *model_uncertainty(a, b),
-            ]
-        )
-        relative[:, size <= limit] = np.nan
-        rows.append([size, rmse(a, b), bias(a, b), excluded_share(a, exclude_below), *relative])
-    table = np.moveaxis(np.array(rows, dtype=float), 1, 0)
-    scale, error, mean, left_out, scatter, share, percent, pearson, slope, cov = table
-    return Comparison(
-        names=tuple(names),
-        units=tuple(units),
-        samples=r.shape[1],
-        reference_rms=scale,
-        rmse=error,
-        bias=mean,
-        relative_scatter=scatter,
-        relative_error=share,
-        mean_percentage_error=percent,
-        excluded_share=left_out,
-        correlation=pearson,
-        slope=slope,
-        cov=cov,
-    )
-
-
 def _pair(reference: ArrayLike, model: ArrayLike) -> tuple[Floats, Floats]:
     r, m = np.asarray(reference, dtype=float), np.asarray(model, dtype=float)
     if r.shape != m.shape or r.ndim < 1:
@@ -407,12 +265,17 @@ def _centred(values: Floats) -> Floats:
     return np.asarray(centred)
 
 
-def _kept(reference: Floats, exclude_below: float) -> NDArray[np.bool_]:
+def check_excluded(exclude_below: float) -> None:
+    """Refuse an `exclude_below` that is not a share, see `mean_percentage_error`."""
     if not 0.0 <= exclude_below < 1.0:
         raise InputError(
             f"exclude_below = {exclude_below:g} must be at least 0 and below 1, as a share of the "
             "reference's rms: 0.001 is usual."
         )
+
+
+def _kept(reference: Floats, exclude_below: float) -> NDArray[np.bool_]:
+    check_excluded(exclude_below)
     return np.asarray(np.abs(reference) > exclude_below * _rms(reference)[..., None])
 
 

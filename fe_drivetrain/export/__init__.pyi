@@ -1,10 +1,8 @@
-from .calculix_deck import ROUNDING as ROUNDING
-from .calculix_deck import DeckResponse as DeckResponse
-from .calculix_deck import find_calculix as find_calculix
-from .calculix_deck import four_point_model as four_point_model
-from .calculix_deck import read_response as read_response
-from .calculix_deck import run_calculix as run_calculix
 from .calculix_deck import write_inp as write_inp
+from .calculix_integration import four_point_model as four_point_model
+from .calculix_results import ROUNDING as ROUNDING
+from .calculix_results import DeckResponse as DeckResponse
+from .calculix_results import read_response as read_response
 from .craig_bampton import craig_bampton_shaft as craig_bampton_shaft
 from .craig_bampton import free_frequencies as free_frequencies
 from .files import FORMATS as FORMATS
@@ -25,6 +23,8 @@ from .modes import natural_frequencies as natural_frequencies
 from .programs.calculix_runs import compliance_by_calculix as compliance_by_calculix
 from .programs.calculix_runs import frequencies_by_calculix as frequencies_by_calculix
 from .programs.calculix_runs import held as held
+from .programs.ccx import find_calculix as find_calculix
+from .programs.ccx import run_calculix as run_calculix
 from .scene_export import SEATS as SEATS
 from .scene_export import SHAFT as SHAFT
 from .scene_export import superelement_of as superelement_of

@@ -1,4 +1,4 @@
-"""The free shaft with modes of its own: Craig-Bampton in the meridian.
+"""The free shaft with fixed-interface modes: Craig-Bampton in the meridian.
 
 To the points' motions, which follow statically (Guyan 1965), come the lowest modes that the shaft
 has while all its points stand still (Craig and Bampton 1968, "Coupling of substructures for dynamic
@@ -9,7 +9,7 @@ those of
     K u + P^T f = omega^2 M u,  P u = 0.
 
 Stiffness has no coupling between the two kinds; mass has. Modes without motion of any mean, of
-harmonics 2 and above (the shaft's wall made oval), are left out: nothing at the points excites
+harmonics 2 and above (the shaft's wall becoming oval), are left out: nothing at the points excites
 them, nor do these feel them.
 """
 
@@ -222,11 +222,11 @@ class _Harmonic:
     def __init__(
         self, mesh: Meridian, material: Material, n: int, places: Floats, sides: Sequence[Ints]
     ) -> None:
-        target, share = harmonics._on_axis(mesh, n)
+        target, share = harmonics.on_axis(mesh, n)
         size = len(target)
         local = 3 * np.tile(mesh.cells, 3) + np.repeat(np.arange(3), mesh.cells.shape[1])
         matrices = harmonics.element_matrices(mesh, material.lame, n)
-        K = harmonics._assembled(matrices, target[local], share[local], size)
+        K = harmonics.assembled(matrices, target[local], share[local], size)
         follow = sparse.csr_array((share, (np.arange(size), target)), shape=(size, size))
         M = follow.T @ harmonic_mass(mesh, material.density, n) @ follow
         columns = []

@@ -28,8 +28,8 @@ def component_superelement(
 ) -> Superelement:
     """A component, condensed.
 
-    The band of a solid is what a coarser mesh says is missing to element size zero; of a frame it
-    is not known.
+    The band of a solid is the difference to element size zero estimated from a coarser mesh;
+    that of a frame is not known.
 
     Parameters
     ----------
@@ -65,14 +65,14 @@ def component_superelement(
             raise InputError(f"point {name!r} is unknown: use {', '.join(names)}")
     if level == 1:
         bodies = [_frame(component)]
-        said, mesh = "1 frame of beams", "none"
+        level_title, mesh = "1 frame of beams", "none"
     else:
         if solids is None:
             coarse = component.model_copy(update={"mesh": component.mesh.scaled(COARSER)})
             solids = solid_component(component), solid_component(coarse)
         found = solids[0]
         bodies = [solid.body for solid in solids]
-        said = "3 solid"
+        level_title = "3 solid"
         mesh = (
             f"curved tetrahedra of second order, {found.unknowns:,} unknowns, "
             f"{found.sizes.edge:.3g} m along inner edges"
@@ -84,7 +84,7 @@ def component_superelement(
         if ratio > 1.0:  # else the coarser mesh had to be made finer
             band = largest_difference(others[0].stiffness, fine.stiffness) / (ratio**ORDER - 1.0)
     program = f"fe-drivetrain {version('fe-drivetrain')}"
-    origin = Origin(component.title, component_hash(component), said, mesh, program)
+    origin = Origin(component.title, component_hash(component), level_title, mesh, program)
     kind = "gearbox_housing" if isinstance(component, HousingComponent) else "planet_carrier"
     return Superelement(
         kind,

@@ -25,7 +25,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     """The free shaft of a scene, condensed.
 
     Its band is, of a beam, the difference to the meridian; of the meridian, that to elements of one
-    order less; of a solid, what a coarser mesh says is missing to element size zero.
+    order less; of a solid, the difference to element size zero estimated from a coarser mesh.
 
     Parameters
     ----------
@@ -44,18 +44,18 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     factor = 1.0
     if level == 1:
         body, other = beam_shaft(scene), meridian_shaft(scene)
-        said = "1 Timoshenko beam", "none"
+        level_and_mesh = "1 Timoshenko beam", "none"
     elif level == 2:
         filleted = any(piece.fillet > 0 for piece in scene.shaft.pieces)
         order = 4 if filleted else 6
         body, other = meridian_shaft(scene, order=order), meridian_shaft(scene, order=order - 1)
-        said = "2 meridian in harmonics", f"elements of order {order} in the meridian"
+        level_and_mesh = "2 meridian in harmonics", f"elements of order {order} in the meridian"
     elif level == 3:
         coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)})
         body, other = solid_shaft(scene), solid_shaft(coarse)
         factor = 1.0 / (COARSER**ORDER - 1.0)
         size = f"{scene.mesh.shaft:g} m"
-        said = "3 solid shaft with rings", f"curved tetrahedra of second order, {size}"
+        level_and_mesh = "3 solid shaft with rings", f"curved tetrahedra of second order, {size}"
     else:
         raise InputError(f"level {level} has no free shaft: use one of 1, 2, 3")
     if at is not None:
@@ -67,7 +67,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
         body.stiffness,
         body.mass,
         band=factor * largest_difference(other.stiffness, body.stiffness),
-        origin=scene_origin(scene, *said),
+        origin=scene_origin(scene, *level_and_mesh),
     )
 
 

@@ -24,7 +24,7 @@ def natural_frequencies(
     """
     K, left = on_supports(points, stiffness, supports or {})
     M = np.asarray(mass)[np.ix_(left, left)]
-    # lengths and angles, points and modes alike: a unit diagonal keeps the digits of all
+    # lengths and angles, points and modes equally: a unit diagonal keeps the digits of all
     values = linalg.eigh(
         scaled_to_unit_diagonal(K, M.diagonal()), scaled_to_unit_diagonal(M), eigvals_only=True
     )

@@ -1,4 +1,4 @@
-"""What of a scene is exported: one choice of words for the command line and for Python."""
+"""Which superelement of a scene is exported: the same names for the command line and Python."""
 
 from __future__ import annotations
 

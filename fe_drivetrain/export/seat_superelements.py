@@ -16,7 +16,7 @@ from fe_drivetrain.scene.scene import Scene
 def seats_superelement(scene: Scene) -> Superelement:
     """All bearings with their housings on the ground: one node a seat, in the order of the scene.
 
-    Each housing stands on its own feet, so no stiffness is between them.
+    Each housing rests on its own feet, so no stiffness is between them.
 
     Raises
     ------

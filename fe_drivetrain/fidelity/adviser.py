@@ -1,7 +1,8 @@
-"""Which level of the ladder a quantity needs: from cheap to dear, as far as the tolerance asks.
+"""The cheapest level of the ladder that gives a quantity within a tolerance.
 
 PROTEST's rule (Report on design-relevant load cases, deliverable of FP7 project 212825, step 2):
 take detail away until the result changes noticeably, and state the difference against the time.
+Here levels of rising cost are run until the difference is within the tolerance.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ LEAST_ORDER = 0.5
 
 @dataclass(frozen=True)
 class Quantity:
-    """What is asked for, as a row of numbers that is linear in the loads, or a stiffness.
+    """A requested quantity, as a row of numbers that is linear in the loads, or a stiffness.
 
     Attributes
     ----------
@@ -66,7 +67,7 @@ class Quantity:
 
     @property
     def unit(self) -> str:
-        """Of its value."""
+        """Unit of the value."""
         component = self.name.rpartition(".")[2]
         if self.name.startswith("hub.stiffness"):
             return "N/m" if component[0] == "u" else "N m/rad"
@@ -89,23 +90,23 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Rung:
-    """One model on the ladder, and how far it is from the top.
+class LevelResult:
+    """Result of one model on the ladder, and its difference to the top.
 
     Attributes
     ----------
     model
-        What was solved.
+        The model that was solved.
     values
         Of the quantity.
     seconds
         Wall time of all that its value needs; what its estimate takes comes on top.
     estimate
-        Error expected before any dearer model is known, relative: 0 where statics decides; half
-        the range of its two bounds and the change from beam to meridian where housings are springs;
-        the band of the mesh where it is the assembly; NaN where it has none.
+        Error expected before any more expensive model is run, relative: 0 where statics decides;
+        half the range of its two bounds and the change from beam to meridian where housings are
+        springs; the band of the mesh where it is the assembly; NaN where it has none.
     error
-        Difference to the last rung, relative.
+        Difference to the last result, relative.
     """
 
     model: LevelModel
@@ -117,36 +118,36 @@ class Rung:
 
 @dataclass(frozen=True)
 class Advice:
-    """The ladder as far as it was climbed.
+    """The ladder as far as it was run.
 
     Attributes
     ----------
     quantity, tolerance
         What was asked, the tolerance relative.
-    rungs
-        From cheap to dear.
+    results
+        From cheap to expensive.
     chosen
-        Number of the cheapest rung that is good enough; None where no rung is.
+        Index of the cheapest result that is within the tolerance; None where none is.
     springs
         Stiffness of the bearing units, faces held in shape, where the ladder went so far.
     """
 
     quantity: Quantity
     tolerance: float
-    rungs: Sequence[Rung]
+    results: Sequence[LevelResult]
     chosen: int | None
     springs: Mapping[str, Floats] = field(default_factory=dict)
 
     @property
-    def top(self) -> Rung:
-        """The dearest model that was run."""
-        return self.rungs[-1]
+    def top(self) -> LevelResult:
+        """The most expensive model that was run."""
+        return self.results[-1]
 
     def step(self, number: int) -> float:
-        """Difference of a rung to the next one, relative to that; NaN of the last."""
-        if number == len(self.rungs) - 1:
+        """Difference of a result to the next one, relative to that; NaN of the last."""
+        if number == len(self.results) - 1:
             return float("nan")
-        return _difference(self.rungs[number].values, self.rungs[number + 1].values)
+        return _difference(self.results[number].values, self.results[number + 1].values)
 
     def sentence(self) -> str:
         """The answer."""
@@ -157,18 +158,18 @@ class Advice:
                 f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %: "
                 "make its mesh finer"
             )
-        rung = self.rungs[self.chosen]
-        if self.chosen == len(self.rungs) - 1:
+        result = self.results[self.chosen]
+        if self.chosen == len(self.results) - 1:
             return (
-                f"{self.quantity.name} within {share} needs level {rung.model.level}, "
-                f"{rung.model.title}: {_expected(rung)}, {rung.seconds:.2g} s"
+                f"{self.quantity.name} within {share} needs level {result.model.level}, "
+                f"{result.model.title}: {_expected(result)}, {result.seconds:.2g} s"
             )
-        ratio = self.top.seconds / rung.seconds
+        ratio = self.top.seconds / result.seconds
         faster = f"{ratio:.3g} times faster" if ratio > 1 else f"{1 / ratio:.3g} times slower"
         return (
-            f"{self.quantity.name} within {share}: level {rung.model.level}, {rung.model.title}, "
-            f"is enough: {100 * rung.error:.2g} % from level {self.top.model.level}, "
-            f"{self.top.model.title} ({_expected(self.top)}), and {faster}"
+            f"{self.quantity.name} within {share}: level {result.model.level}, "
+            f"{result.model.title}, is enough: {100 * result.error:.2g} % from level "
+            f"{self.top.model.level}, {self.top.model.title} ({_expected(self.top)}), and {faster}"
         )
 
 
@@ -179,7 +180,7 @@ def advise(
     to_the_top: bool = False,
     report: Callable[[str], object] = lambda step: None,
 ) -> Advice:
-    """Climb the ladder until the quantity is known to be within the tolerance.
+    """Run levels of rising cost until the quantity is known to be within the tolerance.
 
     Parameters
     ----------
@@ -206,34 +207,34 @@ def advise(
             "give it as in --tolerance 1%"
         )
     length = scene.shaft.length
-    rungs: list[Rung] = []
+    results: list[LevelResult] = []
 
-    def climb(model: LevelModel, seconds: float, estimate: float) -> bool:
-        rungs.append(Rung(model, quantity.of(model, length), seconds, estimate))
+    def add(model: LevelModel, seconds: float, estimate: float) -> bool:
+        results.append(LevelResult(model, quantity.of(model, length), seconds, estimate))
         return estimate <= tolerance and not to_the_top
 
     report("level 0: statics")
     model = statics_level(scene)
     decided = bool(np.isfinite(quantity.of(model, length)).all())
-    done = climb(model, model.cost.seconds, 0.0 if decided else float("nan"))
+    done = add(model, model.cost.seconds, 0.0 if decided else float("nan"))
     if not done:
         report("level 1: beam, rigid housings")
         model = shaft_level(scene, 1)
-        done = climb(model, model.cost.seconds, float("nan"))
+        done = add(model, model.cost.seconds, float("nan"))
     springs: Mapping[str, Floats] = {}
     if not done:
-        springs, done = _climb_springs(scene, quantity, to_the_top, climb, report)
+        springs, done = _run_on_springs(scene, quantity, to_the_top, add, report)
     if not done:
         model, seconds, band = _assembly(scene, quantity, report)
-        climb(model, seconds, band)
-    return _judged(quantity, tolerance, rungs, springs)
+        add(model, seconds, band)
+    return _judged(quantity, tolerance, results, springs)
 
 
-def _climb_springs(
+def _run_on_springs(
     scene: Scene,
     quantity: Quantity,
     to_the_top: bool,
-    climb: Callable[[LevelModel, float, float], bool],
+    add: Callable[[LevelModel, float, float], bool],
     report: Callable[[str], object],
 ) -> tuple[Mapping[str, Floats], bool]:
     """Shafts on housings that were solved apart, between two bounds of these.
@@ -264,9 +265,9 @@ def _climb_springs(
         estimate = _difference(quantity.of(bound, length), values) / 2
         if previous is not None:
             estimate += _difference(previous, values)
-        # only the next of two shafts tells how far the first may be off
+        # the error of a shaft is only known from the next one
         estimate = float("nan") if previous is None else estimate
-        if climb(model, seconds + condensing + model.cost.seconds, estimate):
+        if add(model, seconds + condensing + model.cost.seconds, estimate):
             return stiff, True
         previous = values
     return stiff, False
@@ -305,34 +306,37 @@ def _assembly(
 
 
 def _judged(
-    quantity: Quantity, tolerance: float, rungs: Sequence[Rung], springs: Mapping[str, Floats]
+    quantity: Quantity,
+    tolerance: float,
+    results: Sequence[LevelResult],
+    springs: Mapping[str, Floats],
 ) -> Advice:
-    top = rungs[-1]
+    top = results[-1]
     if not np.linalg.norm(top.values) > 0:
         raise InputError(
             f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
             "ask for another, or give another load"
         )
-    found = [
-        Rung(r.model, r.values, r.seconds, r.estimate, _difference(r.values, top.values))
-        for r in rungs
+    judged = [
+        LevelResult(r.model, r.values, r.seconds, r.estimate, _difference(r.values, top.values))
+        for r in results
     ]
     chosen = None
-    for number, rung in enumerate(found):
-        # what the top does not know counts against all below it
-        uncertain = 0.0 if rung is found[-1] else rung.error
-        known = rung.estimate == 0.0 or uncertain + top.estimate <= tolerance
-        if known and np.isfinite(rung.values).all():
+    for number, result in enumerate(judged):
+        # the uncertainty of the top counts against all levels below it
+        uncertain = 0.0 if result is judged[-1] else result.error
+        known = result.estimate == 0.0 or uncertain + top.estimate <= tolerance
+        if known and np.isfinite(result.values).all():
             chosen = number
             break
-    return Advice(quantity, tolerance, found, chosen, springs)
+    return Advice(quantity, tolerance, judged, chosen, springs)
 
 
 def _difference(values: Floats, reference: Floats) -> float:
     return float(np.linalg.norm(values - reference) / np.linalg.norm(reference))
 
 
-def _expected(rung: Rung) -> str:
-    if rung.estimate == 0.0:
+def _expected(result: LevelResult) -> str:
+    if result.estimate == 0.0:
         return "decided by statics"
-    return f"± {100 * rung.estimate:.2g} %"
+    return f"± {100 * result.estimate:.2g} %"

@@ -64,28 +64,30 @@ def housing_frame(component: HousingComponent, ring_gives: bool) -> Condensed:
     housing, density = component.gearbox_housing, material_of(component).density
     nu = material_of(component).poisson_ratio
     inner, outer = housing.inner_diameter / 2, housing.outer_diameter / 2
-    made = _Builder()
+    builder = _Builder()
     x, y, z = housing.eye
     arm = rectangle(housing.arm_width, housing.arm_height, nu)
     if ring_gives:
-        roots, ring = _ring_of_beams(component, made)
+        roots, ring = _ring_of_beams(component, builder)
     else:
-        rigid = made.node(0.0, 0.0, 0.0)
-        made.body(rigid, density * math.pi * (outer**2 - inner**2) * housing.length)
+        rigid = builder.node(0.0, 0.0, 0.0)
+        builder.body(rigid, density * math.pi * (outer**2 - inner**2) * housing.length)
         roots, ring = (rigid, rigid), on_node("ring", rigid, np.zeros(3))
     points = [ring]
     for name, side, root in zip(("left", "right"), (1.0, -1.0), roots, strict=True):
         stations = np.linspace(housing.arm_root, y, PIECES + 1)
-        nodes = [root, *(made.node(x, side * at, z) for at in stations[1:])]
+        nodes = [root, *(builder.node(x, side * at, z) for at in stations[1:])]
         for k in range(PIECES):
             ends = tuple(np.array([x, side * at, z]) for at in stations[k : k + 2])
-            made.members.append(Member((nodes[k], nodes[k + 1]), (ends[0], ends[1]), arm, X))
-        made.body(nodes[-1], density * housing.arm_width * housing.eye_beyond_arm)
+            builder.members.append(Member((nodes[k], nodes[k + 1]), (ends[0], ends[1]), arm, X))
+        builder.body(nodes[-1], density * housing.arm_width * housing.eye_beyond_arm)
         points.append(on_node(name, nodes[-1], np.array([x, side * y, z])))
-    return made.frame(component).condensed(points)
+    return builder.frame(component).condensed(points)
 
 
-def _ring_of_beams(component: HousingComponent, made: _Builder) -> tuple[tuple[int, int], Follower]:
+def _ring_of_beams(
+    component: HousingComponent, builder: _Builder
+) -> tuple[tuple[int, int], Follower]:
     """The ring's nodes and beams; the nodes that the arms stand on, and the bore's mean motion."""
     housing = component.gearbox_housing
     inner, outer = housing.inner_diameter / 2, housing.outer_diameter / 2
@@ -97,7 +99,7 @@ def _ring_of_beams(component: HousingComponent, made: _Builder) -> tuple[tuple[i
     def at(angle: float, radius: float) -> Floats:
         return np.array([0.0, radius * math.cos(angle), radius * math.sin(angle)])
 
-    left, right = (made.node(*at(angle, mean)) for angle in (up, math.pi - up))
+    left, right = (builder.node(*at(angle, mean)) for angle in (up, math.pi - up))
     places: list[Floats] = []
     owners: list[int] = []
     weights: list[float] = []
@@ -114,11 +116,11 @@ def _ring_of_beams(component: HousingComponent, made: _Builder) -> tuple[tuple[i
         (math.pi - up + half, 2 * math.pi + up - half, right, left),
     ):
         angles = np.linspace(start, end, HALF_RING + 1)
-        nodes = [first, *(made.node(*at(a, mean)) for a in angles[1:-1]), last]
+        nodes = [first, *(builder.node(*at(a, mean)) for a in angles[1:-1]), last]
         step = float(angles[1] - angles[0])
         for k in range(HALF_RING):
             ends = at(angles[k], mean), at(angles[k + 1], mean)
-            made.members.append(Member((nodes[k], nodes[k + 1]), ends, section, X))
+            builder.members.append(Member((nodes[k], nodes[k + 1]), ends, section, X))
         for angle, node, share in zip(
             angles, nodes, [0.5, *[1.0] * (HALF_RING - 1), 0.5], strict=True
         ):
@@ -126,7 +128,7 @@ def _ring_of_beams(component: HousingComponent, made: _Builder) -> tuple[tuple[i
     arc = 2 * half / PIECES
     density = material_of(component).density
     for node, middle in ((left, up), (right, math.pi - up)):
-        made.body(node, density * section.area * mean * 2 * half)
+        builder.body(node, density * section.area * mean * 2 * half)
         for k in range(PIECES):
             bore(middle - half + (k + 0.5) * arc, node, arc)
     ring = Follower("ring", np.zeros(3), owners, np.array(places), np.array(weights))
@@ -137,21 +139,21 @@ def carrier_frame(component: CarrierComponent) -> Condensed:
     """A planet carrier with hub, webs and pins as beams between rigid cheeks."""
     carrier, material = component.planet_carrier, material_of(component)
     nu, density = material.poisson_ratio, material.density
-    made = _Builder()
+    builder = _Builder()
     front = carrier.hub_length
     near = front + carrier.cheek_thickness
     far = near + carrier.gap
 
     def cheek(middle: float, bore: float) -> int:
-        node = made.node(middle, 0.0, 0.0)
+        node = builder.node(middle, 0.0, 0.0)
         area = math.pi / 4 * (carrier.cheek_diameter**2 - bore**2)
-        made.body(node, density * area * carrier.cheek_thickness)
+        builder.body(node, density * area * carrier.cheek_thickness)
         return node
 
-    hub = made.node(0.0, 0.0, 0.0)
+    hub = builder.node(0.0, 0.0, 0.0)
     first = cheek(front + carrier.cheek_thickness / 2, carrier.hub_bore_diameter)
     tube = round_section(carrier.hub_diameter, nu, carrier.hub_bore_diameter)
-    made.members.append(Member((hub, first), (0.0 * X, front * X), tube, np.eye(3)[2]))
+    builder.members.append(Member((hub, first), (0.0 * X, front * X), tube, np.eye(3)[2]))
     last = None
     if carrier.walls == 2:
         last = cheek(far + carrier.cheek_thickness / 2, carrier.sun_bore_diameter)
@@ -163,7 +165,7 @@ def carrier_frame(component: CarrierComponent) -> Condensed:
             turn = 2 * math.pi * (k + 0.5) / carrier.planets
             radial = np.array([0.0, -math.sin(turn), math.cos(turn)])
             ends = near * X + radius * radial, far * X + radius * radial
-            made.members.append(Member((first, last), ends, web, radial))
+            builder.members.append(Member((first, last), ends, web, radial))
     points = [on_node("hub", hub, np.zeros(3))]
     pin = round_section(carrier.pin_diameter, nu)
     stations = np.linspace(near, far, PIECES + 1)
@@ -171,12 +173,12 @@ def carrier_frame(component: CarrierComponent) -> Condensed:
     for name, centre in zip(component.loaded, carrier.pin_centres(), strict=True):
         axis = np.array([0.0, *centre[1:]])
         places = [at * X + axis for at in stations]
-        between = [made.node(*place) for place in places[1:-1]]
-        end = made.node(*places[-1]) if last is None else last
+        between = [builder.node(*place) for place in places[1:-1]]
+        end = builder.node(*places[-1]) if last is None else last
         nodes = [first, *between, end]
         for k in range(PIECES):
             ends = places[k], places[k + 1]
-            made.members.append(Member((nodes[k], nodes[k + 1]), ends, pin, axis))
+            builder.members.append(Member((nodes[k], nodes[k + 1]), ends, pin, axis))
         round_it = carrier.pin_diameter / 2 * np.vstack([np.eye(3)[1:], -np.eye(3)[1:]])
         points.append(
             Follower(
@@ -187,4 +189,4 @@ def carrier_frame(component: CarrierComponent) -> Condensed:
                 np.repeat(simpson, 4),
             )
         )
-    return made.frame(component).condensed(points)
+    return builder.frame(component).condensed(points)

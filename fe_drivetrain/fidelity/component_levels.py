@@ -206,7 +206,7 @@ def gearbox_springs(ring: Floats) -> GearboxSprings:
 
 @dataclass(frozen=True)
 class PinMotions:
-    """What the pins of a carrier do under a torque that all planets share alike.
+    """What the pins of a carrier do under a torque that all planets share equally.
 
     Attributes
     ----------
@@ -251,7 +251,7 @@ def _rows(model: LevelModel, name: str) -> tuple[int, int]:
 
 
 def frame_levels(component: Component) -> list[Callable[[], LevelModel]]:
-    """What makes each level below the solid, from cheap to dear."""
+    """What makes each level below the solid, from cheap to expensive."""
     levels = [lambda: rigid_level(component)]
     if isinstance(component, HousingComponent):
         levels.append(lambda: frame_level(component, ring_gives=False))

@@ -2,7 +2,7 @@
 
 0 statics, 1 beam, 2 meridian in harmonics, 3 solid shaft, 4 assembly of solids. Levels 1 to 3
 differ in how the shaft was condensed and in nothing else; their housings are rigid, or springs that
-were solved apart. What a level leaves out, it says.
+were solved apart. Each level states what it neglects.
 """
 
 from __future__ import annotations
@@ -238,7 +238,7 @@ def housing_springs(
 def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozenset[str]) -> None:
     """Add what the mass of housings, and of rings that are no part of the shaft, does to reactions.
 
-    It stands on the ground and bends no shaft, but for what the housing gives under its own weight.
+    It rests on the ground and bends no shaft, except as the housing deforms under its weight.
     """
     for unit in scene.bearing_units:
         bearing = unit.bearing

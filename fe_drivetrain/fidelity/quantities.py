@@ -1,6 +1,6 @@
-"""The numbers that are reported of a scene, by name: all from one solution at one level.
+"""Reported quantities of a scene, by name: all from one solution at one level.
 
-Reactions, stiffness at the hub, and what the exported summary says of the shaft and of
+Reactions, stiffness at the hub, and the values of the exported summary for the shaft and
 each bearing unit, under the same names.
 """
 
@@ -61,11 +61,11 @@ class Number:
         "main_bearing.My" for the load given, "main_bearing.My of hub.Fz" for a unit of one load,
         "hub.stiffness.uz", "shaft.torsional", "main_bearing.tilt".
     unit
-        Of its value.
+        Unit of the value.
     of
-        Its value.
+        Its value for a solved scene.
     quantity
-        What the adviser calls it, where it is one of his.
+        The adviser's name for it, if the adviser knows it.
     """
 
     name: str

@@ -39,7 +39,7 @@ def reference_points(scene: Scene) -> tuple[tuple[str, ...], Floats]:
 def ringed_shaft(scene: Scene) -> tuple[Shaft, frozenset[str]]:
     """The shaft with the rings of its bearings turned on it, and of which bearings.
 
-    A ring stands on the shaft where its joint is outside of it, at the housing, and where it is of
+    A ring belongs to the shaft where its joint is outside of it, at the housing, and where it is of
     the shaft's material; one that is bonded to the housing, or on rollers in it, belongs to that. A
     spherical ring becomes a cylinder of the same volume.
     """

@@ -1,4 +1,4 @@
-"""Histories of the six hub loads: read from files, or made by a surrogate of a turbine.
+"""Histories of the six hub loads: read from files, or computed by a surrogate of a turbine.
 
 In: OpenFAST and CSV files, or a turbine and its winds. Out: `LoadHistory`.
 """

@@ -1,7 +1,7 @@
 from .aero_rotor import assumptions as assumptions
+from .files import read_hub_loads as read_hub_loads
 from .histories import UNITS as UNITS
 from .histories import LoadHistory as LoadHistory
-from .histories import read_hub_loads as read_hub_loads
 from .surrogate import SHEARS as SHEARS
 from .surrogate import WIND_SPEEDS as WIND_SPEEDS
 from .surrogate import Condition as Condition

@@ -137,7 +137,7 @@ class Rotor:
         """Weight of hub and blades as a hub load: (6,) [N, N m].
 
         Identical blades: the mass centre stays on the axis, taken at the hub centre, so weight
-        makes no moment there and does not vary.
+        causes no moment there and does not vary.
         """
         force = self.rotor_mass * self.gravity
         tilt = self.shaft_tilt

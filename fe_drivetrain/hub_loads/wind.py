@@ -2,8 +2,8 @@
 
 IEC 61400-1 gives the along-wind turbulence at a point (Kaimal spectrum) and the coherence of two
 points, which depends on frequency, distance and mean speed only.  Points on circles about the hub
-are then statistically alike at every azimuth, so the cross-spectral matrix of rings is circulant
-in azimuth: a discrete Fourier transform in azimuth makes its harmonics independent of one another,
+are then statistically equal at every azimuth, so the cross-spectral matrix of rings is circulant
+in azimuth: its harmonics after a discrete Fourier transform in azimuth are independent,
 and one dense matrix of all points falls apart into one small matrix (rings by rings) per harmonic.
 This is exact at the nodes of the rings, and it serves rotational sampling directly: what a blade
 meets is the sum of harmonics at its own azimuth.
@@ -11,15 +11,15 @@ meets is the sum of harmonics at its own azimuth.
 The number of nodes on a ring is odd (2 M + 1), so that there is no Nyquist harmonic and the
 variance is the same at every azimuth, nodes or not.
 
-Why not a package.  PyConTurb makes the same field and is the independent check of spectrum and
+Why not a package.  PyConTurb generates the same field and is the independent check of spectrum and
 coherence in the tests, but it factors one matrix of all points per frequency and again for each
 history: measured side by side on one thread for 12 000 samples, PyConTurb 2.7 took 17 times
 (73 points: 6 rings of 12 and the hub) and 140 times (311 points: 10 rings of 31 and the hub) as
-long as one whole history, loads included, takes here.  HiperSim makes Mann boxes, which is another
-spectrum.
+long as one whole history, loads included, takes here.  HiperSim generates Mann boxes, which
+is another spectrum.
 
-Only the along-wind component is made: it drives thrust and bending moment, the others change the
-blades' relative speed by a per cent or two of the speed of rotation.
+Only the along-wind component is generated: it drives thrust and bending moment, the others change
+the blades' relative speed by a per cent or two of the speed of rotation.
 """
 
 from __future__ import annotations

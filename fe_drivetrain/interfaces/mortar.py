@@ -37,40 +37,34 @@ from typing import Literal
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
-from scipy.spatial import cKDTree
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTri
 
-from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import Constraint
-from fe_drivetrain.mesh.facets import FacetKind, facet_kind, facet_points
+from fe_drivetrain.interfaces.overlap import (
+    OPPOSED,
+    REACH,
+    Pieces,
+    circles,
+    common_pieces,
+    curvature,
+    facet_normals,
+    near_pairs,
+    nodal_normals,
+    opposite_points,
+)
+from fe_drivetrain.mesh.facets import facet_kind, facet_points
 
 Multipliers = Literal["dual", "standard"]
 
 _COVERED = 1e-6  # share of a plane slave face that may be left uncovered
-_REACH = 0.25  # of a facet's size: faces further apart do not touch
 _FAR = 4.0  # of a facet's size: faces this far apart may have been meant to touch
 _OUTSIDE = 0.05  # of a facet: a node this far outside of it still belongs to it
-_OPPOSED = -0.5  # cosine between the normals of facets that can touch
-_NEAR = 1.05  # on the sum of two facets' radii: they may be a little apart
-_STRAIGHT = 1e-9  # of a facet's size
-_SLIVER = 1e-14  # of a window: pieces that are smaller are none
-_STEP = 1e-12  # of a facet: Newton's last step, which squares itself once more
-_STEPS = 20
 _FINER = 2.0  # nodes to an area of the master, over the slave's: more is warned of
 _APART = 0.01  # of the slave's radius: faces that lie further apart are warned of
 _BLOCK = 256  # columns that are dense at a time
 _DROP = 1e-15  # of a row's largest: smaller entries are round-off
 
-_DEGREE = {3: 1, 6: 2, 4: 2, 8: 3, 9: 4}  # of the shape functions on a straight facet
-_OUTLINE = {
-    3: (0, 1, 2),
-    6: (0, 3, 1, 4, 2, 5),
-    4: (0, 1, 2, 3),
-    8: (0, 4, 1, 5, 2, 6, 3, 7),
-    9: (0, 4, 1, 5, 2, 6, 3, 7),
-}
 # What each corner gets of the shape function of a mid-side beside it. Popp et al. 2012 take 1/5 for
 # both (as quoted by others, not re-read); on the cylinder above 1/12 errs six times less.
 _SHARE = {6: 1.0 / 12.0, 8: 0.2}
@@ -132,7 +126,7 @@ def mortar_tie(
     """
     nodes, rows, columns = _numbered(name, slave, master)
     _warn_of_coarse_slave(name, points, slave, master)
-    pieces = _pieces(points, slave, master)
+    pieces = common_pieces(points, slave, master)
     _check_coverage(name, points, slave, master, pieces)
 
     n_slave, size = len(nodes.slave), (len(nodes.slave), len(nodes.master))
@@ -183,17 +177,17 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_freedoms: i
     nodes, rows, columns = _numbered(name, slave, master)
     _warn_of_coarse_slave(name, points, slave, master)
     kind = facet_kind(master.shape[1])
-    normals = _nodal_normals(points, slave, rows)
+    normals = nodal_normals(points, slave, rows)
     outline = points[master]
-    centres, radii = _circles(outline)
-    node, facet = _near(points[nodes.slave], np.zeros(len(nodes.slave)), centres, radii)
-    facing = np.einsum("pi,pi->p", normals[node], _normals(points, master)[facet]) < _OPPOSED
+    centres, radii = circles(outline)
+    node, facet = near_pairs(points[nodes.slave], np.zeros(len(nodes.slave)), centres, radii)
+    facing = np.einsum("pi,pi->p", normals[node], facet_normals(points, master)[facet]) < OPPOSED
     node, facet = node[facing], facet[facing]
-    at = _opposite(kind, outline[facet], points[nodes.slave][node], normals[node])
+    at = opposite_points(kind, outline[facet], points[nodes.slave][node], normals[node])
     outside = np.maximum(-at.coordinates.min(axis=0), 0.0)
     beyond = at.coordinates.sum(axis=0) if master.shape[1] in (3, 6) else at.coordinates.max(axis=0)
     outside = np.maximum(outside, beyond - 1.0)
-    outside[~(np.abs(at.distance) < _REACH * radii[facet])] = np.inf
+    outside[~(np.abs(at.distance) < REACH * radii[facet])] = np.inf
     # Of the facets about a node the one that it lies in, or least outside of.
     order = np.lexsort((outside, node))
     found, first = np.unique(node[order], return_index=True)
@@ -331,292 +325,19 @@ def _following(name: str, nodes: _Nodes, P: sparse.csr_array, n_freedoms: int) -
     return Constraint(name, rows, np.asarray(3 * nodes.slave[:, None] + np.arange(3)).ravel())
 
 
-@dataclass(frozen=True)
-class _Pieces:
-    """What slave and master facets have in common, piece by piece.
-
-    Attributes
-    ----------
-    slave, master
-        (n,) facets.
-    area
-        (n,) [m^2].
-    own, across
-        (n, k, k) and (n, k, l): integrals of products of the slave's shape functions with
-        themselves and with the master's [m^2].
-    """
-
-    slave: Ints
-    master: Ints
-    area: Floats
-    own: Floats
-    across: Floats
-
-
-def _pieces(points: Floats, slave: Ints, master: Ints, reach: float = _REACH) -> _Pieces:
-    """Cut the slave's facets by the outlines of the master's, and integrate over the pieces.
-
-    The cut is made in the planes of triangular windows, into which the slave's facets are divided:
-    of straight facets the corners' triangle, of curved ones several. Quadrature points then lie on
-    the true slave facet and, along its normal, on the true master facet. The pieces of a window
-    fill it without gap, so the integrals over the slave are those of the curved facets.
-    """
-    reference = _windows(points, slave)
-    windows = _placed(points, slave, reference).reshape(-1, 3, 3)
-    outline = points[master][:, _OUTLINE[master.shape[1]]]
-    master_normals = _normals(points, master)
-    centres, radii = _circles(outline)
-    found = []
-    for rows in chunks(len(windows), CHUNK // 2):
-        part = windows[rows]
-        window, facet = _near(*_circles(part), centres, radii)
-        normals = np.cross(part[:, 1] - part[:, 0], part[:, 2] - part[:, 0])
-        normals /= np.linalg.norm(normals, axis=1)[:, None]
-        facing = np.einsum("pi,pi->p", normals[window], master_normals[facet]) < _OPPOSED
-        window, facet = window[facing], facet[facing]
-        # Places in a window: its corners are (0, 0), (1, 0) and (0, 1).
-        to_window = np.linalg.pinv(np.stack([part[:, 1] - part[:, 0], part[:, 2] - part[:, 0]], -1))
-        distances = outline[facet] - part[window, None, 0]
-        polygons = np.einsum("pij,pvj->pvi", to_window[window], distances)[:, ::-1]
-        pair, triangles = _cut(polygons)
-        owner, local = np.divmod(rows.start + window[pair], len(reference))
-        found.append(
-            _integrated(
-                points, slave, master, owner, facet[pair], reference[local], triangles, reach
-            )
-        )
-    return _Pieces(
-        *(
-            np.concatenate([getattr(pieces, field) for pieces in found])
-            for field in ("slave", "master", "area", "own", "across")
-        )
-    )
-
-
-def _windows(points: Floats, facets: Ints) -> Floats:
-    """(n, 3, 2) reference coordinates of the triangles that a facet is divided into."""
-    kind, n_nodes = facet_kind(facets.shape[1]), facets.shape[1]
-    nodes = kind.places
-    triangular = n_nodes in (3, 6)
-    if _affine(points, facets, nodes, 2 if triangular else 3):
-        corners = [(0, 1, 2)] if triangular else [(0, 1, 2), (0, 2, 3)]
-    elif triangular:
-        corners = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
-    else:
-        nodes, ring = facet_kind(9).places, _OUTLINE[9]
-        corners = [(8, a, b) for a, b in zip(ring, (*ring[1:], ring[0]), strict=True)]
-    return np.asarray(nodes[np.array(corners)])
-
-
-def _affine(points: Floats, facets: Ints, nodes: Floats, last: int) -> bool:
-    """Whether all facets are plane triangles or parallelograms with nodes evenly on them."""
-    x = points[facets]
-    sides = x[:, [1, last]] - x[:, :1]
-    expected = x[:, :1] + np.einsum("nk,fki->fni", nodes, sides)
-    size = np.linalg.norm(sides, axis=2).max()
-    return bool(np.abs(x - expected).max() < _STRAIGHT * size)
-
-
-def _placed(points: Floats, facets: Ints, reference: Floats) -> Floats:
-    """(nf, n, 3, 3) positions of windows (n, 3, 2) of every facet."""
-    kind = facet_kind(facets.shape[1])
-    values, _ = kind.shape(reference.reshape(-1, 2).T)
-    placed = np.einsum("vk,fki->fvi", values, points[facets])
-    return np.asarray(placed.reshape(len(facets), *reference.shape[:2], 3))
-
-
-def _circles(polygons: Floats) -> tuple[Floats, Floats]:
-    """Centres (n, 3) and radii (n,) about polygons (n, v, 3)."""
-    centres = polygons.mean(axis=1)
-    return centres, np.linalg.norm(polygons - centres[:, None], axis=2).max(axis=1)
-
-
-def _near(centres: Floats, radii: Floats, others: Floats, other_radii: Floats) -> tuple[Ints, Ints]:
-    """Pairs of circles that can meet, ascending in the first."""
-    reach = _NEAR * (radii + other_radii.max())
-    lists = cKDTree(others).query_ball_point(centres, reach)
-    first = np.repeat(np.arange(len(centres)), [len(found) for found in lists])
-    second = np.concatenate([np.asarray(found, dtype=np.int64) for found in lists])
-    apart = np.linalg.norm(centres[first] - others[second], axis=1)
-    meet = apart < _NEAR * (radii[first] + other_radii[second])
-    return first[meet], second[meet]
-
-
-def _normals(points: Floats, facets: Ints) -> Floats:
-    """(nf, 3) mean unit normals."""
-    x = points[facets[:, _OUTLINE[facets.shape[1]]]]
-    x = x - x.mean(axis=1)[:, None]
-    vectors = np.cross(x, np.roll(x, -1, axis=1)).sum(axis=1)
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1)[:, None])
-
-
-def _nodal_normals(points: Floats, facets: Ints, numbers: Ints) -> Floats:
-    """(n_nodes, 3) unit normals at the nodes of a face, the mean of the facets there."""
-    kind = facet_kind(facets.shape[1])
-    _, gradients = kind.shape(kind.places.T)
-    tangents = np.einsum("qkn,fni->fqki", gradients, points[facets])
-    normals = np.zeros((numbers.max() + 1, 3))
-    np.add.at(normals, numbers, np.cross(tangents[:, :, 0], tangents[:, :, 1]))
-    return np.asarray(normals / np.linalg.norm(normals, axis=1)[:, None])
-
-
-def _cut(polygons: Floats) -> tuple[Ints, Floats]:
-    """Triangles of what polygons have in common with the unit triangle.
-
-    Sutherland and Hodgman (1974): the window is convex, the polygons need not be; where they are
-    not, some triangles count negatively, and sums over all of them are right.
-
-    Parameters
-    ----------
-    polygons
-        (n, v, 2), anticlockwise.
-
-    Returns
-    -------
-    polygon, triangles
-        (m,) which polygon each comes from, and (m, 3, 2).
-    """
-    number = np.arange(len(polygons))
-    for side in range(3):
-        x, y = polygons[..., 0], polygons[..., 1]
-        inside = (x, y, 1.0 - x - y)[side]
-        polygons, corners = _halved(polygons, inside)
-        number, polygons = number[corners > 2], polygons[corners > 2]
-    fan = np.stack(
-        [
-            np.broadcast_to(polygons[:, :1], polygons[:, 2:].shape),
-            polygons[:, 1:-1],
-            polygons[:, 2:],
-        ],
-        axis=2,
-    )
-    number = np.repeat(number, fan.shape[1])
-    triangles = fan.reshape(-1, 3, 2)
-    kept = np.abs(_determinant(triangles)) > _SLIVER
-    return number[kept], triangles[kept]
-
-
-def _halved(polygons: Floats, inside: Floats) -> tuple[Floats, Ints]:
-    """The part of polygons (n, v, 2) where the linear function with these values is positive.
-
-    Returns
-    -------
-    polygons, corners
-        (n, w, 2), of which the last corner is repeated where there are fewer, and how many.
-    """
-    following, then = np.roll(polygons, -1, axis=1), np.roll(inside, -1, axis=1)
-    crosses = (inside > 0.0) != (then > 0.0)
-    share = np.divide(inside, inside - then, out=np.zeros_like(inside), where=crosses)
-    crossing = polygons + share[..., None] * (following - polygons)
-    n, v = inside.shape
-    corners = np.stack([crossing, following], axis=2).reshape(n, 2 * v, 2)
-    kept = np.stack([crosses, then > 0.0], axis=2).reshape(n, 2 * v)
-    count = kept.sum(axis=1)
-    width = max(int(count.max(initial=0)), 3)
-    order = np.argsort(~kept, axis=1, kind="stable")
-    order = np.take_along_axis(
-        order, np.minimum(np.arange(width), np.maximum(count - 1, 0)[:, None]), axis=1
-    )
-    return np.take_along_axis(corners, order[:, :, None], axis=1), count
-
-
-def _determinant(triangles: Floats) -> Floats:
-    """Twice the signed areas of triangles (n, 3, 2)."""
-    a, b = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
-def _integrated(
-    points: Floats,
-    slave: Ints,
-    master: Ints,
-    slave_facet: Ints,
-    master_facet: Ints,
-    windows: Floats,
-    triangles: Floats,
-    reach: float,
-) -> _Pieces:
-    """Integrals over triangles (n, 3, 2) in windows (n, 3, 2) of the slave's facets."""
-    # Exact for the products on straight facets; two more for the area element of curved ones.
-    X, W = get_quadrature(RefTri, _DEGREE[slave.shape[1]] + _DEGREE[master.shape[1]] + 2)
-    barycentric = np.vstack([1.0 - X.sum(axis=0), X])
-    place = np.einsum("vq,pvi->pqi", barycentric, triangles)
-    place = np.concatenate([1.0 - place.sum(axis=2, keepdims=True), place], axis=2)
-    at = np.einsum("pqv,pvi->pqi", place, windows).reshape(-1, 2).T
-    n, n_q = len(triangles), len(W)
-
-    own = facet_kind(slave.shape[1])
-    values, x, tangents = _on_facets(own, np.repeat(points[slave][slave_facet], n_q, axis=0), at)
-    vectors = np.cross(tangents[:, 0], tangents[:, 1])
-    lengths = np.linalg.norm(vectors, axis=1)
-    scale = _determinant(triangles) * _determinant(windows)
-    weights = scale[:, None] * W * lengths.reshape(n, n_q)
-
-    nodes = points[master][master_facet]
-    opposite = _opposite(
-        facet_kind(master.shape[1]), np.repeat(nodes, n_q, axis=0), x, vectors / lengths[:, None]
-    )
-    near = reach * np.repeat(_circles(nodes)[1], n_q)
-    touches = (np.abs(opposite.distance) < near) & (np.abs(opposite.coordinates) < 3.0).all(axis=0)
-    weights = np.where(touches.reshape(n, n_q), weights, 0.0)
-    others = np.where(touches[:, None], opposite.values, 0.0)
-
-    shaped = values.reshape(n, n_q, values.shape[1])
-    weighted = (weights[:, :, None] * shaped).transpose(0, 2, 1)
-    return _Pieces(
-        slave_facet,
-        master_facet,
-        weights.sum(axis=1),
-        weighted @ shaped,
-        weighted @ others.reshape(n, n_q, others.shape[1]),
-    )
-
-
-def _on_facets(kind: FacetKind, nodes: Floats, at: Floats) -> tuple[Floats, Floats, Floats]:
-    """Shape functions (q, k), positions (q, 3) and tangents (q, 2, 3), each point on its facet."""
-    values, gradients = kind.shape(at)
-    return values, np.einsum("qk,qki->qi", values, nodes), gradients @ nodes
-
-
-@dataclass(frozen=True)
-class _Opposite:
-    """Points of facets: reference coordinates (2, q), distances (q,), shape functions (q, k)."""
-
-    coordinates: Floats
-    distance: Floats
-    values: Floats
-
-
-def _opposite(kind: FacetKind, nodes: Floats, x: Floats, direction: Floats) -> _Opposite:
-    """Where lines from x (q, 3) meet facets with these nodes (q, k, 3): Newton's method."""
-    at = np.repeat(kind.places.mean(axis=0)[:, None], len(x), axis=1)
-    distance = np.zeros(len(x))
-    for _ in range(_STEPS):
-        _, position, tangents = _on_facets(kind, nodes, at)
-        A = np.stack([tangents[:, 0], tangents[:, 1], -direction], axis=2)
-        step = np.linalg.solve(A, (x + distance[:, None] * direction - position)[:, :, None])
-        at = at + step[:, :2, 0].T
-        distance = distance + step[:, 2, 0]
-        # One that does not converge is far outside, and is left out by who called.
-        at = np.clip(at, -10.0, 10.0)
-        if np.abs(step[:, :2]).max(initial=0.0) < _STEP:
-            break
-    return _Opposite(at, distance, _on_facets(kind, nodes, at)[0])
-
-
-def _check_coverage(name: str, points: Floats, slave: Ints, master: Ints, pieces: _Pieces) -> None:
+def _check_coverage(name: str, points: Floats, slave: Ints, master: Ints, pieces: Pieces) -> None:
     areas = facet_points(points, slave).areas.sum(axis=1)
     covered = np.bincount(pieces.slave, pieces.area, len(slave))
     share = float(covered.sum() / areas.sum())
     # Where curved facets end in a curved edge, the pieces end in its chords: by so much the areas
     # of curved facets and of their windows differ.
-    curved = sum(_curvature(points, facets) for facets in (slave, master))
+    curved = sum(curvature(points, facets) for facets in (slave, master))
     if abs(share - 1.0) > _COVERED + curved or (covered < 0.5 * areas).any():
-        far = _pieces(points, slave, master, _FAR)
+        far = common_pieces(points, slave, master, _FAR)
         if share < 1.0 and far.area.sum() > 1.01 * covered.sum():
             fix = (
                 "which must be all of it; in part they face one another but lie further apart than "
-                f"{_REACH:g} of a master facet: take the finer face as the slave, mesh curved "
+                f"{REACH:g} of a master facet: take the finer face as the slave, mesh curved "
                 "faces finer or with curved elements, or bring the faces together"
             )
         else:
@@ -627,11 +348,3 @@ def _check_coverage(name: str, points: Floats, slave: Ints, master: Ints, pieces
         raise InputError(
             f"tie {name!r}: the master face covers {100.0 * share:.6g} % of the slave face, {fix}"
         )
-
-
-def _curvature(points: Floats, facets: Ints) -> float:
-    """Relative difference between the areas of facets and of their windows."""
-    windows = _placed(points, facets, _windows(points, facets)).reshape(-1, 3, 3)
-    sides = windows[:, 1:] - windows[:, :1]
-    plane = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
-    return float(abs(facet_points(points, facets).areas.sum() / plane - 1.0))

@@ -1,6 +1,6 @@
 """Meshes that are fine where the error is: mark by indicators, and mesh again with smaller sizes.
 
-The shape is meshed anew each time, so that curved surfaces stay as exact as the mesh is fine.
+The shape is meshed again each time, so that curved surfaces stay as exact as the mesh is fine.
 """
 
 from __future__ import annotations

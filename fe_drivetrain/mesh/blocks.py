@@ -110,7 +110,7 @@ def brick(
 
 
 def joined(block: Block) -> Block:
-    """The block with nodes at the same place made one: rings that close, a cube's face on itself.
+    """The block with nodes at the same position merged: rings that close, a cube's face on itself.
 
     Facets that have become inner ones still stand under the names that they had.
     """

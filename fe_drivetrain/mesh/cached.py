@@ -16,9 +16,12 @@ from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
-from fe_drivetrain.mesh.mesh import Mesh, generate
+from fe_drivetrain.mesh.generation import generate
+from fe_drivetrain.mesh.mesh import Mesh
 
 Arrays = dict[str, NDArray[Any]]
+
+_MESHERS = {"facets.py", "generation.py", "measures.py", "mesh.py"}  # what decides on a mesh
 
 
 def cached_mesh(
@@ -29,25 +32,25 @@ def cached_mesh(
     bonded: frozenset[str],
     cache: Cache | None = None,
 ) -> Mesh:
-    """The mesh of these parts, taken from the cache where it was made before.
+    """The mesh of these parts, taken from the cache where it was generated before.
 
     Parameters
     ----------
     shaft, bearings, housings, sizes, bonded
-        As for `fe_drivetrain.mesh.mesh.generate`.
+        As for `fe_drivetrain.mesh.generation.generate`.
     cache
         The user's if not given.
 
     Returns
     -------
     Mesh
-        The same to the last bit, and laid out alike in memory, whether it was kept or made now;
+        The same to the last bit, with the same layout in memory, whether kept or generated now;
         its ``kept`` says which.
 
     Raises
     ------
     InputError
-        As `fe_drivetrain.mesh.mesh.generate`.
+        As `fe_drivetrain.mesh.generation.generate`.
     """
     used = user_cache() if cache is None else cache
     content = _content(shaft, bearings, housings, sizes, bonded)
@@ -56,7 +59,7 @@ def cached_mesh(
         try:
             return replace(_from_arrays(arrays), kept=True)
         except (KeyError, IndexError, ValueError):
-            pass  # not as it was written: made anew below
+            pass  # not as it was written: generated again below
     arrays = _to_arrays(generate(shaft, bearings, housings, sizes, bonded))
     used.keep("meshes", content, arrays)
     return _from_arrays(arrays)
@@ -87,7 +90,7 @@ def _content(
 def _made_by() -> dict[str, str]:
     """The programs that make a mesh: another version may make another mesh."""
     code = hashlib.sha256()
-    for package, names in (("fe_drivetrain.geometry", None), ("fe_drivetrain.mesh", {"mesh.py"})):
+    for package, names in (("fe_drivetrain.geometry", None), ("fe_drivetrain.mesh", _MESHERS)):
         for file in sorted(files(package).iterdir(), key=lambda file: file.name):
             if file.name.endswith(".py") and (names is None or file.name in names):
                 code.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")

@@ -12,7 +12,8 @@ from scipy.sparse.csgraph import connected_components
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import WIDEST, refuse_millimetres
-from fe_drivetrain.mesh.mesh import FACETS, Mesh, inverted_cells, part_of
+from fe_drivetrain.mesh.measures import inverted_cells
+from fe_drivetrain.mesh.mesh import FACETS, Mesh, part_of
 
 FLATTEST = 1e-6
 """Height over longest edge of the flattest element that is solved: flatter ones make solvers fail,
@@ -204,7 +205,7 @@ def _place(point: Floats) -> str:
     return "({:.4g}, {:.4g}, {:.4g}) m".format(*point)
 
 
-def _of_cells(mesh: Mesh, kind: str, cells: Ints, what: str, mend: str) -> list[Fault]:
+def _of_cells(mesh: Mesh, kind: str, cells: Ints, what: str, fix: str) -> list[Fault]:
     """A fault of elements, part by part."""
     faults = []
     for part, name in enumerate(mesh.part_names):
@@ -214,13 +215,13 @@ def _of_cells(mesh: Mesh, kind: str, cells: Ints, what: str, mend: str) -> list[
         centre = mesh.points[mesh.cells[here[0], :4]].mean(axis=0)
         sentence = (
             f"part {name!r}: {len(here)} of its {np.count_nonzero(mesh.part == part)} elements "
-            f"{what}, the first, element {here[0]}, near {_place(centre)}: {mend}"
+            f"{what}, the first, element {here[0]}, near {_place(centre)}: {fix}"
         )
         faults.append(Fault(kind, name, len(here), int(here[0]), _tuple(centre), sentence))
     return faults
 
 
-def _of_nodes(mesh: Mesh, kind: str, nodes: Ints, what: str, mend: str) -> list[Fault]:
+def _of_nodes(mesh: Mesh, kind: str, nodes: Ints, what: str, fix: str) -> list[Fault]:
     """A fault of nodes, part by part; of nodes in no part, in none."""
     owner = np.full(len(mesh.points), -1)
     owner[mesh.cells] = mesh.part[:, None]
@@ -240,7 +241,7 @@ def _of_nodes(mesh: Mesh, kind: str, nodes: Ints, what: str, mend: str) -> list[
         at = f", element {element}," if part >= 0 else ","
         sentence = (
             f"{owner_name}: {len(here)} of its nodes {what}, the first, node {here[0]}{at} at "
-            f"{_place(point)}: {mend}"
+            f"{_place(point)}: {fix}"
         )
         faults.append(Fault(kind, name, len(here), element, _tuple(point), sentence))
     return faults
@@ -402,13 +403,13 @@ def _hanging(mesh: Mesh, facets: _Facets) -> list[Fault]:
     corner, middle = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
     corner[mesh.cells[:, :4]] = True
     middle[mesh.cells[:, 4:]] = True
-    mend = "refine the neighbours too, or join the two sides by a tie (fe_drivetrain.interfaces)"
+    fix = "refine the neighbours too, or join the two sides by a tie (fe_drivetrain.interfaces)"
     faults = _of_nodes(
         mesh,
         "hanging node",
         np.flatnonzero(corner & middle),
         "are a corner of one element and in the middle of an edge of another",
-        mend,
+        fix,
     )
     if faults:
         return faults
@@ -424,7 +425,7 @@ def _hanging(mesh: Mesh, facets: _Facets) -> list[Fault]:
         "hanging node",
         np.unique(open_ // n),
         "are on an edge where the surface of the mesh does not close: elements do not meet there",
-        mend,
+        fix,
     )
 
 
@@ -465,7 +466,7 @@ def _faces(mesh: Mesh, facets: _Facets, needed: Iterable[str]) -> list[Fault]:
             centre = mesh.points[cells[:, :4]].mean(axis=(0, 1))
             sentence = (
                 f"face {name!r} of part {part!r} round {_place(centre)} is missing from the mesh "
-                f"or empty: name it where the mesh is made; there are {', '.join(mesh.faces)}"
+                f"or empty: name it where the mesh is generated; there are {', '.join(mesh.faces)}"
             )
             faults.append(Fault("missing face", part, 1, -1, _tuple(centre), sentence))
     for name, triangles in mesh.faces.items():

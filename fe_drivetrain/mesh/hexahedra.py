@@ -205,9 +205,9 @@ def _check(
         ("grading.steps", grading.steps, grading.steps >= 0, "0 or more", "0 grades nothing"),
         ("grading.ends", grading.ends, grading.ends >= 0, "0 or more", "0 grades nothing"),
     )
-    for name, value, right, allowed, mend in ranges:
+    for name, value, right, allowed, fix in ranges:
         if not right:
-            raise InputError(f"hexahedra: {name} is {value:g} but must be {allowed}: {mend}")
+            raise InputError(f"hexahedra: {name} is {value:g} but must be {allowed}: {fix}")
 
 
 @dataclass(frozen=True)
@@ -365,7 +365,7 @@ def _meridian(
 
 
 def _merged(nodes: Floats, columns: Ints) -> tuple[Floats, Ints]:
-    """Nodes of one column and one radius made one; positions, and each old node's new id."""
+    """Nodes of one column and one radius merged; positions, and each old node's new id."""
     order = np.lexsort((nodes[:, 1], columns))
     apart = (np.diff(columns[order]) > 0) | (np.diff(nodes[order, 1]) > LENGTH_TOLERANCE)
     rank = np.concatenate([[0], np.cumsum(apart)])

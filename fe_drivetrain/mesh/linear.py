@@ -1,4 +1,4 @@
-"""Meshes of one element made into meshes of a cheaper one: straight edges, or corners alone."""
+"""Meshes of one element converted to meshes of a cheaper one: straight edges, or corners alone."""
 
 from __future__ import annotations
 

@@ -10,14 +10,9 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import BodySizes, gmsh_session
-from fe_drivetrain.mesh.mesh import (
-    ATTEMPTS,
-    REFINEMENT,
-    Mesh,
-    inverted_cells,
-    read_gmsh,
-    relax_flat_cells,
-)
+from fe_drivetrain.mesh.generation import ATTEMPTS, REFINEMENT, read_gmsh, relax_flat_cells
+from fe_drivetrain.mesh.measures import inverted_cells
+from fe_drivetrain.mesh.mesh import Mesh
 
 #: Nodes of a mirrored element in an order that keeps its volume, and its facets' normals, positive.
 _MIRRORED_CELL = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
@@ -35,7 +30,7 @@ def meshed(build: Callable[[BodySizes], None], sizes: BodySizes) -> tuple[Mesh, 
 
     Returns
     -------
-    The mesh, and the sizes that it was made with.
+    The mesh, and the sizes that it was generated with.
 
     Raises
     ------

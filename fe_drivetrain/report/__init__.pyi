@@ -1,13 +1,16 @@
 from .charts import chart as chart
 from .charts import rounded as rounded
 from .charts import trace as trace
-from .component_pictures import picture_of_displacements as picture_of_displacements
 from .environment import environment as environment
 from .junit import write_junit as write_junit
 from .page import formatted as formatted
 from .page import write_index as write_index
 from .page import write_page as write_page
 from .pictures import NoPictureError as NoPictureError
+from .pictures import can_draw as can_draw
+from .pictures import picture_of_deformation as picture_of_deformation
+from .pictures import picture_of_displacements as picture_of_displacements
+from .pictures import picture_of_model as picture_of_model
 from .results import AssumptionRow as AssumptionRow
 from .results import Cell as Cell
 from .results import Chart as Chart

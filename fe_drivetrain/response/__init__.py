@@ -1,4 +1,4 @@
-"""What a scene answers: the assembled model, unit-load responses, bearing stiffness.
+"""The assembled model of a scene, unit-load responses, bearing stiffness.
 
 In: a scene and its mesh. Out: reactions and displacements of unit loads; K_R.
 """

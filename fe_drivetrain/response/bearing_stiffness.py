@@ -128,7 +128,7 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
     Without gearbox springs the shaft behind the bearing carries no load and follows the seat as a
     rigid body. Its motion, carried to the bearing's centre, against the load on the bearing is
     the compliance. No average over the seat enters, and by reciprocity the compliance of a
-    housing that is alike fore and aft is symmetric but for terms that change sign from one side
+    housing that is the same fore and aft is symmetric but for terms that change sign from one side
     of the bearing to the other; these are left out.
 
     Parameters

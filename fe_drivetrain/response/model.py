@@ -111,7 +111,7 @@ class Model:
 def mesh_scene(scene: Scene) -> Mesh:
     """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
 
-    A mesh that was made before comes from the cache, see `fe_drivetrain.common.cache`.
+    A mesh that was generated before comes from the cache, see `fe_drivetrain.common.cache`.
     """
     return cached_mesh(
         scene.shaft,
@@ -272,7 +272,7 @@ def joint_pairs(mesh: Mesh, bearing: str) -> tuple[Ints, Ints]:
     if len(inner) != len(outer) or distance.max(initial=0.0) > 1e-9:
         raise InputError(
             f"the joint of {bearing!r} has {len(inner)} nodes on the bearing and {len(outer)} on "
-            f"the housing, up to {distance.max(initial=0.0):.3g} m apart: mesh both sides alike"
+            f"the housing, up to {distance.max(initial=0.0):.3g} m apart: mesh both sides equally"
         )
     return inner, outer[partner]
 

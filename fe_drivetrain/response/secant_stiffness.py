@@ -1,4 +1,4 @@
-"""K_R as a secant over load cases: what it is worth, and which coupling makes it scatter.
+"""K_R as a secant over load cases: its scatter, and the coupling term that causes it.
 
 In a linear scene a torsional spring has one stiffness whatever the load. Where M / theta changes
 from one load case to the next, the moment follows more than its own rotation: a spring about one
@@ -22,7 +22,7 @@ from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import wrench_transport
 
 #: Of the root mean square rotation: a case that turns the bearing by less has no secant of its own,
-#: for M / theta goes to infinity wherever anything else makes a moment.
+#: for M / theta tends to infinity wherever anything else causes a moment.
 LEAST_ROTATION = 0.1
 
 #: Relative scatter from which a single spring is called the wrong form.
@@ -92,7 +92,7 @@ class Spring:
 
 @dataclass(frozen=True)
 class Parts:
-    """What a moment consists of beside its own rotation, and what makes its secant scatter.
+    """Parts of a moment beside its own rotation, and the cause of its secant's scatter.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class Parts:
 
     @property
     def breaker(self) -> int:
-        """Which of the seven makes most of the scatter."""
+        """Which of the seven contributes most to the scatter."""
         return int(self.shares.argmax())
 
 
@@ -179,8 +179,8 @@ def fitted_spring(loads: Floats, motions: Floats) -> Spring:
 def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> Parts:
     """Take a moment apart by the couplings of a 6x6 spring.
 
-    A term in proportion to the rotation changes the secant of all cases alike; what is left of
-    each term makes it scatter.
+    A term in proportion to the rotation changes the secant of all cases equally; the rest of
+    each term causes the scatter.
 
     Parameters
     ----------
@@ -245,14 +245,14 @@ def statement(found: Secant, parts: Parts) -> str:
         f"{wrong}: {moment} also follows {FORCES[j]}"
         + (f" ({reason})" if reason else "")
         + f"; {arm} times {FORCES[j]} is {100 * parts.sizes[j]:.2g} % of {moment} beside what "
-        f"goes with {MOTIONS[a]}, and makes {share}"
+        f"is proportional to {MOTIONS[a]}, and causes {share}"
     )
 
 
 def elastic_centre(matrix: Floats) -> float:
     """Height [m] over the bearing's centre at which a thrust no longer tilts: z = K_51 / K_11.
 
-    A torsional spring that stands there needs no coupling of tilt with thrust.
+    A torsional spring located there needs no coupling of tilt with thrust.
 
     Parameters
     ----------

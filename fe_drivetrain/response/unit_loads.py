@@ -130,7 +130,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     """
     loads = model.unit_loads()
     n_loads = len(LOADS)
-    # Loads of very different size (1 N, 1 N m, a tonne under 1 m/s^2) count alike in the check.
+    # Loads of very different size (1 N, 1 N m, a tonne under 1 m/s^2) count equally in the check.
     factors = np.random.default_rng(seed).uniform(-1.0, 1.0, n_loads)
     factors /= np.linalg.norm(loads, axis=0)
     cases = np.column_stack([np.eye(n_loads), factors])

@@ -1,12 +1,9 @@
 from .harmonics import Traction as Traction
 from .harmonics import along_sides as along_sides
 from .harmonics import element_matrices as element_matrices
-from .harmonics import end_stiffness as end_stiffness
 from .harmonics import freedoms as freedoms
 from .harmonics import harmonic_response as harmonic_response
 from .harmonics import harmonic_solver as harmonic_solver
-from .harmonics import seat_stiffness as seat_stiffness
-from .harmonics import stiffness_between_ends as stiffness_between_ends
 from .harmonics import stresses as stresses
 from .harmonics import surface_loads as surface_loads
 from .harmonics import turn as turn
@@ -17,3 +14,6 @@ from .influence import roller_forces as roller_forces
 from .meridian_mesh import Meridian as Meridian
 from .meridian_mesh import Where as Where
 from .meridian_mesh import meridian as meridian
+from .rigid_seats import end_stiffness as end_stiffness
+from .rigid_seats import seat_stiffness as seat_stiffness
+from .rigid_seats import stiffness_between_ends as stiffness_between_ends

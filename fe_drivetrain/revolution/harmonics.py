@@ -11,19 +11,17 @@ in J.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import block_diag
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
+from fe_drivetrain.geometry import LENGTH_TOLERANCE
 from fe_drivetrain.revolution import frontal
-from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
+from fe_drivetrain.revolution.meridian_mesh import Meridian
 from fe_drivetrain.scene.materials import Material
 
 Traction = Callable[[Floats, Floats], Floats]
@@ -93,7 +91,7 @@ def harmonic_response(
     m = max(F.shape[1], values.shape[1])
     F, values = np.broadcast_to(F, (size, m)), np.broadcast_to(values, (len(which), m))
 
-    target, coefficient = _on_axis(mesh, n)
+    target, coefficient = on_axis(mesh, n)
     F = _onto(target, coefficient) @ F
     q = np.zeros((size, m))
     kept = coefficient[which] != 0
@@ -149,7 +147,7 @@ def harmonic_solver(
     InputError
         The body is free to move as a rigid one.
     """
-    target, coefficient = _on_axis(mesh, n)
+    target, coefficient = on_axis(mesh, n)
     onto = _onto(target, coefficient)
     solve = _factored(mesh, material, n, held)
     return lambda F: np.asarray(coefficient[:, None] * solve(onto @ F)[target])
@@ -266,169 +264,6 @@ def stress_at(mesh: Meridian, material: Material, n: int, u: Floats, places: Flo
     return stresses(mesh, material, n, u, at, cells)[:, 0]
 
 
-def end_stiffness(
-    shaft: Shaft,
-    material: Material,
-    size: float | None = None,
-    *,
-    order: int | None = None,
-    layers: int = 4,
-    per_fillet: int = 6,
-) -> Floats:
-    """Stiffness of a shaft between its two end faces, each rigid.
-
-    Parameters
-    ----------
-    shaft, size, order, layers, per_fillet
-        As for `fe_drivetrain.revolution.meridian`. With the default size stiffness is right to some
-        1e-5 where diameters are alike, to 2e-4 where they differ by 2.5 to 1. Of a shaft with
-        fillets 2 per fillet is many times quicker.
-    material
-        Of the shaft.
-
-    Returns
-    -------
-    (12, 12) from displacements [m] and rotations [rad] along and about x, y, z at the middle of the
-    front face, then of the rear face, to the forces [N] and moments [N m] there.
-    """
-    mesh = meridian(shaft, size, order=order, layers=layers, per_fillet=per_fillet)
-    return stiffness_between_ends(mesh, material)
-
-
-def seat_stiffness(
-    shaft: Shaft,
-    material: Material,
-    seats: Sequence[tuple[float, float]],
-    size: float | None = None,
-    *,
-    order: int | None = None,
-    layers: int = 4,
-    per_fillet: int = 6,
-) -> Floats:
-    """Stiffness of a shaft between any of its seats, each rigid.
-
-    Parameters
-    ----------
-    shaft, size, order, layers, per_fillet
-        As for `meridian`. Quadrilaterals are graded towards the seats' ends,
-        triangles are not: of a shaft with fillets give 2 per fillet.
-    material
-        Of the shaft.
-    seats
-        x of both ends of each [m]: the outer surface of one section between them; twice the x of
-        the shaft's front or rear for that end face.
-
-    Returns
-    -------
-    (6 s, 6 s) from displacements [m] and rotations [rad] along and about x, y, z at the middle of
-    each seat, on the axis, to the forces [N] and moments [N m] there.
-
-    Raises
-    ------
-    InputError
-        A seat is not on the shaft, reaches over a step, or meets another.
-    """
-    radii = [_seat(shaft, seat) for seat in seats]
-    wide = [(seat, radius) for seat, radius in zip(seats, radii, strict=True) if _wide(seat)]
-    mesh = meridian(
-        shaft.cut(x for seat, _ in wide for x in seat),
-        size,
-        order=order,
-        layers=layers,
-        per_fillet=per_fillet,
-        corners=[end for seat, radius in wide for end in zip(seat, radius, strict=True)],
-    )
-    x, r = mesh.nodes.T
-    nodes = []
-    for seat, radius in zip(seats, radii, strict=True):
-        low, high = seat[0] - LENGTH_TOLERANCE, seat[1] + LENGTH_TOLERANCE
-        here = (x > low) & (x < high)
-        if _wide(seat):
-            here &= np.abs(r - np.interp(x, seat, radius)) < LENGTH_TOLERANCE
-        nodes.append((np.flatnonzero(here), 0.5 * (seat[0] + seat[1])))
-    return stiffness_between_seats(mesh, material, nodes)
-
-
-def stiffness_between_ends(mesh: Meridian, material: Material) -> Floats:
-    """`end_stiffness` of a meridian, whose ends are its nodes of least and of greatest x."""
-    x = mesh.nodes[:, 0]
-    ends = [(np.flatnonzero(np.abs(x - end) < LENGTH_TOLERANCE), end) for end in (x.min(), x.max())]
-    return stiffness_between_seats(mesh, material, ends)
-
-
-def stiffness_between_seats(
-    mesh: Meridian, material: Material, seats: Sequence[tuple[Ints, float]]
-) -> Floats:
-    """Stiffness between rigid sets of nodes of a meridian.
-
-    Parameters
-    ----------
-    mesh, material
-        The meridian and what it is of.
-    seats
-        Nodes (k,) of each, and the x of its reference point on the axis [m].
-
-    Returns
-    -------
-    (6 s, 6 s) as of `seat_stiffness`.
-
-    Raises
-    ------
-    InputError
-        Two seats share a node.
-    """
-    met = np.concatenate([nodes for nodes, _ in seats])
-    if len(np.unique(met)) < len(met):
-        raise InputError("two seats meet: leave some of the shaft's surface between them")
-    order = frontal.dissection(mesh.nodes[mesh.cells].mean(axis=1))
-
-    def between(n: int, components: slice, which: slice) -> Floats:
-        motions = [
-            (nodes, rigid_motions_at(mesh.nodes[nodes] - [x, 0.0], n)[:, components, which])
-            for nodes, x in seats
-        ]
-        law = _law(material.lame, n)[components, components]
-        return turn(n) * _between(mesh, law, order, n, motions, components)
-
-    K = np.zeros((6 * len(seats), 6 * len(seats)))
-    first: Ints = 6 * np.arange(len(seats))
-    K[np.ix_(first, first)] = between(0, slice(0, 2), slice(0, 1))
-    K[np.ix_(first + 3, first + 3)] = between(0, slice(2, 3), slice(1, 2))
-    flexural = between(1, slice(0, 3), slice(0, 2))
-    # along y, and about z
-    rows: Ints = np.add.outer(first, np.array([1, 5])).ravel()
-    K[np.ix_(rows, rows)] = flexural
-    # along z, and about y: a rotation about y lifts z's side the other way
-    rows = np.add.outer(first, np.array([2, 4])).ravel()
-    signs = np.tile([1.0, -1.0], len(seats))
-    K[np.ix_(rows, rows)] = flexural * np.outer(signs, signs)
-    return K
-
-
-def _wide(seat: tuple[float, float]) -> bool:
-    return seat[1] - seat[0] > LENGTH_TOLERANCE
-
-
-def _seat(shaft: Shaft, seat: tuple[float, float]) -> tuple[float, float]:
-    """Outer radius of a seat at its ends [m]; of an end face what stands there twice."""
-    low, high = seat
-    if not _wide(seat):
-        if min(abs(low - shaft.front), abs(low - shaft.rear)) > LENGTH_TOLERANCE or high < low:
-            raise InputError(
-                f"seat from x = {low:g} m to {high:g} m has no width: give its two ends in "
-                f"ascending order, or twice {shaft.front:g} m or {shaft.rear:g} m for an end face"
-            )
-        return 0.0, 0.0
-    for piece, (start, end) in zip(shaft.pieces, pairwise(shaft.stations), strict=True):
-        if start - LENGTH_TOLERANCE <= low and high <= end + LENGTH_TOLERANCE:
-            widths = np.interp(seat, [start, end], [piece.outer_diameter, piece.end_diameter])
-            return float(widths[0] / 2), float(widths[1] / 2)
-    raise InputError(
-        f"seat from x = {low:g} m to {high:g} m is not on one section of the shaft, which ends or "
-        f"steps at x = {', '.join(f'{x:g}' for x in shaft.stations)} m: move or shorten it"
-    )
-
-
 def turn(n: int) -> float:
     """Integral of cos^2(n t) round the axis: that of 1 where n is 0."""
     return 2.0 * math.pi if n == 0 else math.pi
@@ -443,7 +278,7 @@ def element_matrices(
     once its conditions hold.
     """
     grams = mesh.grams if cells is None else mesh.grams[cells]
-    return np.asarray(turn(n) * frontal.element_matrices(grams, _law(lame, n)))
+    return np.asarray(turn(n) * frontal.element_matrices(grams, material_law(lame, n)))
 
 
 def rigid_motions(mesh: Meridian, n: int, x: float = 0.0) -> Floats:
@@ -474,7 +309,7 @@ def _physical(nodes: Floats, gradients: Floats) -> tuple[Floats, Floats]:
     return (inverse / determinant[..., None, None]) @ gradients, determinant
 
 
-def _law(lame: tuple[float, float], n: int) -> Floats:
+def material_law(lame: tuple[float, float], n: int) -> Floats:
     """(3, 3, 3, 3): of components p and q and derivatives s and t, per product of the latter.
 
     From strains a u_x, b u_r, c (u_r + n u_t), b u_x + a u_r, a u_t - n c u_x and
@@ -492,7 +327,7 @@ def _law(lame: tuple[float, float], n: int) -> Floats:
     return np.asarray(np.einsum("aps,ab,bqt->pqst", strains, elastic, strains))
 
 
-def _on_axis(mesh: Meridian, n: int) -> tuple[Ints, Floats]:
+def on_axis(mesh: Meridian, n: int) -> tuple[Ints, Floats]:
     """Freedom (3 n_nodes,) that each one follows, and its share: what the axis allows.
 
     A solid body stays whole: for n = 0 its axis moves along itself, for n = 1 sideways, u_t = -u_r,
@@ -528,7 +363,7 @@ def _check_held(mesh: Meridian, n: int, which: Ints) -> None:
         )
 
 
-def _assembled(matrices: Floats, rows: Ints, shares: Floats, size: int) -> sparse.csc_array:
+def assembled(matrices: Floats, rows: Ints, shares: Floats, size: int) -> sparse.csc_array:
     """Sum of element matrices (ne, k, k) whose freedoms are shares (ne, k) of rows (ne, k)."""
     scaled = (
         matrices if (shares == 1.0).all() else matrices * (shares[:, :, None] * shares[:, None])
@@ -559,13 +394,13 @@ def _factored(mesh: Meridian, material: Material, n: int, held: Ints) -> Callabl
     """As `harmonic_solver`, in forces and displacements of the freedoms that others follow."""
     _check_order(n)
     _check_held(mesh, n, held)
-    target, coefficient = _on_axis(mesh, n)
+    target, coefficient = on_axis(mesh, n)
     alive = coefficient != 0.0
     alive[np.isin(target, target[held])] = False
     local = _local(mesh).reshape(len(mesh.cells), 3, -1)
     ids, shares = np.where(alive, target, -1)[local], coefficient[local]
     order = frontal.dissection(mesh.nodes[mesh.cells].mean(axis=1))
-    law = turn(n) * _law(material.lame, n)
+    law = turn(n) * material_law(material.lame, n)
 
     def factor(components: slice) -> frontal.Factor:
         of = ids[:, components].reshape(len(ids), -1)
@@ -575,57 +410,6 @@ def _factored(mesh: Meridian, material: Material, n: int, held: Ints) -> Callabl
     # torsion has nothing to do with tension
     factors = [factor(c) for c in ((slice(0, 2), slice(2, 3)) if n == 0 else (slice(0, 3),))]
     return lambda F: np.asarray(sum(one.solve(F) for one in factors))
-
-
-def _between(
-    mesh: Meridian,
-    law: Floats,
-    order: Ints,
-    n: int,
-    seats: Sequence[tuple[Ints, Floats]],
-    components: slice,
-) -> Floats:
-    """Stiffness per radian between rigid motions, all else eliminated.
-
-    Parameters
-    ----------
-    mesh, n
-        The meridian and the harmonic.
-    law, order
-        As for `fronts.condensed`; the law of the components only.
-    seats
-        Nodes (k,) and their motions (k, components, m).
-    components
-        Those that the harmonic has.
-    """
-    # what is kept goes first
-    kept, held, rows = 0, [], []
-    for nodes, motions in seats:
-        follows = motions != 0.0
-        moved = follows.any(axis=2)
-        if (follows.sum(axis=2) <= 1).all():  # each freedom follows one motion
-            number, share, row = follows.argmax(axis=2), motions.sum(axis=2), np.eye(len(motions.T))
-        else:
-            number, share, row = (
-                moved.cumsum().reshape(moved.shape) - 1,
-                1.0 * moved,
-                motions[moved],
-            )
-        held.append((nodes, np.where(moved, kept + number, -1), share))
-        rows.append(row)
-        kept += len(row)
-    _, coefficient = _on_axis(mesh, n)
-    shares = coefficient.reshape(-1, 3)[:, components].copy()
-    ids = np.where(shares != 0.0, kept + np.arange(shares.size).reshape(shares.shape), -1)
-    if n == 1:
-        axis = np.flatnonzero(mesh.nodes[:, 1] == 0.0)
-        ids[axis, 2] = ids[axis, 1]
-    for nodes, number, share in held:
-        ids[nodes], shares[nodes] = number, share
-    ids = ids[mesh.cells].transpose(0, 2, 1).reshape(len(mesh.cells), -1)
-    shares = shares[mesh.cells].transpose(0, 2, 1).reshape(len(mesh.cells), -1)
-    T = block_diag(*rows)
-    return np.asarray(T.T @ frontal.condensed(mesh.grams, law, ids, shares, kept, order) @ T)
 
 
 def _by_side(mesh: Meridian, sides: Ints) -> list[tuple[int, Ints]]:

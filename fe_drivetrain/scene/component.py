@@ -1,4 +1,4 @@
-"""A component: one solid with reference points on its faces, on springs; typed, from YAML.
+"""A component: one solid with reference points on its faces, on springs; typed and validated.
 
 The second kind of scene, beside the drivetrain of `Scene`. A key of the file's top
 level says which component it is: "gearbox_housing" or "planet_carrier".
@@ -8,26 +8,18 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
-from fe_drivetrain.scene.materials import MATERIALS, Material
+from fe_drivetrain.scene.materials import Material, known_materials
 from fe_drivetrain.scene.scene import (
-    COMPONENT_KINDS,
     Coupling,
     Keys,
     check_material,
-    file_text,
-    library_text,
-    parse_mapping,
-    set_by_key,
-    validated,
 )
 
 
@@ -83,7 +75,9 @@ class HousingComponent(Keys):
     gearbox_housing: GearboxHousing
     bushings: Bushings
     ring: Reference = Reference()
-    weight: float = Field(default=0.0, ge=0, allow_inf_nan=False, description="[N], along -z")
+    weight: float = Field(
+        default=0.0, ge=0, allow_inf_nan=False, description="weight [N], along -z"
+    )
     materials: Mapping[str, Material] = {}
     mesh: BodySizes = BodySizes()
 
@@ -163,7 +157,8 @@ class CarrierComponent(Keys):
 Component = HousingComponent | CarrierComponent
 SomeComponent = TypeVar("SomeComponent", HousingComponent, CarrierComponent)
 
-_KINDS: dict[str, type[HousingComponent] | type[CarrierComponent]] = {
+#: By the key that makes a file one of such a component.
+COMPONENTS: dict[str, type[HousingComponent] | type[CarrierComponent]] = {
     "gearbox_housing": HousingComponent,
     "planet_carrier": CarrierComponent,
 }
@@ -171,67 +166,9 @@ _KINDS: dict[str, type[HousingComponent] | type[CarrierComponent]] = {
 
 def material_of(component: Component) -> Material:
     """What the component is made of."""
-    return {**MATERIALS, **component.materials}[component.body.material]
-
-
-def parse_component(
-    text: str, changes: Mapping[str, Any] | None = None, source: str = "component"
-) -> Component:
-    """A component from YAML text; see `read_component`."""
-    return _validated(parse_mapping(text, changes, source), source)
-
-
-def read_component(path: str | Path, changes: Mapping[str, Any] | None = None) -> Component:
-    """Read a component from a YAML file.
-
-    Parameters
-    ----------
-    path
-        A file of at most 1 MB, plain YAML without anchors, aliases or tags.
-    changes
-        Values by dotted key that replace what the file says, as in
-        ``{"gearbox_housing.arm_z": -0.1}``.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not such YAML, or does not describe a component.
-    """
-    return parse_component(file_text(path), changes, source=str(path))
-
-
-def library_component(name: str) -> Component:
-    """A component that comes with the package: "gearbox_housing" or "planet_carrier"."""
-    return parse_component(library_text(name), source=name)
-
-
-def change_component(component: SomeComponent, changes: Mapping[str, Any]) -> SomeComponent:
-    """A copy with other values by dotted key; see `read_component`."""
-    data = component.model_dump(mode="json")
-    for key, value in changes.items():
-        set_by_key(data, key, value)
-    return validated(type(component), data, "component")
-
-
-def is_component(text: str) -> bool:
-    """Whether YAML text describes a component; False of what is no such text at all."""
-    try:
-        data = parse_mapping(text)
-    except InputError:
-        return False
-    return any(kind in data for kind in COMPONENT_KINDS)
+    return known_materials(component.materials)[component.body.material]
 
 
 def component_hash(component: Component) -> str:
     """SHA-256 of all values of a component, whatever its file looks like."""
     return hashlib.sha256(component.model_dump_json().encode()).hexdigest()
-
-
-def _validated(data: dict[str, Any], source: str) -> Component:
-    found = [kind for kind in COMPONENT_KINDS if kind in data]
-    if len(found) != 1:
-        raise InputError(
-            f"{source} must have one of the keys {', '.join(COMPONENT_KINDS)}, not "
-            f"{' and '.join(found) or 'none of them'}: that says which component it is"
-        )
-    return validated(_KINDS[found[0]], data, source)

@@ -1,5 +1,6 @@
 """Linear elastic, isotropic materials."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
@@ -19,10 +20,12 @@ class Material(BaseModel):
     _truth = field_validator("*", mode="before")(no_truth_value)
 
     youngs_modulus: Annotated[
-        float, Field(ge=1e6, le=1e13, description="E [Pa], as in 2.1e11 for steel")
+        float, Field(ge=1e6, le=1e13, description="modulus E [Pa], as in 2.1e11 for steel")
     ]
-    poisson_ratio: Annotated[float, Field(gt=-1, le=HIGHEST_POISSON_RATIO, description="nu [-]")]
-    density: Annotated[float, Field(ge=0, le=1e5, description="rho [kg/m^3]")]
+    poisson_ratio: Annotated[
+        float, Field(gt=-1, le=HIGHEST_POISSON_RATIO, description="Poisson's ratio nu [-]")
+    ]
+    density: Annotated[float, Field(ge=0, le=1e5, description="density rho [kg/m^3]")]
 
     @property
     def shear_modulus(self) -> float:
@@ -45,3 +48,8 @@ MATERIALS: dict[str, Material] = {
     "steel": Material(youngs_modulus=200e9, poisson_ratio=0.3, density=7850.0),
     "ductile_iron": Material(youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0),
 }
+
+
+def known_materials(defined: Mapping[str, Material]) -> dict[str, Material]:
+    """Materials by name: those of the program, and those that a scene defines, which go first."""
+    return {**MATERIALS, **defined}

@@ -1,12 +1,9 @@
-"""A scene: parts, materials, interfaces, supports and mesh sizes; typed, validated, from YAML."""
+"""A scene: parts, materials, interfaces, supports and mesh sizes; typed and validated."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from importlib.resources import files
-from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 from pydantic import (
     AfterValidator,
@@ -14,16 +11,14 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
-    ValidationError,
     field_validator,
     model_validator,
 )
 
-from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
-from fe_drivetrain.common.strict_yaml import PlainLoader, no_truth_value, shown
+from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
-from fe_drivetrain.scene.materials import MATERIALS, Material
+from fe_drivetrain.scene.materials import Material, known_materials
 
 #: How the bearing's outer face meets the housing's bore.
 Interface = Literal["bonded", "spring", "rollers", "sliding", "averaged", "rigid"]
@@ -32,13 +27,7 @@ SPHERICAL_JOINTS = ("sliding", "averaged", "rigid")
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
 Coupling = Literal["averaged", "rigid"]
 
-#: Keys that make a file one of a component, see `fe_drivetrain.scene.component`.
-COMPONENT_KINDS = ("gearbox_housing", "planet_carrier")
-
-_MAX_BYTES = 1_000_000
 _STIFFEST = 1e16  # beyond it a spring is rigid, and only harms the conditioning
-
-_Model = TypeVar("_Model", bound=BaseModel)
 
 
 class Keys(BaseModel):
@@ -51,7 +40,7 @@ class Keys(BaseModel):
 
 def _no_booleans(value: Any) -> Any:
     if isinstance(value, list | tuple) and any(isinstance(k, bool) for k in value):
-        raise ValueError("each stiffness must be a number from 0 on, or 'rigid'")
+        raise ValueError("each stiffness must be a number of at least 0, or 'rigid'")
     return value
 
 
@@ -84,21 +73,23 @@ def as_numbers(springs: Iterable[float | Literal["rigid"]]) -> NDArray[np.float6
     return np.array([np.inf if k == "rigid" else k for k in springs], dtype=float)
 
 
-def check_material(name: str, own: Mapping[str, Material], of: str = "") -> None:
+def check_material(name: str, defined: Mapping[str, Material], of: str = "") -> None:
     """Refuse a material that neither the program nor a scene has.
 
     Parameters
     ----------
-    name, own
-        Of the material, and those that the scene defines.
-    of
+    name : str
+        Name of the material.
+    defined : mapping
+        Those that the scene defines.
+    of : str
         The part, where there are several, as in " of shaft".
 
     Raises
     ------
     ValueError
     """
-    known = {**MATERIALS, **own}
+    known = known_materials(defined)
     if name not in known:
         raise ValueError(
             f"material {shown(name)}{of} is unknown: use one of {', '.join(known)}, or define it "
@@ -120,8 +111,8 @@ class RollerRow(Keys):
 class Rollers(Keys):
     """Rollers as springs along their lines of contact, which push and pull."""
 
-    count: int = Field(ge=3, le=1000, description="rollers in a row")
-    stiffness: float = Field(gt=0, le=_STIFFEST, description="of one roller [N/m]")
+    count: int = Field(ge=3, le=1000, description="number of rollers in a row")
+    stiffness: float = Field(gt=0, le=_STIFFEST, description="stiffness of one roller [N/m]")
     rows: tuple[RollerRow, ...] = Field(default=(RollerRow(),), min_length=1)
 
     @model_validator(mode="after")
@@ -135,7 +126,7 @@ class Rollers(Keys):
 class BearingUnit(Keys):
     """A bearing, its housing, and the interface between the two.
 
-    What stands on the ground is the housing's base, or a bedplate that gives, as springs at the
+    What rests on the ground is the housing's base, or an elastic bedplate, as springs at the
     centre of the base.
     """
 
@@ -192,8 +183,8 @@ def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:
             raise ValueError(f"stiffness of bearing {name!r} must be six symmetric rows of numbers")
         if np.linalg.eigvalsh(scaled)[0] < -1e-9:
             raise ValueError(
-                f"stiffness of bearing {name!r} must resist every motion or leave it free; it "
-                "drives one: check its signs"
+                f"stiffness of bearing {name!r} must be positive semidefinite, but it "
+                "drives a motion: check its signs"
             )
 
 
@@ -221,7 +212,9 @@ class Gearbox(Keys):
     """Springs to ground and a weight, at the centre of the shaft's rear face."""
 
     stiffness: Springs
-    weight: float = Field(default=0.0, ge=0, allow_inf_nan=False, description="[N], along -z")
+    weight: float = Field(
+        default=0.0, ge=0, allow_inf_nan=False, description="weight [N], along -z"
+    )
     coupling: Coupling = "averaged"
 
     @property
@@ -282,7 +275,7 @@ class Scene(Keys):
 
     def material_of(self, part: str) -> Material:
         """The material of a part, by the part's name in the mesh."""
-        known = {**MATERIALS, **self.materials}
+        known = known_materials(self.materials)
         if part == "shaft":
             return known[self.shaft.material]
         name, _, housing = part.partition(".")
@@ -292,207 +285,3 @@ class Scene(Keys):
     def bearing_unit(self, name: str) -> BearingUnit:
         """The bearing unit of that name."""
         return next(unit for unit in self.bearing_units if unit.bearing.name == name)
-
-
-def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Scene:
-    """Read a scene from a YAML file.
-
-    Parameters
-    ----------
-    path
-        A file of at most 1 MB, plain YAML without anchors, aliases or tags.
-    changes
-        Values by dotted key that replace what the file says, as in
-        ``{"shaft.sections.0.inner_diameter": 0.2}``; a bearing unit goes by its bearing's name.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not such YAML, or does not describe a scene.
-    """
-    return parse_scene(file_text(path), changes, source=str(path))
-
-
-def file_text(path: str | Path) -> str:
-    """The text of a scene file; see `read_scene`."""
-    path = Path(path)
-    try:
-        with path.open("rb") as file:
-            content = file.read(_MAX_BYTES + 1)
-        if len(content) > _MAX_BYTES:
-            raise InputError(f"{path} is larger than {_MAX_BYTES} bytes, the most of a scene file")
-        return content.decode("utf-8")
-    except (OSError, ValueError) as error:  # no file, no text, or no name of a file
-        raise InputError(f"cannot read scene file {path}: {error}") from error
-
-
-def parse_scene(
-    text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
-) -> Scene:
-    """A scene from YAML text; see `read_scene`."""
-    data = parse_mapping(text, changes, source)
-    for kind in COMPONENT_KINDS:
-        if kind in data:
-            raise InputError(
-                f"{source} is a component, for it has {kind!r}, and no scene of a shaft: "
-                "components can be exported, and have cases of their own"
-            )
-    return validated(Scene, data, source)
-
-
-def parse_mapping(
-    text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
-) -> dict[str, Any]:
-    """Plain YAML text as keys and values, with changes by dotted key; see `read_scene`."""
-    try:
-        data = yaml.load(text, Loader=PlainLoader)
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{source} is not plain YAML: {reason}") from error
-    if not isinstance(data, dict):
-        raise InputError(f"{source} must be a mapping with keys such as 'shaft' and 'gearbox'")
-    for key, value in (changes or {}).items():
-        set_by_key(data, key, value)
-    return data
-
-
-def library_scene(name: str) -> Scene:
-    """A scene that comes with the package, by name: "main_bearing_spherical", "..._bonded"."""
-    return parse_scene(library_text(name), source=name)
-
-
-def library_text(name: str) -> str:
-    """The text of a file of the library, by its name without ending."""
-    folder = files("fe_drivetrain.geometry") / "library"
-    names = sorted(f.name.removesuffix(".yaml") for f in folder.iterdir())
-    if name not in names:
-        raise InputError(f"no scene {name!r} in the library: use one of {', '.join(names)}")
-    return (folder / f"{name}.yaml").read_text("utf-8")
-
-
-def change_scene(scene: Scene, changes: Mapping[str, Any]) -> Scene:
-    """A copy of the scene with other values by dotted key; see `read_scene`."""
-    data = scene.model_dump(mode="json")
-    for key, value in changes.items():
-        set_by_key(data, key, value)
-    return validated(Scene, data, "scene")
-
-
-def validated(model: type[_Model], data: Any, source: str) -> _Model:
-    """Validate data against a model; the first fault as an InputError in one sentence."""
-    try:
-        return model.model_validate(data)
-    except InputError as error:  # from a part, which speaks for itself
-        raise InputError(f"{source}: {error}") from error
-    except ValidationError as error:
-        # A misspelt key first: what is missing is often the same key, spelt right.
-        faults = error.errors(include_url=False)
-        fault = min(faults, key=lambda f: f["type"] != "extra_forbidden")
-        where = ".".join(str(part) for part in fault["loc"] if not _is_type_tag(part))
-        raise InputError(f"{source}: {_sentence(_cut(where), fault, model)}") from error
-
-
-_WORDS = {
-    "missing": "is missing: add it",
-    "greater_than": "must be greater than {gt}",
-    "greater_than_equal": "must be at least {ge}",
-    "less_than": "must be less than {lt}",
-    "less_than_equal": "must be at most {le}",
-    "literal_error": "must be {expected}",
-    "finite_number": "must be a finite number",
-    "float_parsing": "must be a number, in SI and without its unit",
-    "float_type": "must be a number, in SI and without its unit",
-    "string_type": "must be a text",
-    "too_short": "must have at least {min_length} values, not {actual_length}",
-    "too_long": "must have at most {max_length} values, not {actual_length}",
-    "model_type": "must be a mapping of keys to values",
-    "dict_type": "must be a mapping of keys to values",
-    "tuple_type": "must be a list",
-}
-
-
-def _sentence(where: str, fault: Any, model: type[BaseModel]) -> str:
-    """One fault of pydantic's as object, value, allowed range, mend."""
-    if fault["type"] == "extra_forbidden":
-        return f"{where}: unknown key; known here: {', '.join(_known_keys(model, fault['loc']))}"
-    given = fault["input"]
-    value = f" = {shown(given)}" if isinstance(given, int | float | str) else ""
-    words = _WORDS.get(fault["type"])
-    if words is None:
-        message = str(fault["msg"]).removeprefix("Value error, ")
-        return f"{where}{value}: {message}".removeprefix(": ")
-    if "rigid" in fault["loc"] or where.startswith("gearbox.stiffness."):
-        words = "must be a number or 'rigid'"
-    return f"{where}{value if fault['type'] != 'missing' else ''} " + words.format(
-        **fault.get("ctx", {})
-    )
-
-
-def _cut(text: str, most: int = 100) -> str:
-    return text if len(text) <= most else f"{text[: most - 3]}..."
-
-
-def _is_type_tag(part: object) -> bool:
-    return isinstance(part, str) and (part in {"float", "rigid"} or "[" in part)
-
-
-def _known_keys(model: type[BaseModel], location: Sequence[int | str]) -> list[str]:
-    """The field names of the model that a fault's location leads into."""
-    current: Any = model
-    for part in location[:-1]:
-        if isinstance(part, int):
-            continue
-        annotation = current.model_fields[part].annotation if part in current.model_fields else None
-        found = [m for m in _models_in(annotation)]
-        if not found:
-            return []
-        current = found[0]
-    return list(current.model_fields)
-
-
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [m for inner in getattr(annotation, "__args__", ()) for m in _models_in(inner)]
-
-
-def set_by_key(data: Any, key: str, value: Any) -> None:
-    """Replace one value by dotted key, in place."""
-    target = data
-    *path, last = key.split(".")
-    for part in path:
-        target = _step(target, part, key)
-    if isinstance(target, dict):
-        target[last] = value
-    elif isinstance(target, list) and (at := _place(last, target)) is not None:
-        target[at] = value
-    else:
-        raise InputError(
-            f"key {shown(key)}: there is no {shown(last)} to set{_choices(target)}: name another"
-        )
-
-
-def _step(target: Any, part: str, key: str) -> Any:
-    if isinstance(target, dict):
-        return target.setdefault(part, {})
-    if isinstance(target, list):
-        if (at := _place(part, target)) is not None:
-            return target[at]
-        default = Bearing.model_fields["name"].default
-        for unit in target:
-            bearing = unit.get("bearing") if isinstance(unit, dict) else None
-            if isinstance(bearing, dict) and bearing.get("name", default) == part:
-                return unit
-    raise InputError(f"key {shown(key)}: there is no {shown(part)}{_choices(target)}: name another")
-
-
-def _place(part: str, target: Sequence[Any]) -> int | None:
-    """The place in a list that part of a key names by its number, if it does."""
-    # not int(part) first: it takes numerals of any script, and fails for very many digits
-    places = range(len(target))
-    return next((k for k in places if str(k) == part), None) if part.isdecimal() else None
-
-
-def _choices(target: Any) -> str:
-    """What a list offers, for a message."""
-    return f"; there are 0 to {len(target) - 1}" if isinstance(target, list) and target else ""

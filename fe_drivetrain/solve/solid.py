@@ -91,7 +91,7 @@ def solve_solid(
     if not np.isfinite(K.data).all():
         raise InputError(
             "the stiffness has entries that are no numbers: an element of the mesh has no volume; "
-            "find it with fe_drivetrain.mesh.mesh.jacobians, and mesh again there"
+            "find it with fe_drivetrain.mesh.measures.jacobians, and mesh that part again"
         )
     held = list(constraints)
     if prescribed is not None:

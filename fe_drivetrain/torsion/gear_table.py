@@ -21,15 +21,13 @@ from math import sqrt
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-import yaml
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.strict_yaml import PlainLoader, shown
+from fe_drivetrain.common.reading import parse_mapping, read_text, validated
+from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.geometry.part import Part, dimension
 from fe_drivetrain.torsion.system import Element, Inertia, Torsional, chain
-
-_MAX_BYTES = 1_000_000
 
 GeneratorState = Literal["fixed", "free"]
 """Generator on the grid, its spring to the ground; or off it, with none (variable speed)."""
@@ -215,35 +213,26 @@ def _stage(row: Mapping[str, Any]) -> PlanetaryStage | ParallelStage:
 def read_drivetrain(path: str | Path) -> Drivetrain:
     """Read a drivetrain's table from a YAML file of at most 1 MB.
 
+    Parameters
+    ----------
+    path : str or Path
+        Plain YAML without anchors, aliases or tags.
+
+    Returns
+    -------
+    Drivetrain
+
     Raises
     ------
     InputError
         The file cannot be read, is not plain YAML, or does not describe a drivetrain.
     """
-    path = Path(path)
-    try:
-        with path.open("rb") as file:
-            content = file.read(_MAX_BYTES + 1)
-        if len(content) > _MAX_BYTES:
-            raise InputError(f"{path} is larger than {_MAX_BYTES} bytes, the most of a drivetrain")
-        text = content.decode("utf-8")
-    except (OSError, ValueError) as error:
-        raise InputError(f"cannot read drivetrain file {path}: {error}") from error
-    return parse_drivetrain(text, source=str(path))
+    return parse_drivetrain(read_text(path, "drivetrain"), source=str(path))
 
 
 def parse_drivetrain(text: str, source: str = "drivetrain") -> Drivetrain:
     """A drivetrain from YAML text; see `read_drivetrain`."""
-    try:
-        data = yaml.load(text, Loader=PlainLoader)
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise InputError(f"{source} is not plain YAML: {' '.join(str(error).split())}") from error
-    if not isinstance(data, dict):
-        raise InputError(f"{source} must be a mapping with keys such as 'rotor' and 'shafts'")
-    try:
-        return Drivetrain.model_validate(data)
-    except InputError as error:
-        raise InputError(f"{source}: {error}") from error
+    return validated(Drivetrain, parse_mapping(text, source), source)
 
 
 def stage_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:

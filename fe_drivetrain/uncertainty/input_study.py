@@ -1,6 +1,6 @@
-"""What uncertain values do to all that is reported of a scene, beside what the model itself is off.
+"""Effect of input uncertainty on all reported quantities, compared with the model error.
 
-The adviser names the level; sensitivities, samples and shares are of scenes solved anew at that
+The adviser names the level; sensitivities, samples and shares are of scenes solved again at that
 level, with bearing units that depend on uncertain values as surfaces (see `unit_surface`), once
 with each of the two bounds of a housing that is solved apart: its face held in shape, and moving on
 average.
@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.fidelity.adviser import Advice, Quantity, Rung, advise
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.fidelity.quantities import (
     Number,
     Solved,
@@ -45,20 +45,20 @@ DEFAULT = "hub.stiffness.uz"
 _BOUNDS: tuple[Coupling, Coupling] = ("rigid", "averaged")
 _SOFT = "soft "
 
-_Report = Callable[[str], object]
+_Progress = Callable[[str], object]
 _T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
 class ModelError:
-    """How far a level is off in one number.
+    """Error of a level in one number.
 
     Attributes
     ----------
     share
         Relative.
     source
-        What it was found from.
+        What it was estimated from.
     """
 
     share: float
@@ -67,14 +67,14 @@ class ModelError:
 
 @dataclass(frozen=True)
 class Study:
-    """What was found.
+    """Results of the study.
 
     Attributes
     ----------
     scene, level
         What was studied, and at which level.
     advices
-        Ladders that were climbed to find that level; none where the user named it.
+        Ladders that were evaluated to select that level; none where the user named it.
     numbers
         All that are reported, those that were asked for first.
     asked
@@ -117,7 +117,7 @@ def study(
     count: int = 128,
     seed: int = 0,
     sobol: int = 0,
-    report: _Report = lambda step: None,
+    report: _Progress = lambda step: None,
 ) -> Study:
     """Propagate a scene's uncertain values to what is reported of it.
 
@@ -199,7 +199,7 @@ def study(
     )
 
 
-def _surfaces(scene: Scene, solver: Resolver, seed: int, report: _Report) -> list[UnitSurface]:
+def _surfaces(scene: Scene, solver: Resolver, seed: int, report: _Progress) -> list[UnitSurface]:
     """Of each bearing unit that depends on uncertain values."""
     found = []
     for unit in scene.bearing_units:
@@ -214,18 +214,18 @@ def _soft(values: Mapping[str, _T]) -> dict[str, _T]:
     return {k.removeprefix(_SOFT): v for k, v in values.items() if k.startswith(_SOFT)}
 
 
-def rung_of(advice: Advice, level: int) -> Rung:
-    """The last rung of a level: that with housings as springs."""
-    return [rung for rung in advice.rungs if rung.model.level == level][-1]
+def result_at(advice: Advice, level: int) -> LevelResult:
+    """The last result at a level: that with housings as springs."""
+    return [result for result in advice.results if result.model.level == level][-1]
 
 
 def level_error(advice: Advice, level: int) -> float:
-    """What a level may be off: its distance to the top and the top's own band."""
-    return rung_of(advice, level).error + advice.top.estimate
+    """Error bound of a level: its distance to the top plus the band of the top itself."""
+    return result_at(advice, level).error + advice.top.estimate
 
 
 def _advised(
-    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, report: _Report
+    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, report: _Progress
 ) -> tuple[list[Advice], int]:
     """The ladder of each quantity that has one, and the cheapest level that is enough for all."""
     names = [name for name in asked if name.startswith("hub.") or name[-2] in "FM"] or [DEFAULT]

@@ -1,4 +1,4 @@
-"""A scene solved at a cheap level again and again: only what a change touches is solved anew."""
+"""A scene solved at a cheap level again and again: only what a change affects is solved again."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UnitStiffness = Callable[[Scene], Floats]
 
 
 def unit_content(scene: Scene, name: str) -> str:
-    """All that the stiffness of a bearing unit depends on; where it stands is not among it."""
+    """All that the stiffness of a bearing unit depends on; its position is not included."""
     unit = scene.bearing_unit(name)
     bearing = unit.bearing
     return repr(

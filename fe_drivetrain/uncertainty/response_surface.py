@@ -4,8 +4,8 @@ A sample of hundreds would be as many meshes and solutions. The logarithm of the
 relative to the nominal one, is instead taken as quadratic in the logarithm of each value and
 additive over them: exact in the modulus of a unit of one material, near to that in any power, and
 symmetric and positive definite wherever it is evaluated (log-Euclidean: Arsigny et al. 2007, SIAM
-J. Matrix Anal. Appl. 29(1)). Solutions at values drawn from the distributions say how far it is
-off, and that includes the noise of meshes made anew.
+J. Matrix Anal. Appl. 29(1)). Solutions at values drawn from the distributions give its error,
+which includes the noise of new meshes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from fe_drivetrain.uncertainty.sampling import (
     with_values,
 )
 
-#: Least relative step of the design: below it the noise of a mesh made anew, some 1e-4 of the
+#: Least relative step of the design: below it the noise of a new mesh, some 1e-4 of the
 #: stiffness, would drown the difference.
 LEAST_REACH = 0.01
 
@@ -76,7 +76,7 @@ class UnitSurface:
 
     @property
     def slope_error(self) -> float:
-        """How far a sensitivity may be off for ``error``: it over the least step."""
+        """Error bound of a sensitivity due to ``error``: that over the least step."""
         return self.error / float(self.reach.min())
 
     def __call__(self, scene: Scene) -> Floats:
@@ -130,7 +130,7 @@ def unit_surface(
     Raises
     ------
     InputError
-        A value within the spread makes no scene.
+        A value within the spread does not give a valid scene.
     """
     keys = tuple(spreads)
     nominal = np.array(nominal_values(scene, keys))

@@ -1,7 +1,7 @@
 """How certain a result is when the inputs are not: sensitivities, samples, shares of variance.
 
-PROTEST's step 4: which inputs are how certain, and what that does to what is reported. Sampling is
-over a cheap level of the ladder; which one is the adviser's to say, see `uncertainty_study`. One
+PROTEST's step 4: how certain each input is, and the effect on the reported results. Sampling uses
+a cheap level of the ladder, which the adviser selects, see `input_study`. One
 evaluation of a scene answers every quantity.
 """
 
@@ -17,8 +17,10 @@ from scipy.stats import qmc
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.scene.scene import Scene, Spread, change_scene
+from fe_drivetrain.scene.reading import change_scene
+from fe_drivetrain.scene.scene import Scene, Spread
 
 Evaluate = Callable[[Scene], Mapping[str, float]]
 """Numbers of a scene by name."""
@@ -143,7 +145,7 @@ class Shares:
 
 
 def nominal_value(scene: Scene, key: str) -> float:
-    """The number that a dotted key leads to; a bearing unit goes by its bearing's name.
+    """The number that a dotted key leads to; a bearing unit is addressed by its bearing's name.
 
     Raises
     ------
@@ -160,21 +162,12 @@ def nominal_values(scene: Scene, keys: Sequence[str]) -> list[float]:
 
 
 def _number(data: Any, key: str) -> float:
-    for part in key.split("."):
-        if isinstance(data, list):
-            named = {
-                u["bearing"]["name"]: u for u in data if isinstance(u, dict) and "bearing" in u
-            }
-            data = named.get(part) or (
-                data[int(part)] if part.isdecimal() and int(part) < len(data) else None
-            )
-        else:
-            data = data.get(part) if isinstance(data, dict) else None
-    if isinstance(data, bool) or not isinstance(data, int | float):
+    value = value_by_key(data, key)
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(
             f"uncertainty of {key!r}: the scene has no number there: name a value that it gives"
         )
-    return float(data)
+    return float(value)
 
 
 def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
@@ -183,23 +176,23 @@ def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
 
 
 def check_spreads(scene: Scene) -> None:
-    """Refuse a scene that calls nothing uncertain, or something that cannot be.
+    """Refuse a scene without uncertain values, or with one that cannot be uncertain.
 
     Raises
     ------
     InputError
-        Nothing is uncertain; a key leads to no number, or to zero, of which no share is anything.
+        Nothing is uncertain; a key leads to no number, or to zero, which has no relative spread.
     """
     if not scene.uncertainty:
         raise InputError(
-            f"scene {scene.title!r} says of no value how certain it is: add some under "
+            f"scene {scene.title!r} has no uncertain values: add some under "
             "'uncertainty', as in shaft.sections.0.outer_diameter: {uniform: 0.01}"
         )
     for key in scene.uncertainty:
         if nominal_value(scene, key) == 0.0:
             raise InputError(
                 f"uncertainty of {key!r}: the value is 0, and a spread is relative to it: leave it "
-                "out, or move the frame so that it is not"
+                "out, or shift the frame so that the value differs from 0"
             )
 
 
@@ -351,7 +344,7 @@ def distribution(spread: Spread, nominal: float) -> Any:
         return stats.uniform(nominal - half, 2 * half)
     if spread.normal is not None:
         return stats.norm(nominal, spread.normal * abs(nominal))
-    # of the median: the mean of what is positive and may be off by a factor
+    # of the median: the mean of a positive value that may be wrong by a factor
     return stats.lognorm(np.sqrt(np.log1p(float(spread.lognormal or 0.0) ** 2)), scale=nominal)
 
 
@@ -368,7 +361,7 @@ def _evaluated(
         return evaluate(with_values(scene, values))
     except InputError as error:
         raise InputError(
-            f"within its uncertainty the scene cannot be: {error} (or make the spread of "
+            f"a value within its uncertainty gives no valid scene: {error} (or make the spread of "
             f"{', '.join(keys)} smaller)"
         ) from error
 

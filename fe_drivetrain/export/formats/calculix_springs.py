@@ -6,7 +6,7 @@ But every symmetric matrix without negative eigenvalues is a sum of squares of l
 K = sum k_i v_i v_i^T, its eigenvectors with a unit diagonal: an auxiliary node moves by v_i^T u, by
 *EQUATION, and stands on a spring k_i (SPRING1) to the ground. A mass does the same with MASS.
 
-A point is two nodes, as in `calculix_deck`: freedoms 1 to 3 of the first are its
+A point is two nodes, as in `calculix_plan`: freedoms 1 to 3 of the first are its
 displacements, of the second its rotations. The file is for an *INCLUDE in the model definition.
 """
 
@@ -56,11 +56,11 @@ def model_lines(
     n = len(element.points)
     label = element.name.upper()
     auxiliary = first_node + 2 * n
-    said = statement(element)
+    entries = statement(element)
     for k, name in enumerate(element.points):
         node = first_node + 2 * k
-        said[f"nodes of point {k + 1}"] = f"{node} displacements, {node + 1} rotations of {name}"
-    yield from comment_lines(said, "**")
+        entries[f"nodes of point {k + 1}"] = f"{node} displacements, {node + 1} rotations of {name}"
+    yield from comment_lines(entries, "**")
     yield f"*NODE, NSET={label}_POINTS"
     for k, (x, y, z) in enumerate(element.positions.tolist()):
         for node in (first_node + 2 * k, first_node + 2 * k + 1):
@@ -118,15 +118,15 @@ def read(path: Path) -> Superelement:
         The file is not of this form, or is cut off.
     """
     text = text_of(path, "superelement for CalculiX")
-    said = commented(text.splitlines(), "**")
-    if _END not in said:
+    entries = commented(text.splitlines(), "**")
+    if _END not in entries:
         raise InputError(f"{path} is no superelement for CalculiX, or is cut off")
     try:
         with np.errstate(all="ignore"):  # the superelement must be finite
             matrices = _summed(text)
     except (ValueError, IndexError, KeyError, StopIteration) as error:
         raise InputError(f"{path} is no superelement for CalculiX: {error}") from error
-    return element_of(path, said, matrices["stiffness"], matrices.get("mass"))
+    return element_of(path, entries, matrices["stiffness"], matrices.get("mass"))
 
 
 def _equation(auxiliary: int, form: Floats, first_node: int) -> Iterator[str]:

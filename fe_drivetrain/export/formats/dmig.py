@@ -48,8 +48,8 @@ def read(path: Path) -> Superelement:
         pyNastran is not installed.
     """
     bdf = pynastran("bdf.bdf")
-    said = commented(text_of(path, "Nastran bulk data").splitlines(), "$")
-    if _END not in said:
+    entries = commented(text_of(path, "Nastran bulk data").splitlines(), "$")
+    if _END not in entries:
         raise InputError(f"{path} is no superelement in Nastran bulk data, or is cut off")
     model = bdf.BDF(debug=None)
     try:
@@ -61,7 +61,7 @@ def read(path: Path) -> Superelement:
     numbers = list(range(1, len(model.nodes) + 1))
     if sorted(model.nodes) != numbers:
         raise InputError(f"{path}: its GRID entries must be numbered from 1, as its points are")
-    found = element_of(path, said, *_matrices(path, model, said))
+    found = element_of(path, entries, *_matrices(path, model, entries))
     grids = np.array([model.nodes[number].xyz for number in numbers])
     if not np.allclose(grids, found.positions, rtol=1e-9, atol=1e-9):
         raise InputError(f"{path}: its GRID entries are not at the points that its comments name")
@@ -89,11 +89,11 @@ _KINDS = {"K": "stiffness", "M": "mass"}
 def _lines(element: Superelement) -> Iterator[str]:
     matrices = {"K": element.stiffness} | ({} if element.mass is None else {"M": element.mass})
     names = {letter: matrix_name(element, letter) for letter in matrices}
-    said = statement(element)
-    said |= {f"matrix {letter}": name for letter, name in names.items()}
-    said["in the case control"] = ", ".join(f"{k}2GG = {name}" for k, name in names.items())
-    said["grid points"] = "point 1 is GRID 1, and so on; each has its six freedoms"
-    yield from comment_lines(said, "$")
+    entries = statement(element)
+    entries |= {f"matrix {letter}": name for letter, name in names.items()}
+    entries["in the case control"] = ", ".join(f"{k}2GG = {name}" for k, name in names.items())
+    entries["grid points"] = "point 1 is GRID 1, and so on; each has its six freedoms"
+    yield from comment_lines(entries, "$")
     for number, position in enumerate(element.positions.tolist(), 1):
         x, y, z = (double(value).replace("D", "E") for value in position)
         yield f"{'GRID*':<8}{number:>16}{'':16}{x:>16}{y:>16}"
@@ -114,11 +114,11 @@ def _matrix_lines(name: str, matrix: Floats) -> Iterator[str]:
             yield f"{'*':<8}{i // 6 + 1:>16}{i % 6 + 1:>16}{value:>16}{'':16}"
 
 
-def _matrices(path: Path, model: Any, said: dict[str, str]) -> tuple[Floats, Floats | None]:
+def _matrices(path: Path, model: Any, entries: dict[str, str]) -> tuple[Floats, Floats | None]:
     found: dict[str, Floats] = {}
     size = 6 * len(model.nodes)
     for letter in _KINDS:
-        name = said.get(f"matrix {letter}", "")
+        name = entries.get(f"matrix {letter}", "")
         if name not in model.dmig:
             if letter == "K" or name:
                 raise InputError(f"{path} has no DMIG {name!r}: it must hold its {_KINDS[letter]}")

@@ -1,6 +1,6 @@
 """OpenFAST's ElastoDyn input: `DTTorSpr` and `DTTorDmp` of an existing file, and nothing else.
 
-openfast_io can write ElastoDyn files, but writes them anew: comments, columns and the digits of
+openfast_io can write ElastoDyn files, but rewrites them: comments, columns and the digits of
 every other value change. So the two values are put into their lines here, and openfast_io reads
 the result.
 """

@@ -107,14 +107,14 @@ def write(
     """
     found = reduced(element, damping, gravity)
     first, *others = element.points
-    said = statement(element) | {
+    entries = statement(element) | {
         "freedoms": f"ux uy uz rx ry rz of {first}, the interface"
         + "".join(f"; of {name}, relative to its static share in that" for name in others),
         "gravity": f"{gravity!r} m/s^2 along -z",
         "damping": "none" if damping is None else "as given",
     }
     # a blank after the mark keeps a comment from being a keyword
-    comments = list(comment_lines(said, "!"))
+    comments = list(comment_lines(entries, "!"))
     lines = _release_5(found, comments) if release == 5 else _release_4(found, comments)
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

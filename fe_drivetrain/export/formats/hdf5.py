@@ -49,7 +49,7 @@ def read(path: Path) -> Superelement:
         raise InputError(f"{path} is no file: name one")
     try:
         with h5py.File(path, "r") as file:
-            said = {key: str(value) for key, value in file.attrs.items()}
+            entries = {key: str(value) for key, value in file.attrs.items()}
             matrices = {
                 key: np.asarray(file[key], dtype=float)
                 for key in ("stiffness", "mass")
@@ -59,7 +59,7 @@ def read(path: Path) -> Superelement:
         raise InputError(f"{path} is no HDF5 file: {error}") from error
     if "stiffness" not in matrices:
         raise InputError(f"{path} has no dataset 'stiffness': it is no superelement's")
-    return element_of(path, said, matrices["stiffness"], matrices.get("mass"))
+    return element_of(path, entries, matrices["stiffness"], matrices.get("mass"))
 
 
 _UNITS = {"stiffness": "N/m, N, N m/rad", "mass": "kg, kg m, kg m^2"}

@@ -1,4 +1,4 @@
-"""Matrix Market: one symmetric matrix a file, the stiffness; what it is stands in the comments.
+"""Matrix Market: one symmetric matrix a file, the stiffness; its description is in the comments.
 
 Array form, real and symmetric: the lower triangle by columns (Boisvert, Pozo and Remington 1996,
 The Matrix Market Exchange Formats, NISTIR 5935).
@@ -32,7 +32,7 @@ def write(path: Path, element: Superelement) -> None:
 
 
 def read(path: Path) -> Superelement:
-    """Read a stiffness and what its comments say of it.
+    """Read a stiffness and the description in its comments.
 
     Raises
     ------
@@ -40,14 +40,14 @@ def read(path: Path) -> Superelement:
         The file is not Matrix Market, or its comments are not a superelement's.
     """
     text = text_of(path, "Matrix Market file")
-    said = commented(text.splitlines(), "%")
-    if said.get("matrix") == "mass":
+    entries = commented(text.splitlines(), "%")
+    if entries.get("matrix") == "mass":
         raise InputError(f"{path} holds a mass: read the file of the stiffness")
     try:
         matrix = _array(text)
     except (ValueError, IndexError) as error:
         raise InputError(f"{path} is no Matrix Market file: {error}") from error
-    return element_of(path, said, matrix, None)
+    return element_of(path, entries, matrix, None)
 
 
 def _array(text: str) -> Floats:
@@ -76,13 +76,13 @@ def _array(text: str) -> Floats:
 
 def write_matrix(path: Path, element: Superelement, kind: str, matrix: Floats) -> None:
     """Write one matrix of a superelement, with the statement that it is ``kind``."""
-    said = {"matrix": kind} | statement(element)
+    entries = {"matrix": kind} | statement(element)
     text = io.BytesIO()
     mmwrite(
         text,
         0.5 * (matrix + matrix.T),
         # the writer puts "%" before each line, and no blank
-        comment="\n".join(line.removeprefix("%") for line in comment_lines(said, "%")),
+        comment="\n".join(line.removeprefix("%") for line in comment_lines(entries, "%")),
         precision=_DIGITS,
         symmetry="symmetric",
     )

@@ -1,4 +1,4 @@
-"""Matrix Market: the mass, which stands in a file of its own beside the stiffness."""
+"""Matrix Market: the mass, in a second file beside the stiffness."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 The casing refers to an assembly group, which holds `reduced_static_stiffness_matrix` and, in an
 ordered assembly, one `reduction_point` for each seat: their order is the matrix's (REXS database
 1.6, relations `reference` and `ordered_assembly`; rexs.info, "Assembly Groups"). REXS gives the
-matrix no unit, and lengths in mm; here it is in N, mm and rad, which a custom attribute says.
+matrix no unit, and lengths in mm; here it is in N, mm and rad, which a custom attribute states.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ def write(path: Path, element: Superelement) -> None:
         date=datetime.now(UTC).isoformat(timespec="seconds"),
     )
     # two hyphens end a comment
-    said = {key: value.replace("--", "- -") for key, value in statement(element).items()}
-    said |= {"units of the matrix": UNITS}
-    model.append(ET.Comment("\n" + "\n".join(comment_lines(said, "#")) + "\n"))
+    entries = {key: value.replace("--", "- -") for key, value in statement(element).items()}
+    entries |= {"units of the matrix": UNITS}
+    model.append(ET.Comment("\n" + "\n".join(comment_lines(entries, "#")) + "\n"))
     relations, components = ET.SubElement(model, "relations"), ET.SubElement(model, "components")
     seats = range(_FIRST, _FIRST + len(element.points))
     _relate(relations, 1, "assembly", ("assembly", 1, "gear_unit"), ("part", 2, "gear_casing"))
@@ -91,7 +91,7 @@ def write(path: Path, element: Superelement) -> None:
 
 
 def read(path: Path) -> Superelement:
-    """Read a stiffness, its points, and what the comment says of them.
+    """Read a stiffness, its points, and the description in the comment.
 
     Raises
     ------
@@ -125,8 +125,8 @@ def read(path: Path) -> Superelement:
         )
     # a comment's tag is the function that makes one
     lines = [line for c in model if callable(c.tag) for line in (c.text or "").splitlines()]
-    said = commented(lines, "#")
-    return element_of(path, said, _in_metres(matrix), None)
+    entries = commented(lines, "#")
+    return element_of(path, entries, _in_metres(matrix), None)
 
 
 def _relate(

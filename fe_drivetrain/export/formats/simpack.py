@@ -33,9 +33,9 @@ def write(path: Path, element: Superelement) -> None:
     ``$_NAME_K_3_9`` is the stiffness between the freedoms 3 and 9 of the superelement NAME, and
     ``$_NAME_M_3_9`` their mass; ``$_NAME_x_2`` is x of its second point. Numbers keep every digit.
     """
-    said = statement(element)
+    entries = statement(element)
     labels = freedom_labels(element)
-    lines = [_HEADER, "", *comment_lines(said, "!"), ""]
+    lines = [_HEADER, "", *comment_lines(entries, "!"), ""]
 
     def add(name: str, value: float, comment: str) -> None:
         lines.append(f"subvar($_{element.name}_{name}, str= '{float(value)!r}') ! {comment}")
@@ -70,13 +70,13 @@ def read(path: Path) -> Superelement:
     text = text_of(path, "SIMPACK subvar file")
     if not text.startswith("!file.version="):
         raise InputError(f"{path} is no SIMPACK subvar file: its first line must state its version")
-    said = commented(text.splitlines()[1:], "!")
-    n = 6 * sum(key.startswith("point ") for key in said)
+    entries = commented(text.splitlines()[1:], "!")
+    n = 6 * sum(key.startswith("point ") for key in entries)
     values = {m["name"]: m["value"] for m in map(_LINE.match, text.splitlines()) if m}
-    prefix = said.get("superelement", "")
+    prefix = entries.get("superelement", "")
     stiffness = _matrix(path, values, f"{prefix}_K", n)
     mass = _matrix(path, values, f"{prefix}_M", n) if f"{prefix}_M_1_1" in values else None
-    return element_of(path, said, stiffness, mass)
+    return element_of(path, entries, stiffness, mass)
 
 
 def _matrix(path: Path, values: dict[str, str], prefix: str, n: int) -> Floats:
@@ -85,7 +85,9 @@ def _matrix(path: Path, values: dict[str, str], prefix: str, n: int) -> Floats:
         for i, j in zip(*np.triu_indices(n), strict=True):
             upper[i, j] = float(values[f"{prefix}_{i + 1}_{j + 1}"])
     except KeyError as error:
-        raise InputError(f"{path} lacks the variable {error}: it may be cut off") from error
+        raise InputError(
+            f"{path} has no variable {error}: it may be truncated; export it again"
+        ) from error
     except ValueError as error:
         raise InputError(f"{path}: a variable is no number: {error}") from error
     return upper + np.triu(upper, 1).T

@@ -1,4 +1,4 @@
-"""What text formats say of a superelement beside its matrices: comments of the form "key: value".
+"""Statement of a superelement in text formats, beside its matrices: comments "key: value".
 
 Frame, units, points, order of freedoms, source, uncertainty and checks stand in the file as a
 person reads them, and are read back from there.
@@ -23,9 +23,9 @@ _NUMBER = re.compile(r"[-+0-9.eE]+")
 
 
 def statement(element: Superelement) -> dict[str, str]:
-    """All that is said of a superelement, by key; numbers keep every digit."""
+    """The statement of a superelement, by key; numbers keep every digit."""
     origin = element.origin
-    said = {
+    entries = {
         "superelement": element.name,
         "program": origin.program,
         "scene": origin.scene,
@@ -40,15 +40,15 @@ def statement(element: Superelement) -> dict[str, str]:
     }
     for number, (name, position) in enumerate(zip(element.points, element.positions, strict=True)):
         x, y, z = position.tolist()
-        said[f"point {number + 1}"] = f"{name} at {x!r} {y!r} {z!r} m"
+        entries[f"point {number + 1}"] = f"{name} at {x!r} {y!r} {z!r} m"
     for name, value in element.checks().items():
-        said[f"check, {name}"] = f"{value:.2g} of a unit diagonal"
-    return {key: " ".join(value.split()) for key, value in said.items()}
+        entries[f"check, {name}"] = f"{value:.2g} of a unit diagonal"
+    return {key: " ".join(value.split()) for key, value in entries.items()}
 
 
-def comment_lines(said: Mapping[str, str], mark: str) -> Iterator[str]:
+def comment_lines(entries: Mapping[str, str], mark: str) -> Iterator[str]:
     """The statement as comments after a ``mark``; three more blanks go on with a line."""
-    for key, value in said.items():
+    for key, value in entries.items():
         yield from textwrap.wrap(
             f"{key}: {value}".rstrip(),
             _WIDTH,
@@ -60,8 +60,8 @@ def comment_lines(said: Mapping[str, str], mark: str) -> Iterator[str]:
 
 
 def commented(lines: Iterable[str], mark: str) -> dict[str, str]:
-    """The statement in the comments of a file; whatever else stands there is left out."""
-    said: dict[str, str] = {}
+    """The statement in the comments of a file; other comments are left out."""
+    entries: dict[str, str] = {}
     key = ""
     for line in lines:
         if not line.startswith(f"{mark} "):
@@ -69,17 +69,17 @@ def commented(lines: Iterable[str], mark: str) -> dict[str, str]:
             continue
         text = line[len(mark) + 1 :].rstrip()
         if text.startswith("   ") and key:
-            said[key] = f"{said[key]} {text.strip()}".strip()
+            entries[key] = f"{entries[key]} {text.strip()}".strip()
             continue
         key, colon, value = text.partition(":")
         key = key if colon and not text.startswith(" ") else ""
         if key:
-            said[key] = value.strip()
-    return said
+            entries[key] = value.strip()
+    return entries
 
 
 def element_of(
-    path: Path, said: Mapping[str, str], stiffness: Floats, mass: Floats | None
+    path: Path, entries: Mapping[str, str], stiffness: Floats, mass: Floats | None
 ) -> Superelement:
     """The superelement that a statement and its matrices are.
 
@@ -89,23 +89,23 @@ def element_of(
         A key is missing, or a value is not what it is to be.
     """
     try:
-        points, positions = _points(said)
-        band = None if said["band"] == "not known" else float(said["band"].split()[0])
-        supported = {"in the stiffness": True, "none: the body is free": False}[said["supports"]]
+        points, positions = _points(entries)
+        band = None if entries["band"] == "not known" else float(entries["band"].split()[0])
+        supported = {"in the stiffness": True, "none: the body is free": False}[entries["supports"]]
         keys = ("scene", "scene hash", "level", "mesh", "program")
         return Superelement(
-            said["superelement"],
+            entries["superelement"],
             points,
             positions,
             stiffness,
             mass,
             supported,
             band,
-            Origin(*(said[key] for key in keys)),
+            Origin(*(entries[key] for key in keys)),
         )
     except KeyError as error:
         raise InputError(
-            f"{path} does not say {error}: it is no superelement, or cut off"
+            f"{path} does not state {error}: it is no superelement, or cut off"
         ) from error
     except (ValueError, IndexError) as error:
         raise InputError(f"{path} is no superelement: {error}") from error
@@ -113,11 +113,11 @@ def element_of(
         raise InputError(f"{path}: {error}") from error
 
 
-def _points(said: Mapping[str, str]) -> tuple[tuple[str, ...], Floats]:
+def _points(entries: Mapping[str, str]) -> tuple[tuple[str, ...], Floats]:
     names: list[str] = []
     positions: list[list[float]] = []
-    while f"point {len(names) + 1}" in said:
-        name, _, place = said[f"point {len(names) + 1}"].rpartition(" at ")
+    while f"point {len(names) + 1}" in entries:
+        name, _, place = entries[f"point {len(names) + 1}"].rpartition(" at ")
         names.append(name)
         positions.append([float(value) for value in _NUMBER.findall(place)[:3]])
     if not names:

@@ -1,4 +1,4 @@
-"""What a drivetrain model needs of a scene, beside matrices at points, as one JSON file.
+"""Input of a drivetrain model from a scene, beside matrices at points, as one JSON file.
 
 Stiffness of the shaft along and about its axis and in bending, K_R of each bearing unit in both
 planes, the matrices from loads to reactions, and mass and inertia of each part.

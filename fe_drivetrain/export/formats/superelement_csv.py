@@ -41,7 +41,7 @@ def read(path: Path) -> Superelement:
     InputError
         The file is not such a table, or is cut off.
     """
-    said: dict[str, str] = {}
+    entries: dict[str, str] = {}
     found: dict[str, list[list[float]]] = {}
     head: list[str] = []
     ended = False
@@ -53,7 +53,7 @@ def read(path: Path) -> Superelement:
             if row[0] == _END:
                 ended = True
             elif row[0].startswith("# "):
-                said[row[0][2:]] = row[1]
+                entries[row[0][2:]] = row[1]
             elif not head:
                 if row[:2] != ["matrix", "freedom"]:
                     raise ValueError("the table's head must begin with matrix,freedom")
@@ -75,4 +75,4 @@ def read(path: Path) -> Superelement:
             "and may hold a mass"
         )
     matrices: dict[str, Floats] = {kind: np.array(rows) for kind, rows in found.items()}
-    return element_of(path, said, matrices["stiffness"], matrices.get("mass"))
+    return element_of(path, entries, matrices["stiffness"], matrices.get("mass"))

@@ -1,4 +1,4 @@
-"""What CalculiX makes of an exported superelement: it is included in a deck, and ccx runs that."""
+"""Results of CalculiX for an exported superelement: a deck includes it, and ccx runs the deck."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.calculix_deck import read_dat, run_calculix
+from fe_drivetrain.export.calculix_results import read_dat
 from fe_drivetrain.export.formats.calculix_springs import write as write_springs
+from fe_drivetrain.export.programs.ccx import run_calculix
 from fe_drivetrain.export.superelement import Superelement
 
 #: Freedoms that the eigenvalue solver of ccx (ARPACK) wants for every frequency; found by trial.

@@ -130,13 +130,13 @@ class System:
         return matrices
 
     def place(self, point: str) -> Floats:
-        """Where a point stands (3,) [m] under the loads of the last `reactions`."""
+        """Position of a point (3,) [m] under the loads of the last `reactions`."""
         exudyn, _ = _exudyn()
         found = self.system.GetMarkerOutput(self.markers[point], exudyn.OutputVariableType.Position)
         return np.asarray(found)
 
     def frequencies(self) -> Floats:
-        """Natural frequencies about the place where the shaft stands, ascending [Hz]."""
+        """Natural frequencies about the equilibrium position of the shaft, ascending [Hz]."""
         exudyn, _ = _exudyn()
         settings = exudyn.SimulationSettings()
         # What it has no derivative of, it takes by differences: steps of 1e-8 m, ten times its own,

@@ -1,22 +1,22 @@
-"""How far a model is from a reference over histories too long for memory.
+"""All statistics of a model against a reference, of histories in memory or in chunks.
 
-The statistics are those of `statistics`. Sums of chunks are merged about their means
-(Welford 1962, Technometrics 4, 419-420; Chan, Golub and LeVeque 1983, The American Statistician 37,
-242-247), so that nothing cancels where the mean is many times the variation, and memory is that of
-a chunk.
+A history in memory is one chunk.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.compare.statistics import CONSTANT, Comparison, ratio
+from fe_drivetrain.compare.moments import Moments, moments
+from fe_drivetrain.compare.statistics import CONSTANT, check_excluded, ratio
 
 Chunk = tuple[ArrayLike, ArrayLike]
 """Reference and model (n, k): some samples of k quantities."""
@@ -26,77 +26,112 @@ BLOCK = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
-    """What samples of a reference and a model leave behind.
+class Comparison:
+    """Every statistic of a model against a reference; arrays (N, k) by history and quantity.
 
     Parameters
     ----------
-    count
-        Samples.
-    origin : (3, k)
-        Of reference, model and their difference: a value near their means.
-    offset : (3, k)
-        Their means less the origin. Kept apart, since a mean of many times the variation is rounded
-        by a share of the variation that would tell.
-    products : (3, 3, k)
-        Sums of products of the three less their means.
-    absolute : (2, k)
-        Sums of |reference| and |difference|.
-    least, largest : (2, k)
-        Of reference and model.
+    names, units : tuple of str, (k,)
+        Of the quantities.
+    samples : int
+        Per history.
+    reference_rms, rmse, bias : ndarray
+        In the quantity's unit.
+    relative_scatter, relative_error : ndarray
+        Fractions of the reference's rms and of its mean magnitude.
+    mean_percentage_error : ndarray
+        Percent.
+    excluded_share : ndarray
+        Share of the samples that the percentage leaves out.
+    correlation : ndarray
+        Pearson.
+    slope, cov : ndarray
+        Model uncertainty, reference over model.
     """
 
-    count: int
-    origin: Floats
-    offset: Floats
-    products: Floats
-    absolute: Floats
-    least: Floats
-    largest: Floats
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    samples: int
+    reference_rms: Floats
+    rmse: Floats
+    bias: Floats
+    relative_scatter: Floats
+    relative_error: Floats
+    mean_percentage_error: Floats
+    excluded_share: Floats
+    correlation: Floats
+    slope: Floats
+    cov: Floats
 
-    @property
-    def mean(self) -> Floats:
-        """Means of reference, model and difference, (3, k)."""
-        return np.asarray(self.origin + self.offset)
+    def index(self, name: str) -> int:
+        """Column of a quantity.
 
-    @property
-    def squares(self) -> Floats:
-        """Mean squares of reference, model and difference, (3, k)."""
-        return np.asarray(np.einsum("iik->ik", self.products) / self.count + self.mean**2)
+        Raises
+        ------
+        InputError
+            If there is no such quantity.
+        """
+        if name not in self.names:
+            raise InputError(
+                f"quantity '{name}' is not compared: choose one of {', '.join(self.names)}."
+            )
+        return self.names.index(name)
 
-    def merged(self, other: Moments) -> Moments:
-        """Those of the samples of both, of one origin: Chan, Golub and LeVeque 1983, Eq 2.1."""
-        n = self.count + other.count
-        step = other.offset - self.offset
-        return Moments(
-            n,
-            self.origin,
-            self.offset + step * (other.count / n),
-            self.products + other.products + step[:, None] * step * (self.count * other.count / n),
-            self.absolute + other.absolute,
-            np.minimum(self.least, other.least),
-            np.maximum(self.largest, other.largest),
+
+def compare(
+    reference: ArrayLike,
+    model: ArrayLike,
+    names: Sequence[str],
+    units: Sequence[str],
+    negligible: float | Sequence[float] = 0.0,
+    exclude_below: float = 1e-3,
+) -> Comparison:
+    """All statistics of each history and quantity.
+
+    Parameters
+    ----------
+    reference, model : array_like, (N, n, k)
+        N histories of n samples of k quantities.
+    names, units : sequence of str, (k,)
+        Such as "Fy" and "N".
+    negligible : float or (k,)
+        A reference whose rms is at or below this, in the quantity's unit, counts as zero: its
+        relative statistics, correlation and model uncertainty are NaN rather than a ratio of
+        rounding errors. Give it for the moments of a spherical bearing; 0 leaves only a reference
+        that is zero throughout.
+    exclude_below : float
+        See `mean_percentage_error`.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    InputError
+        If a shape, name or unit does not fit, a value is not finite, or there are fewer than 2
+        samples.
+    """
+    r, m = np.asarray(reference, dtype=float), np.asarray(model, dtype=float)
+    if r.ndim != 3 or r.shape != m.shape:
+        raise InputError(
+            f"reference {r.shape} and model {m.shape} must have one shape (histories, samples, "
+            "quantities): add or reorder axes."
         )
-
-
-def moments(reference: ArrayLike, model: ArrayLike, origin: Floats | None = None) -> Moments:
-    """Moments of samples (n, k) that are in memory; of an origin, see `Moments`, or of zero."""
-    r, m = (np.ascontiguousarray(np.asarray(v, dtype=float).T) for v in (reference, model))
-    signals = np.stack([r, m, m - r])
-    if origin is None:
-        origin = np.zeros(signals.shape[:2])
-    shifted = signals - origin[..., None]
-    offset = shifted.mean(axis=-1)
-    shifted -= offset[..., None]
-    return Moments(
-        r.shape[-1],
-        origin,
-        offset,
-        np.einsum("ikn,jkn->ijk", shifted, shifted),
-        np.abs(signals[::2]).sum(axis=-1),
-        signals[:2].min(axis=-1),
-        signals[:2].max(axis=-1),
-    )
+    if not len(r):
+        raise InputError("0 histories to compare: give at least 1.")
+    if not len(names) == len(units) == r.shape[2]:
+        raise InputError(
+            f"{len(names)} names and {len(units)} units for {r.shape[2]} quantities: give one of "
+            "each for every quantity."
+        )
+    settings = (names, units, negligible, exclude_below)
+    each = [compare_streamed(partial(_whole, a, b), *settings) for a, b in zip(r, m, strict=True)]
+    arrays = [f.name for f in fields(Comparison) if f.name not in ("names", "units", "samples")]
+    joined: dict[str, Any] = {
+        name: np.concatenate([getattr(c, name) for c in each]) for name in arrays
+    }
+    return replace(each[0], **joined)
 
 
 def compare_streamed(
@@ -106,15 +141,15 @@ def compare_streamed(
     negligible: float | Sequence[float] = 0.0,
     exclude_below: float = 1e-3,
 ) -> Comparison:
-    """`fe_drivetrain.compare.statistics.compare` of one history that comes in chunks.
+    """`compare` of one history that comes in chunks, for histories too long for memory.
 
     Parameters
     ----------
-    chunks
+    chunks : callable
         Called twice; gives the same chunks in the same order each time. Twice, because what the
-        percentage leaves out, and the residuals of the model uncertainty, hang on sums over all.
+        percentage leaves out, and the residuals of the model uncertainty, depend on sums over all.
     names, units, negligible, exclude_below
-        As for `fe_drivetrain.compare.statistics.compare`.
+        As for `compare`.
 
     Returns
     -------
@@ -126,11 +161,7 @@ def compare_streamed(
     InputError
         As `compare`; also if the second time gives other samples than the first.
     """
-    if not 0.0 <= exclude_below < 1.0:
-        raise InputError(
-            f"exclude_below = {exclude_below:g} must be at least 0 and below 1, as a share of the "
-            "reference's rms: 0.001 is usual."
-        )
+    check_excluded(exclude_below)
     k = len(names)
     if len(units) != k:
         raise InputError(f"{k} names and {len(units)} units: give one of each for every quantity.")
@@ -210,6 +241,10 @@ def compare_streamed(
         slope=slope,
         cov=cov,
     )
+
+
+def _whole(reference: Floats, model: Floats) -> list[Chunk]:
+    return [(reference, model)]
 
 
 def _blocks(chunks: Iterable[Chunk], k: int) -> Iterator[tuple[Floats, Floats]]:

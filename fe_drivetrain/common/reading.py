@@ -1,0 +1,288 @@
+"""Typed models from YAML text: one reader, one setter by dotted key, one translator of faults.
+
+Every mistake becomes one sentence with the object, the value, the allowed range and the fix.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, TypeVar
+
+import yaml
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import PlainLoader, shown
+
+_MAX_BYTES = 1_000_000
+_LONGEST_KEY = 100  # characters of a dotted key in a message
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+def read_text(path: str | Path, kind: str) -> str:
+    """Text of a file of at most 1 MB.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    kind : str
+        What it should hold, for messages: "scene", "drivetrain".
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is too large, or is not UTF-8.
+    """
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            content = file.read(_MAX_BYTES + 1)
+        if len(content) > _MAX_BYTES:
+            raise InputError(
+                f"{path} is larger than {_MAX_BYTES} bytes, the limit of a {kind} file: shorten it"
+            )
+        return content.decode("utf-8")
+    except (OSError, ValueError) as error:  # no file, no text, or no name of a file
+        raise InputError(f"cannot read {kind} file {path}: {error}") from error
+
+
+def parse_mapping(text: str, source: str) -> dict[str, Any]:
+    """Keys and values of plain YAML text.
+
+    Parameters
+    ----------
+    text : str
+        YAML without anchors, aliases or tags, see `strict_yaml`.
+    source : str
+        Where the text comes from, for messages.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    InputError
+        The text is not such YAML, or not a mapping.
+    """
+    try:
+        data = yaml.load(text, Loader=PlainLoader)
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        raise InputError(f"{source} is not plain YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(data, dict):
+        raise InputError(
+            f"{source} must be a mapping of keys to values: begin with a line such as 'title: mine'"
+        )
+    return data
+
+
+def validated(model: type[_Model], data: Any, source: str) -> _Model:
+    """Check data against a model.
+
+    Parameters
+    ----------
+    model : type
+        A pydantic model.
+    data : Any
+        Mappings, lists, words and numbers.
+    source : str
+        Where the data come from, for messages.
+
+    Returns
+    -------
+    model
+
+    Raises
+    ------
+    InputError
+        The first fault in one sentence.
+    """
+    try:
+        return model.model_validate(data)
+    except InputError as error:  # from a part, whose message is a sentence already
+        raise InputError(f"{source}: {error}") from error
+    except ValidationError as error:
+        raise InputError(f"{source}: {fault_sentence(error, model)}") from error
+
+
+def changed(instance: _Model, changes: Mapping[str, Any], source: str) -> _Model:
+    """A copy of a model with other values by dotted key; see `set_by_key` and `validated`."""
+    data = instance.model_dump(mode="json")
+    for key, value in changes.items():
+        set_by_key(data, key, value)
+    return validated(type(instance), data, source)
+
+
+def set_by_key(data: Any, key: str, value: Any) -> None:
+    """Replace one value, in place.
+
+    Parameters
+    ----------
+    data : dict or list
+        Mappings and lists, nested.
+    key : str
+        Dotted, as in "shaft.sections.0.length". An entry of a list goes by its number from 0 on, or
+        by its name: that under "name", of its own or of a mapping in it.
+    value : Any
+        The new value; mappings on the way to it are made where there are none.
+
+    Raises
+    ------
+    InputError
+        A list has no such entry, or the key leads into a value.
+    """
+    *path, last = key.split(".")
+    target = data
+    for part in path:
+        if isinstance(target, dict):
+            target = target.setdefault(part, {})
+        elif (entry := _entry(target, part)) is not None:
+            target = target[entry]
+        else:
+            raise _no_entry(key, part, target)
+    if isinstance(target, dict):
+        target[last] = value
+    elif (entry := _numbered(target, last)) is not None:
+        target[entry] = value
+    else:
+        raise _no_entry(key, last, target)
+
+
+def value_by_key(data: Any, key: str) -> Any:
+    """The value that a dotted key leads to, None where there is none; see `set_by_key`."""
+    for part in key.split("."):
+        if isinstance(data, dict):
+            data = data.get(part)
+        elif (entry := _entry(data, part)) is not None:
+            data = data[entry]
+        else:
+            return None
+    return data
+
+
+def _numbered(target: Any, part: str) -> int | None:
+    """Position in a list by its number; None of what is no list, or has no such entry."""
+    if not isinstance(target, list) or not part.isdecimal():
+        return None
+    # not int(part): it takes numerals of any script, and fails for very many digits
+    return next((k for k in range(len(target)) if str(k) == part), None)
+
+
+def _entry(target: Any, part: str) -> int | None:
+    """Position in a list by number or name."""
+    number = _numbered(target, part)
+    if number is not None or not isinstance(target, list):
+        return number
+    for k, entry in enumerate(target):
+        if isinstance(entry, dict):
+            inner = (value for value in entry.values() if isinstance(value, dict))
+            if part in (holder.get("name") for holder in (entry, *inner)):
+                return k
+    return None
+
+
+def _no_entry(key: str, part: str, target: Any) -> InputError:
+    numbers = f"; there are 0 to {len(target) - 1}" if isinstance(target, list) and target else ""
+    return InputError(
+        f"key {shown(key)}: there is no {shown(part)}{numbers}: use a key that the file has"
+    )
+
+
+#: What a value must do, by pydantic's type of the fault.
+_RULES = {
+    "greater_than": "be greater than {gt:g}",
+    "greater_than_equal": "be at least {ge:g}",
+    "less_than": "be less than {lt:g}",
+    "less_than_equal": "be at most {le:g}",
+    "literal_error": "be {expected}",
+    "finite_number": "be a finite number",
+    "float_parsing": "be a number in SI units, without the unit",
+    "float_type": "be a number in SI units, without the unit",
+    "int_from_float": "be a whole number",
+    "int_parsing": "be a whole number",
+    "int_type": "be a whole number",
+    "string_type": "be a text",
+    "too_short": "have at least {min_length} values, not {actual_length}",
+    "too_long": "have at most {max_length} values, not {actual_length}",
+    "model_type": "be a mapping of keys to values",
+    "dict_type": "be a mapping of keys to values",
+    "tuple_type": "be a list",
+    "union_tag_not_found": "be a mapping of keys to values",
+}
+
+
+def fault_sentence(error: ValidationError, model: type[BaseModel]) -> str:
+    """The first fault that pydantic found, as key, value, allowed range and fix.
+
+    Parameters
+    ----------
+    error : ValidationError
+        From a validation of `model`.
+    model : type
+        Its fields, and those of the models in it, give meanings and known keys.
+
+    Returns
+    -------
+    str
+        As in "gearbox.weight is -1 but must be at least 0 (weight [N], along -z): correct it".
+    """
+    faults: Sequence[Any] = error.errors(include_url=False)
+    # A misspelt key first: what is missing is often the same key, spelt right.
+    fault = min(faults, key=lambda f: f["type"] != "extra_forbidden")
+    kind, key = fault["type"], _key(fault)
+    owner, field = _field(model, fault["loc"])
+    if kind == "extra_forbidden":
+        known = list(owner.model_fields)
+        close = get_close_matches(str(fault["loc"][-1]), known, n=1)
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        return f"unknown key {shown(key)}{hint}: use one of {', '.join(known)}"
+    meaning = f" ({field.description})" if field is not None and field.description else ""
+    if kind == "missing":
+        return f"{key}{meaning} is missing: add it"
+    given = fault["input"]
+    value = f" is {shown(given)}" if isinstance(given, int | float | str) else ""
+    if kind not in _RULES:  # a rule of the model's own, with its fix
+        message = str(fault["msg"]).removeprefix("Value error, ")
+        return f"{key}{value}: {message}".removeprefix(": ")
+    rule = _RULES[kind].format(**fault.get("ctx", {}))
+    words = [
+        f["ctx"]["expected"]
+        for f in faults
+        if f["type"] == "literal_error" and f is not fault and _key(f) == key
+    ]
+    rule = ", or ".join([rule, *words])
+    return f"{key}{value}{' but' if value else ''} must {rule}{meaning}: correct it"
+
+
+def _key(fault: Any) -> str:
+    """Dotted key of a fault, without pydantic's marks of the members of a union."""
+    parts = (str(part) for part in fault["loc"])
+    key = ".".join(part for part in parts if part != "float" and "[" not in part)
+    return key if len(key) <= _LONGEST_KEY else f"{key[: _LONGEST_KEY - 3]}..."
+
+
+def _field(
+    model: type[BaseModel], location: Sequence[int | str]
+) -> tuple[type[BaseModel], FieldInfo | None]:
+    """The innermost model that a fault's location leads into, and the last field on the way."""
+    field: FieldInfo | None = None
+    for part in location:
+        if isinstance(part, str) and part in model.model_fields:
+            field = model.model_fields[part]
+            model = next(iter(_models_in(field.annotation)), model)
+    return model, field
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [m for inner in getattr(annotation, "__args__", ()) for m in _models_in(inner)]

@@ -1,0 +1,79 @@
+"""Columns of a file with hub loads: numbers, units and conversion to SI."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """One column of a file: its name there, its unit there, its samples (n,) as written."""
+
+    name: str
+    unit: str
+    values: Floats
+
+
+def parse_number(text: str) -> float:
+    """The number that a cell holds; ValueError where it holds none.
+
+    Python takes 1_0 for ten, and digits of any script: in a table these are slips.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError(text)
+    return float(text)
+
+
+TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 1e-3}
+ANGLE_UNITS = {"deg": np.pi / 180.0, "rad": 1.0}
+FORCE_UNITS = {"N": 1.0, "kN": 1e3, "MN": 1e6}
+MOMENT_UNITS = {"Nm": 1.0, "kNm": 1e3, "MNm": 1e6}
+
+
+def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
+    """Samples of a channel in SI units.
+
+    Parameters
+    ----------
+    source : str
+        The file, for messages.
+    channel : Channel
+        The column.
+    units : mapping
+        Size of each unit that it may have, in SI: `TIME_UNITS` and so on.
+
+    Returns
+    -------
+    ndarray, (n,)
+
+    Raises
+    ------
+    InputError
+        The unit is another.
+    """
+    # "N m", "N-m", "N.m", "N*m" and "N·m" are one unit; upper and lower case are not (mN, MN).
+    unit = re.sub(r"[\s·⋅*.\-]", "", channel.unit)
+    if unit not in units:
+        raise InputError(
+            f"hub loads '{source}': channel {channel.name} has the unit '{channel.unit}', not one "
+            f"of {', '.join(units)}; correct the unit or the channel"
+        )
+    with np.errstate(over="ignore"):  # an infinity is refused with its place
+        return np.asarray(channel.values * units[unit])
+
+
+def existing_file(path: str | os.PathLike[str]) -> Path:
+    """The path of a file that exists; `InputError` where it does not."""
+    file = Path(path)
+    if not file.is_file():
+        raise InputError(f"hub loads '{file}': no such file; check the path")
+    return file

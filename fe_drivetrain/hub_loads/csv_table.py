@@ -1,0 +1,156 @@
+"""Hub loads from and to CSV tables with units in the header."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.strict_yaml import shown
+from fe_drivetrain.hub_loads.channels import (
+    FORCE_UNITS,
+    MOMENT_UNITS,
+    TIME_UNITS,
+    Channel,
+    existing_file,
+    in_si,
+    parse_number,
+)
+from fe_drivetrain.hub_loads.histories import UNITS, Attribute, LoadHistory, require_sound
+
+_CSV_COLUMNS = ("time", *FORCES)
+_CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
+
+
+def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
+    """Read hub loads from a table with named columns and their units in the header.
+
+    The header is like ``time [s],Fx [kN],...,Mz [kN m]``, columns in any order, others ignored.
+    Lines ``# key = value`` before it become the attributes.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, a column or its unit is missing or unknown, a cell is not a number,
+        or the samples are unsound.
+    """
+    file = existing_file(path)
+    try:
+        lines = file.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
+
+    attributes: dict[str, Attribute] = {}
+    rows: list[int] = []
+    kept: list[str] = []
+    for number, line in enumerate(lines, start=1):
+        if line.startswith("#"):
+            key, equals, value = line[1:].partition("=")
+            if equals:
+                attributes[key.strip()] = _number_or_text(value.strip())
+        elif line.strip():
+            rows.append(number)
+            kept.append(line)
+    try:
+        cells = list(csv.reader(kept))
+    except csv.Error as error:
+        raise InputError(f"hub loads '{file}': {error}; correct the table") from error
+    if not cells:
+        raise InputError(f"hub loads '{file}': empty; begin with the header '{_CSV_EXAMPLE}'")
+    header, rows, body = cells[0], rows[1:], cells[1:]
+    places = _csv_places(file, header)
+    for number, row in zip(rows, body, strict=False):
+        # more cells than columns: decimal commas would shift every number into another column
+        if any(cell.strip() for cell in row[len(header) :]):
+            raise InputError(
+                f"hub loads '{file}': line {number} has {len(row)} values for {len(header)} "
+                "columns; write decimals with a point, and one value for each column"
+            )
+    channels: dict[str, Channel] = {}
+    for name, (place, unit) in places.items():
+        values = np.empty(len(body))
+        for i, row in enumerate(body):
+            text = row[place].strip() if place < len(row) else ""
+            try:
+                values[i] = parse_number(text)
+            except ValueError as error:
+                raise InputError(
+                    f"hub loads '{file}': line {rows[i]}, column {name}: {shown(text)} is not a "
+                    "number; "
+                    "correct it or remove the line and all after it"
+                ) from error
+        channels[name] = Channel(name, unit, values)
+
+    source = str(file)
+    time = in_si(source, channels["time"], TIME_UNITS)
+    tables = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
+    loads = [
+        in_si(source, channels[name], table) for name, table in zip(FORCES, tables, strict=True)
+    ]
+    columns = dict(zip(FORCES, loads, strict=True))
+    require_sound(f"hub loads '{source}'", time, columns, rows)
+    return LoadHistory(file.stem, time, np.column_stack(loads), {"source": file.name} | attributes)
+
+
+def write_csv(history: LoadHistory, path: str | os.PathLike[str]) -> None:
+    """Write a history as ``read_csv`` reads it, exactly, and whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    file = Path(path)
+    table = np.column_stack((history.time, history.loads))
+    lines = [f"# {key} = {value}" for key, value in history.attributes.items()]
+    lines.append(_CSV_EXAMPLE)
+    lines += [",".join(map(repr, row)) for row in table.tolist()]
+    try:
+        with atomic_path(file) as temporary:
+            temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"hub loads '{file}': cannot be written ({error.strerror})") from error
+
+
+def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]:
+    """Where each wanted column is and its unit."""
+    wanted = {name.lower(): name for name in _CSV_COLUMNS}
+    places: dict[str, tuple[int, str]] = {}
+    for place, title in enumerate(header):
+        match = re.fullmatch(r"\s*(\w+)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", title)
+        name = wanted.get(match[1].lower()) if match else None
+        if match is None or name is None:
+            continue
+        if name in places:
+            raise InputError(f"hub loads '{file}': column {name} is there twice; remove one")
+        if not match[2]:
+            raise InputError(
+                f"hub loads '{file}': column '{title.strip()}' has no unit; write it like "
+                f"'{name} [{'s' if name == 'time' else UNITS[FORCES.index(name)]}]'"
+            )
+        places[name] = (place, match[2])
+    missing = [name for name in _CSV_COLUMNS if name not in places]
+    if missing:
+        raise InputError(
+            f"hub loads '{file}': no column {', '.join(missing)}; the header must name all of "
+            f"{', '.join(_CSV_COLUMNS)}, like '{_CSV_EXAMPLE}'"
+        )
+    return places
+
+
+def _number_or_text(text: str) -> Attribute:
+    for kind in (int, float):
+        try:
+            number = kind(text)
+            return number if math.isfinite(number) else text
+        except (ValueError, OverflowError):
+            continue
+    return text

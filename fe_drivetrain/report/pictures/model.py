@@ -1,0 +1,198 @@
+"""A picture of a model: its parts cut open, with loads, supports and dimensions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.mesh.mesh import Mesh, boundary
+from fe_drivetrain.report.pictures.sheet import FAINT, INK, Sheet, drawing
+from fe_drivetrain.report.pictures.surfaces import curved_surface, cut_open, part_solid, sharp_edges
+from fe_drivetrain.report.pictures.symbols import (
+    FORCE,
+    GROUND,
+    MOMENT,
+    SPRING,
+    add_fixed_base,
+    add_gearbox,
+    add_hub_loads,
+    hub_arrows,
+)
+from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, STRIP, View
+
+if TYPE_CHECKING:
+    from fe_drivetrain.response.model import Model
+
+PARTS = {"shaft": "#9fb4c7", "bearing": "#e8a33d", "housing": "#6ba292"}
+"""Colour of each kind of part."""
+
+_SYMBOL = 0.11  # length of an arrow, of the length of the shaft
+_INTERFACES = {
+    "bonded": "bonded",
+    "spring": "6x6 spring",
+    "rollers": "ring of rollers as springs",
+    "sliding": "spherical joint (sliding)",
+    "averaged": "spherical joint (averaged)",
+    "rigid": "spherical joint (rigid faces)",
+}
+
+
+def picture_of_model(model: Model, path: Path) -> None:
+    """Draw what a model consists of, cut open by a quarter, with loads, supports and dimensions.
+
+    Parameters
+    ----------
+    model : Model
+        The model; it need not be solved.
+    path : Path
+        PNG to write, of `view.SIZE`.
+
+    Raises
+    ------
+    NoPictureError
+        This machine cannot draw.
+    """
+    mesh, scene = model.mesh, model.scene
+    hub, rear = model.points["hub"].position, model.points["gearbox"].position
+    a = _SYMBOL * scene.shaft.length
+    radius = float(np.abs(mesh.points[mesh.face_nodes("shaft.rear")][:, 1:]).max())
+    symbols = [
+        hub + a * np.array([[-2.4, 0, 0], [0, 2.4, 0], [0, 0, 2.4]]),
+        rear + a * np.array([[1.2, 0, 0], [0, -1.2, 0], [0, 0, -1.2]]),
+        rear + np.array([[0, 0, radius + 1.2 * a]]),
+    ]
+    stations = [hub[0], *sorted(unit.bearing.x for unit in scene.bearing_units), rear[0]]
+    under = _line_under(mesh, stations)
+    seen = np.concatenate([mesh.points, *symbols, under])
+    view = View.fitting(seen, ALONG_THE_SHAFT, top=60, bottom=STRIP + 60)
+    with drawing(path, view) as sheet:
+        for part in mesh.part_names:
+            surface = curved_surface(boundary(mesh, part), mesh.points)
+            colour = PARTS[_kind(part)]
+            # a solid shaft stays whole, as in any drawing
+            if part == "shaft" and "shaft.bore" not in mesh.faces:
+                sheet.solid(surface, sharp_edges(surface), colour)
+            else:
+                sheet.solid(*cut_open(surface, part_solid(mesh, part)), colour)
+        add_hub_loads(sheet.plotter, hub, a)
+        add_gearbox(sheet.plotter, scene.gearbox, rear, radius, a)
+        for unit in scene.bearing_units:
+            add_fixed_base(sheet.plotter, mesh, unit, 0.06 * a)
+        _dimensions(sheet, stations, under, mesh)
+        _label_hub_loads(sheet, hub, a)
+        _label_parts(sheet, model)
+        sheet.triad()
+        for left, rows in zip((190, 530, 910, 1250), _legend(model), strict=True):
+            sheet.column(left, rows)
+
+
+def _kind(part: str) -> str:
+    return "shaft" if part == "shaft" else "housing" if part.endswith(".housing") else "bearing"
+
+
+def _line_under(mesh: Mesh, stations: Sequence[float]) -> Floats:
+    """Points (n, 3) under the axis at each station, on a line that no solid is below as seen."""
+    view = View.fitting(mesh.points, ALONG_THE_SHAFT, top=0)
+    slope = view.up[0] / view.right[0]
+    depth = (slope * (mesh.points @ view.right) - mesh.points @ view.up).max()
+    axis = np.outer(stations, np.eye(3)[0])
+    points: Floats = axis - depth * view.up
+    return points
+
+
+def _dimensions(sheet: Sheet, stations: Sequence[float], under: Floats, mesh: Mesh) -> None:
+    """A chain of dimensions along x, next to the line under the solids."""
+    line = sheet.view.project(under) - np.array([0.0, 34.0])
+    for x, end in zip(stations, line, strict=True):
+        near = mesh.points[np.abs(mesh.points[:, 0] - x) < 0.03 * np.ptp(stations)]
+        start = sheet.view.project([x, 0.0, near[:, 2].min()])
+        end = end - np.array([0.0, 8.0])
+        dashes = np.arange(0.0, np.linalg.norm(end - start), 4.5)
+        way = (end - start) / np.linalg.norm(end - start)
+        sheet.line((start + dashes[:, None] * way)[: len(dashes) // 2 * 2], FAINT, 1.6)
+    for (x0, p), (x1, q) in pairwise(zip(stations, line, strict=True)):
+        way = (q - p) / np.linalg.norm(q - p)
+        across = np.array([-way[1], way[0]])
+        sheet.line([p, q])
+        for tip, sign in ((p, 1.0), (q, -1.0)):
+            back = tip + 13 * sign * way
+            sheet.area([tip, back + 4 * across, back - 4 * across], INK)
+        sheet.text((p + q) / 2, f" {x1 - x0:.4g} m ", size=18, background=True)
+
+
+def _label_hub_loads(sheet: Sheet, hub: Floats, a: float) -> None:
+    sides = {"x": (0.0, -26.0), "y": (-2.0, 24.0), "z": (30.0, -10.0)}
+    for name, tail, tip in hub_arrows(hub, a):
+        # beside the head of an arrow is the most room; that of Fx is inside the shaft
+        place = (tail + tip) / 2 if name.endswith("x") else tip
+        colour = MOMENT if name.startswith("M") else FORCE
+        sheet.text(
+            sheet.view.project(place) + sides[name[1]], name, colour, size=20, background=True
+        )
+
+
+def _label_parts(sheet: Sheet, model: Model) -> None:
+    mesh = model.mesh
+    sheet.note(model.points["hub"].position, "hub", (-90, -150))
+    sheet.note(model.points["gearbox"].position, "gearbox", (100, 115))
+    for unit in model.scene.bearing_units:
+        name = unit.bearing.name
+        # the upright face of the cut shows the bearing at y = 0, between seat and outer face
+        faces = (f"{name}.outer", f"shaft.seat.{name}")
+        height = np.mean([mesh.points[mesh.face_nodes(face)][:, 2].max() for face in faces])
+        sheet.note([unit.bearing.x, 0.0, height], name.replace("_", " "), (-60, 150))
+        base = mesh.points[mesh.face_nodes(f"{name}.housing.base")]
+        corner = base[np.argmin(base @ [1.0, 1.0, 0.0])]
+        if unit.housing.base == "bolted":
+            top = corner + unit.housing.foot_thickness * np.eye(3)[2]
+            bolts = "fixed at the bolts" if unit.bedplate is None else "bolted to a bedplate"
+            sheet.note(top, bolts, (-170, -24), GROUND)
+        else:
+            stands = "fixed base" if unit.bedplate is None else "on a bedplate"
+            sheet.note(corner, stands, (-140, -14), GROUND)
+
+
+def _legend(model: Model) -> list[list[tuple[str, str | None]]]:
+    """Four columns: parts, interfaces, hub loads, gearbox."""
+    scene = model.scene
+    materials: dict[tuple[str, str], None] = {}
+    for part in model.mesh.part_names:
+        kind = _kind(part)
+        unit = None if kind == "shaft" else scene.bearing_unit(part.partition(".")[0])
+        owner = scene.shaft if unit is None else unit.housing if kind == "housing" else unit.bearing
+        modulus = with_prefix(scene.material_of(part).youngs_modulus, "Pa")
+        materials[kind, f"{kind}: {owner.material.replace('_', ' ')}, E = {modulus}"] = None
+    parts = [(text, PARTS[kind]) for kind, text in materials]
+    interfaces = [
+        (f"{unit.bearing.name.replace('_', ' ')}: {_INTERFACES[unit.interface]}", None)
+        for unit in scene.bearing_units
+    ]
+    gearbox: list[tuple[str, str | None]] = []
+    for name, k in zip(("x", "y", "z", "rx", "ry", "rz"), scene.gearbox.stiffness, strict=True):
+        unit_name = "N m/rad" if name.startswith("r") else "N/m"
+        value = "held" if k == "rigid" else f"k = {with_prefix(k, unit_name)}" if k else "free"
+        gearbox.append((f"{name}: {value}", SPRING if k else None))
+    if scene.gearbox.weight:
+        gearbox.append((f"weight: {with_prefix(scene.gearbox.weight, 'N')}", FORCE))
+    hub = [
+        (f"forces ({scene.hub.coupling} over the face)", FORCE),
+        ("moments (two heads)", MOMENT),
+    ]
+    return [
+        [("Parts", "head"), *parts, ("fixed to the ground", GROUND)],
+        [("Interfaces", "head"), *interfaces],
+        [("Loads at the hub", "head"), *hub],
+        [("Gearbox", "head"), *gearbox],
+    ]
+
+
+def with_prefix(value: float, unit: str) -> str:
+    """A positive number in its unit with an SI prefix: 80e6 N/m is "80 MN/m"."""
+    power = min(max(math.floor(math.log10(value) / 3), 0), 4)
+    return f"{value / 1e3**power:.4g} {('', 'k', 'M', 'G', 'T')[power]}{unit}"
