@@ -7,12 +7,13 @@ from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
 from .masses import Solid, unit_solids
-from .part import Assumption, Part
+from .part import LENGTH_TOLERANCE, Assumption, Part
 from .planet_carrier import PlanetCarrier
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
 
 __all__ = [
+    "LENGTH_TOLERANCE",
     "WIDEST",
     "Assumption",
     "Bearing",

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.mesh.blocks import FACES, brick, joined
 from fe_drivetrain.mesh.facets import facet_points, local_facets
-from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.operator.loads import body_loads, pressure, traction_loads
 
 KINDS = (4, 10, 8, 20, 27)

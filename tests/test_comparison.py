@@ -14,9 +14,10 @@ from fe_drivetrain.cases.main_bearing.comparison import (
 from fe_drivetrain.cases.main_bearing.study import (
     Solved,
 )
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.mesh.measures import quality
 from fe_drivetrain.response.model import Model
-from fe_drivetrain.response.unit_loads import GRAVITY, Response
+from fe_drivetrain.response.unit_loads import Response
 
 Beam = closed_forms.MainBearingBeam
 

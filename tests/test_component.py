@@ -25,6 +25,7 @@ from fe_drivetrain.beam.shaft import Beam, shaft_stiffness
 from fe_drivetrain.commands.app import app
 from fe_drivetrain.commands.terminal import MISTAKE
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.component_solid import component_mesh
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
 from fe_drivetrain.mesh import measures
@@ -40,7 +41,6 @@ from fe_drivetrain.scene.reading import (
     parse_component,
     read_component,
 )
-from fe_drivetrain.solve.condensation import point_motions, wrench_transport
 
 ROOT = Path(__file__).parents[1]
 DOC = (ROOT / "docs" / "component.md").read_text(encoding="utf-8")

@@ -7,9 +7,10 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft, solid_shaft
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import Condensed, condense, supported, wrench_transport
+from fe_drivetrain.solve.condensation import Condensed, condense, supported
 
 #: Without rings but for the solid's, so that closed forms hold.
 SHAFTS = {

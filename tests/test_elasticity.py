@@ -18,9 +18,11 @@ from skfem.models.elasticity import linear_elasticity
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.facets import face_weights
+from fe_drivetrain.common.spatial import rigid_motions
+from fe_drivetrain.mesh.blocks import brick
+from fe_drivetrain.mesh.facets import face_weights, volume_weights
 from fe_drivetrain.mesh.shapes import element_kind, is_straight
-from fe_drivetrain.operator.elasticity import assemble, rigid_motions, sparsity, volume_weights
+from fe_drivetrain.operator.elasticity import assemble, sparsity
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
 STEEL = MATERIALS["steel"]
@@ -233,3 +235,13 @@ def test_extra_freedoms_are_left_empty(rng):
     K = assemble(points, cells, STEEL.lame, points.size + 6)
     assert K.shape == (points.size + 6,) * 2
     assert K.tocsr()[points.size :].nnz == 0
+
+
+@pytest.mark.parametrize("nodes", [4, 8, 10, 20, 27])
+def test_volume_weights_sum_to_the_volume_of_any_element(nodes, rng):
+    """And their first moment is its centre: what a mass under gravity needs."""
+    block = brick((2, 2, 2), nodes, shape=lambda x: x * [2.0, 1.0, 0.5])
+    weights = volume_weights(block.points, block.cells, len(block.points))
+    assert weights.sum() == pytest.approx(1.0, rel=1e-13)
+    centre = (block.points.min(axis=0) + block.points.max(axis=0)) / 2
+    np.testing.assert_allclose(weights @ block.points, centre, rtol=1e-12, atol=1e-13)

@@ -16,6 +16,7 @@ from test_superelement import random_element
 from fe_drivetrain import export
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.export.calculix_results import ROUNDING, read_dat
 from fe_drivetrain.export.formats import nastran
 from fe_drivetrain.export.formats.calculix_springs import model_lines, squares
@@ -28,7 +29,7 @@ from fe_drivetrain.export.programs.calculix_runs import (
     held,
 )
 from fe_drivetrain.export.programs.ccx import run_calculix
-from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement, scaled
+from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level
 
 TEXTS = ("csv", "mtx", "mtx-mass", "dmig", "calculix")
@@ -432,7 +433,7 @@ def assert_printed(found: Floats, stiffness: Floats) -> None:
     """
     expected = np.linalg.inv(stiffness)
     size = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
-    solved = 1e-13 * np.linalg.cond(scaled(stiffness))
+    solved = 1e-13 * np.linalg.cond(scaled_to_unit_diagonal(stiffness))
     assert (np.abs(found - expected) <= ROUNDING * np.abs(expected) + solved * size).all()
 
 

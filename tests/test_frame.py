@@ -1,14 +1,10 @@
 import numpy as np
 import pytest
 
-from fe_drivetrain.beam.sections import (
-    BeamSection,
-    RigiditySection,
-    cowper_shear_coefficient,
-    transport,
-)
+from fe_drivetrain.beam.sections import BeamSection, RigiditySection, cowper_shear_coefficient
 from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, solve, unit_load_response
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.scene.materials import Material
 
 inf = np.inf
@@ -187,7 +183,7 @@ def test_shaft_stiffness_is_the_textbook_timoshenko_element():
 
 def test_shaft_stiffness_of_a_taper_knows_rigid_motion_and_symmetry():
     K = shaft_stiffness(stepped_beam(), -2.0, 2.0)
-    rigid = np.vstack([np.eye(6), transport(np.array(4.0)).T])
+    rigid = np.vstack([np.eye(6), wrench_transport([4.0, 0.0, 0.0]).T])
     assert np.abs(K @ rigid).max() < 1e-11 * np.abs(K).max()
     assert np.array_equal(K, K.T) or np.abs(K - K.T).max() < 1e-15 * np.abs(K).max()
     assert np.sum(np.linalg.eigvalsh(K) > 1e-9 * np.abs(K).max()) == 6
@@ -341,7 +337,7 @@ def test_coupled_support_equals_the_spring_at_the_end_of_a_rigid_arm():
         [Support("s", 2.0 + arm, spring)],
         material=STEEL,
     )
-    H = transport(np.array(arm))
+    H = wrench_transport([arm, 0.0, 0.0])
     near = Beam([BeamSection(2.0, D)], [Support("s", 2.0, H @ spring @ H.T)], material=STEEL)
     load = [1e5, 2e5, -3e5, 4e5, 5e5, 6e5]
     a, b = solve(far, 0.0, load, at=0.0), solve(near, 0.0, load, at=0.0)
@@ -351,7 +347,7 @@ def test_coupled_support_equals_the_spring_at_the_end_of_a_rigid_arm():
 
 def test_singular_coupled_support_holds_only_what_it_holds():
     # One vertical spring at the end of an arm: rank 1 as a 6x6.
-    H = transport(np.array(0.5))
+    H = wrench_transport([0.5, 0.0, 0.0])
     column = H @ np.eye(6)[2]
     support = Support("s", 1.0, 1e7 * np.outer(column, column))
     directions, compliance = support.directions
@@ -471,7 +467,7 @@ def test_shares_that_statics_cannot_tell_are_refused():
         [RigiditySection(2.0, inf, inf, inf, inf)],
         [Support("a", 0.0, TORQUE_BALL), Support("b", 1.0, ROLLER), Support("c", 2.0, ROLLER)],
     )
-    with pytest.raises(InputError, match="shares cannot be told"):
+    with pytest.raises(InputError, match="shares are indeterminate"):
         unit_load_response(rigid, 0.0)
 
 

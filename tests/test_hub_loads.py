@@ -12,10 +12,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.csv_table import read_csv, write_csv
 from fe_drivetrain.hub_loads.files import read_hub_loads
-from fe_drivetrain.hub_loads.histories import COMPONENTS, LoadHistory
+from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.openfast import read_openfast, turn_to_fixed
 
 REAL_FILE = Path(__file__).parents[2] / "shared" / "data" / "openfast" / "fastout_allnodes.outb"
@@ -377,7 +378,7 @@ def test_history_cannot_be_changed_through_its_arrays() -> None:
 def test_component_and_cut() -> None:
     loads = np.arange(60.0).reshape(10, 6)
     history = history_of(np.arange(10.0), loads)
-    for i, name in enumerate(COMPONENTS):
+    for i, name in enumerate(FORCES):
         np.testing.assert_array_equal(history.component(name), loads[:, i])
     with pytest.raises(InputError, match="'Fq' is not one of Fx, Fy"):
         history.component("Fq")

@@ -5,8 +5,8 @@ import pytest
 from scipy import sparse
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces import constraints
-from fe_drivetrain.operator.elasticity import rigid_motions
 
 CENTRE = np.array([0.1, -0.2, 0.3])
 

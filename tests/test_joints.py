@@ -7,6 +7,7 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.interfaces.joints import in_series, joint_stiffness, roller_lines, roller_loads
 from fe_drivetrain.mesh.mesh import Mesh
@@ -14,7 +15,6 @@ from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import wrench_transport
 
 HELD: list[Any] = ["rigid", "rigid", "rigid"]
 ROWS = [{"x": -0.05, "contact_angle": -20.0}, {"x": 0.05, "contact_angle": 20.0}]

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 from fe_drivetrain.commands.app import app
 from fe_drivetrain.commands.terminal import MISTAKE, PASSED
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.adviser import Quantity, advise
 from fe_drivetrain.fidelity.ladder import (
     LevelModel,
@@ -19,7 +20,6 @@ from fe_drivetrain.fidelity.ladder import (
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import wrench_transport
 
 
 @pytest.fixture(scope="module")

@@ -9,12 +9,12 @@ import pytest
 from fe_drivetrain.cases.fidelity.published_torsion import (
     front_part,
 )
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.geometry import build, gmsh_session
 from fe_drivetrain.revolution.rigid_seats import end_stiffness
 from fe_drivetrain.scene.component import COMPONENTS
 from fe_drivetrain.scene.reading import library_scene
-from fe_drivetrain.solve.condensation import wrench_transport
 
 TEXTS = {
     file.name.removesuffix(".yaml"): file.read_text("utf-8")

@@ -8,7 +8,7 @@ from fe_drivetrain.cases.main_bearing import (
     study,
 )
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.interfaces.mechanisms import bodies, find_mechanisms, weak_restraints
+from fe_drivetrain.interfaces.mechanisms import find_mechanisms, named_bodies, weak_restraints
 from fe_drivetrain.mesh.measures import quality
 from fe_drivetrain.response.model import build_model
 from fe_drivetrain.response.unit_loads import unit_load_response
@@ -17,11 +17,11 @@ from fe_drivetrain.suite.case import Run
 
 
 def test_bodies_are_parts_that_share_nodes(spherical_mesh, bonded_model):
-    assert sorted(bodies(spherical_mesh)[1]) == [
+    assert sorted(named_bodies(spherical_mesh)[1]) == [
         ("main_bearing.housing",),
         ("shaft", "main_bearing"),
     ]
-    assert len(bodies(bonded_model.mesh)[1]) == 1
+    assert len(named_bodies(bonded_model.mesh)[1]) == 1
 
 
 @pytest.mark.parametrize("form", ["sliding", "averaged", "rigid"])

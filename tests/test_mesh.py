@@ -31,7 +31,8 @@ from fe_drivetrain.mesh.measures import (
     scaled_jacobians,
     volume,
 )
-from fe_drivetrain.mesh.mesh import EDGES, Mesh, boundary, part_of
+from fe_drivetrain.mesh.mesh import Mesh, boundary, part_of
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 
 COARSE = MeshSizes(shaft=0.2, bearing=0.1, housing=0.12)
 TURN = COARSE.elements_per_turn
@@ -440,7 +441,9 @@ REFERENCE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 
 def one_cell(shift=0.0, seed=0):
     """The reference tetrahedron, its ten nodes moved at random by up to `shift`."""
-    nodes = np.concatenate([REFERENCE, [(REFERENCE[a] + REFERENCE[b]) / 2 for a, b in EDGES]])
+    nodes = np.concatenate(
+        [REFERENCE, [(REFERENCE[a] + REFERENCE[b]) / 2 for a, b in TETRAHEDRON_EDGES]]
+    )
     nodes = nodes + np.random.default_rng(seed).uniform(-shift, shift, nodes.shape)
     return Mesh(nodes, np.arange(10)[None], np.zeros(1, dtype=int), ("shaft",), {}, {})
 
@@ -537,7 +540,7 @@ def folded():
     cells, nodes, mids = [], list(corners), {}
     for tetrahedron in ((0, 1, 2, 3), (1, 2, 3, 4)):
         cell = list(tetrahedron)
-        for a, b in EDGES:
+        for a, b in TETRAHEDRON_EDGES:
             edge = tuple(sorted((tetrahedron[a], tetrahedron[b])))
             if edge not in mids:
                 mids[edge] = len(nodes)

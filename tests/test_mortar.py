@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import eliminate
 from fe_drivetrain.interfaces.mortar import mortar_tie, node_tie, settled
 from fe_drivetrain.mesh.blocks import brick, joined
-from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.operator.loads import traction_loads
 
 # Nothing is parallel to an axis, no angle is a right one.

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import eliminate, fixed
 from fe_drivetrain.mesh.blocks import brick
-from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.subdomains import CutOut, partition, shown_lame
 

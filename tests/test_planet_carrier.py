@@ -8,6 +8,7 @@ from test_component import coarse
 
 from fe_drivetrain.beam.frame import round_section
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.export.from_component import component_superelement
 from fe_drivetrain.fidelity import component_frames
 from fe_drivetrain.fidelity.component_levels import (
@@ -23,7 +24,6 @@ from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_compone
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.mesh.symmetry import turns
 from fe_drivetrain.scene.component import CarrierComponent, material_of
-from fe_drivetrain.solve.condensation import wrench_transport
 
 
 @pytest.fixture(scope="module")

@@ -7,12 +7,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import validated
 from fe_drivetrain.mesh.measures import inverted_cells, quality, volume
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import build_model, mesh_scene
-from fe_drivetrain.response.unit_loads import GRAVITY, Response, unit_load_response
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.scene import Scene

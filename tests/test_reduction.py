@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import eliminate
-from fe_drivetrain.operator.elasticity import rigid_motions
-from fe_drivetrain.solve.reduction import bodies, reduce, reduced_stiffness
+from fe_drivetrain.mesh.bodies import connected_bodies
+from fe_drivetrain.solve.reduction import reduce, reduced_stiffness
 
 FORMS = ("sliding", "averaged", "rigid")
 
@@ -82,6 +83,15 @@ def test_near_nullspace_of_free_bodies_costs_no_energy(bonded_model):
 
 
 def test_bodies_are_parts_that_share_nodes(spherical_mesh, bonded_model):
-    assert bodies(spherical_mesh.cells, len(spherical_mesh.points)).max() == 1
+    assert connected_bodies(spherical_mesh.cells, len(spherical_mesh.points)).max() == 1
     mesh = bonded_model.mesh
-    assert bodies(mesh.cells, len(mesh.points)).max() == 0
+    assert connected_bodies(mesh.cells, len(mesh.points)).max() == 0
+
+
+def test_bodies_are_numbered_by_their_first_node():
+    """Node 0 in the middle of an edge of the second cell, node 7 in no cell."""
+    cells = np.array([[1, 2, 3, 4, 5, 6, 8, 9, 10, 11], [12, 13, 14, 15, 0, 16, 17, 18, 19, 20]])
+    body = connected_bodies(cells, 21)
+    assert set(body[cells[1]]) == {0}
+    assert set(body[cells[0]]) == {1}
+    assert body[7] == 2

@@ -6,8 +6,9 @@ from conftest import coarse_scene
 
 from fe_drivetrain.beam.closed_forms import pinned_model
 from fe_drivetrain.beam.of_scene import main_bearing_beam
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.response.model import LOADS, build_model
-from fe_drivetrain.response.unit_loads import GRAVITY, unit_load_response
+from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.reading import change_scene
 
 FORMS = ("sliding", "averaged", "rigid")

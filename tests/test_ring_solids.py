@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import held_nodes
 from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.operator.elasticity import rigid_motions
 from fe_drivetrain.operator.loads import pressure, traction_loads
 from fe_drivetrain.solve.solid import solve_solid
 from fe_drivetrain.validation.bar_sections import (

@@ -6,11 +6,11 @@ import pytest
 from fe_drivetrain.beam import shaft
 from fe_drivetrain.beam.of_scene import beam_of_scene
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import stiffness_transport
 from fe_drivetrain.response.secant_stiffness import (
     elastic_centre,
     fitted_spring,
     moved,
-    moved_spring,
     parts_of,
     secant,
     statement,
@@ -181,9 +181,9 @@ def test_at_the_elastic_centre_thrust_does_not_tilt():
     assert secant(loads, motions, 4).scatter > 0.01
     assert secant(*moved(loads, motions, np.array([0.0, 0.0, z])), 4).scatter < 1e-12
     # and the spring that stands there is diagonal in that plane
-    there = moved_spring(K, np.array([0.0, 0.0, -z]))
+    there = stiffness_transport(K, np.array([0.0, 0.0, -z]))
     assert abs(there[0, 4]) < 1e-6 * np.sqrt(there[0, 0] * there[4, 4])
-    np.testing.assert_allclose(moved_spring(there, np.array([0.0, 0.0, z])), K, atol=1e-3)
+    np.testing.assert_allclose(stiffness_transport(there, np.array([0.0, 0.0, z])), K, atol=1e-3)
 
 
 def test_work_is_the_same_at_another_point():

@@ -8,7 +8,6 @@ from fe_drivetrain.beam.sections import (
     cowper_shear_coefficient,
     element_integrals,
     sections_from_profile,
-    transport,
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.materials import Material
@@ -29,19 +28,6 @@ def test_cowper_solid_hollow_and_thin_wall_limits():
 def test_cowper_refuses_what_is_no_section(nu, ratio):
     with pytest.raises(InputError):
         cowper_shear_coefficient(nu, ratio)
-
-
-def test_transport_keeps_the_moment_about_any_point_and_the_work():
-    rng = np.random.default_rng(1)
-    load, motion = rng.normal(size=6), rng.normal(size=6)
-    d = 0.7
-    arm = np.array([d, 0.0, 0.0])
-    moved = transport(np.array(d)) @ load
-    assert moved[:3] == pytest.approx(load[:3])
-    assert moved[3:] == pytest.approx(load[3:] + np.cross(arm, load[:3]))
-    far = transport(np.array(d)).T @ motion
-    assert far[:3] == pytest.approx(motion[:3] + np.cross(motion[3:], arm))
-    assert load @ far == pytest.approx(moved @ motion)
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.5, 0.999, 1.001, 3.0, 20.0])

@@ -8,9 +8,10 @@ import pytest
 from scipy import sparse
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import eliminate, fixed
 from fe_drivetrain.mesh.blocks import brick
-from fe_drivetrain.operator.elasticity import assemble, rigid_motions
+from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.solve import cost_model, direct_solvers, multigrid
 from fe_drivetrain.solve.reduction import System, reduce
 from fe_drivetrain.solve.solvers import ITERATIVE, METHODS, factorise, solve

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import (
     fixed,
     freedoms,
@@ -12,7 +13,6 @@ from fe_drivetrain.interfaces.constraints import (
     rigid_point,
 )
 from fe_drivetrain.mesh.blocks import brick
-from fe_drivetrain.operator.elasticity import rigid_motions
 from fe_drivetrain.operator.loads import traction_loads
 from fe_drivetrain.operator.stress import nodal_stresses, principal, tensor, von_mises
 from fe_drivetrain.solve.solid import solve_solid

@@ -11,6 +11,7 @@ from fe_drivetrain.commands.app import app
 from fe_drivetrain.commands.terminal import FAILED, MISTAKE, PASSED
 from fe_drivetrain.commands.uncertainty_page import bands, figures, inputs
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.export.formats.summary import summary
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.fidelity.energy_sensitivities import (
@@ -33,7 +34,6 @@ from fe_drivetrain.response.model import LOADS, Model, build_model
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import wrench_transport
 from fe_drivetrain.uncertainty import resolver as resolver_module
 from fe_drivetrain.uncertainty.input_study import Study, study
 from fe_drivetrain.uncertainty.resolver import Resolver, shaft_content, unit_content

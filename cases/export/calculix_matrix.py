@@ -20,13 +20,13 @@ def run(run: Run) -> Any:
         frequencies,
         samples,
     )
+    from fe_drivetrain.common import scaled_to_unit_diagonal
     from fe_drivetrain.export import (
         ROUNDING,
         compliance_by_calculix,
         find_calculix,
         frequencies_by_calculix,
         held,
-        scaled,
     )
     from fe_drivetrain.report import Section, Table, Text, judge
 
@@ -41,7 +41,7 @@ def run(run: Run) -> Any:
         expected = np.linalg.inv(stiffness)
         size = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
         # fourteen digits of the deck, times the condition of what is solved
-        solved = 1e-13 * np.linalg.cond(scaled(stiffness))
+        solved = 1e-13 * np.linalg.cond(scaled_to_unit_diagonal(stiffness))
         allowed = ROUNDING * np.abs(expected) + solved * size
         worst = float((np.abs(found - expected) / allowed).max())
         rows.append([label, len(expected), float((np.abs(found - expected) / size).max()), worst])

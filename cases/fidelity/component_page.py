@@ -9,9 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    Floats,
+    largest_difference,
+)
 from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.export import Superelement, difference, from_scene
+from fe_drivetrain.export import (
+    Superelement,
+    from_scene,
+)
 from fe_drivetrain.fidelity import (
     LEAST_ORDER,
     LevelModel,
@@ -288,7 +294,7 @@ def show_files(run: Run, page: Page, element: Superelement) -> None:
                     "format": name,
                     "file": path.name,
                     "bytes": path.stat().st_size,
-                    _CHANGE: difference(back.stiffness, element.stiffness),
+                    _CHANGE: largest_difference(back.stiffness, element.stiffness),
                     "the format keeps [-]": 10.0**-form.digits,
                 }
             )

@@ -21,7 +21,10 @@ from fe_drivetrain.cases.fidelity.component_page import (
     show_ladder,
     show_picture,
 )
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    Floats,
+    wrench_transport,
+)
 from fe_drivetrain.export import component_superelement
 from fe_drivetrain.fidelity import (
     GearboxSprings,
@@ -43,7 +46,10 @@ from fe_drivetrain.scene import (
     library_scene,
     material_of,
 )
-from fe_drivetrain.solve import Condensed, supported, wrench_transport
+from fe_drivetrain.solve import (
+    Condensed,
+    supported,
+)
 from fe_drivetrain.suite import Page, Run, column
 
 #: Bushing stiffness is varied by these factors, decades about the one given.

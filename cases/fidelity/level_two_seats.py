@@ -5,11 +5,13 @@ import time
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    Floats,
+    rigid_motions,
+)
 from fe_drivetrain.compare import grid_convergence, richardson
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.mesh import shaft_hexahedra
-from fe_drivetrain.operator import rigid_motions
 from fe_drivetrain.report import Cell, trace
 from fe_drivetrain.revolution import seat_stiffness
 from fe_drivetrain.solve import solve_solid

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fe_drivetrain.beam import Beam, BeamSection, shaft_stiffness
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.mesh import SAME_LENGTH
+from fe_drivetrain.geometry import (
+    LENGTH_TOLERANCE,
+    Shaft,
+)
 from fe_drivetrain.report import Cell
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import Material, Scene
@@ -132,7 +134,7 @@ def front_part(shaft: Shaft, to: float) -> Shaft:
     kept = [
         section
         for section, end in zip(cut.sections, cut.stations[1:], strict=True)
-        if end <= to + SAME_LENGTH
+        if end <= to + LENGTH_TOLERANCE
     ]
     last = kept[-1].model_copy(update={"fillet": 0.0})
     return cut.model_copy(update={"sections": (*kept[:-1], last)})

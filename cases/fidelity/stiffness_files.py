@@ -7,14 +7,16 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    Floats,
+    largest_difference,
+    symmetry_error,
+)
 from fe_drivetrain.export import (
     SEATS,
     SHAFT,
     Superelement,
-    difference,
     superelement_of,
-    symmetry_error,
 )
 from fe_drivetrain.fidelity import Quantity, shaft_level
 from fe_drivetrain.report import Cell
@@ -59,7 +61,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
             export.write(path, element, format)
             names.append(path.name)
             again = read[what] = export.read(path, format)
-            worst = max(worst, difference(again.stiffness, element.stiffness))
+            worst = max(worst, largest_difference(again.stiffness, element.stiffness))
         rows.append(_row(names, element))
         page.vanishes(
             f"{what}: stiffness read less stiffness written, of a unit diagonal",

@@ -19,6 +19,9 @@ from fe_drivetrain.cases.fidelity.moved_meshes import (
     moved,
 )
 from fe_drivetrain.commands import bands, first_order, relative_spread
+from fe_drivetrain.common import (
+    FORCES,
+)
 from fe_drivetrain.fidelity import (
     LEAST_ORDER,
     compliance,
@@ -29,11 +32,12 @@ from fe_drivetrain.fidelity import (
     unit_numbers,
 )
 from fe_drivetrain.geometry import MeshSizes, unit_solids
-from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.operator import volume_weights
+from fe_drivetrain.mesh import (
+    Mesh,
+    volume_weights,
+)
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import (
-    COMPONENTS,
     LOADS,
     bearing_unit_stiffness,
     build_model,
@@ -186,7 +190,7 @@ def _changed(scene: Scene, mesh: Mesh, key: str, step: float) -> tuple[Scene, Me
 def _values(scene: Scene, mesh: Mesh) -> list[float]:
     """Stiffness of the hub, and the bearing's moment."""
     response = unit_load_response(build_model(scene, mesh))
-    moment = response.reactions[BEARING][COMPONENTS.index("My"), LOADS.index(LOAD)]
+    moment = response.reactions[BEARING][FORCES.index("My"), LOADS.index(LOAD)]
     return [*(1.0 / response.motions["hub"][:, :6].diagonal()).tolist(), float(moment)]
 
 

@@ -10,9 +10,11 @@ import numpy as np
 from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    FORCES,
+    Floats,
+)
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.response import COMPONENTS
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -35,7 +37,7 @@ def shares_of(
         value = float(reaction[at])
         rows.append(
             {
-                "reaction": f"{COMPONENTS[component]} per {COMPONENTS[load]} at the hub",
+                "reaction": f"{FORCES[component]} per {FORCES[load]} at the hub",
                 "FE": value,
                 "± FE": series.band(lambda f, at=at: float(f[f"reaction {name}"][at])),
                 "torsional-spring beam": float(torsional[at]),
@@ -54,8 +56,8 @@ def couplings_of(
     """Loads in bending from thrust and torque, which a planar beam does not have."""
     return [
         {
-            "hub load": f"{COMPONENTS[load]} = {size / 1e3:g} kN{' m' if load > 2 else ''}",
-            "load on the bearing": f"{COMPONENTS[c]} [kN{' m' if c > 2 else ''}]",
+            "hub load": f"{FORCES[load]} = {size / 1e3:g} kN{' m' if load > 2 else ''}",
+            "load on the bearing": f"{FORCES[c]} [kN{' m' if c > 2 else ''}]",
             "FE": float(reaction[c, load]) * size / 1e3,
             "± FE": series.band(
                 lambda f, at=(c, load), s=size: float(f[f"reaction {name}"][at]) * s / 1e3
@@ -209,7 +211,7 @@ def run(run: Run, page: Page) -> None:
                 "part": part,
                 **{
                     f"hub {c}": 100.0 * float(e[k, k]) / float(total[k, k])
-                    for k, c in enumerate(COMPONENTS)
+                    for k, c in enumerate(FORCES)
                 },
                 "± hub Fz": series.band(
                     lambda f, part=part: (

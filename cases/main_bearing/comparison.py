@@ -23,9 +23,8 @@ from fe_drivetrain.cases.main_bearing.study import (
     Solved,
     Tilt,
 )
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.compare import compare, statistics
-from fe_drivetrain.response import GRAVITY
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Record, Run
 

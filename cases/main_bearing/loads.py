@@ -7,7 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, InputError, user_cache
+from fe_drivetrain.common import (
+    FORCES,
+    Floats,
+    InputError,
+    user_cache,
+)
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.hub_loads import (
     Condition,
@@ -18,7 +23,6 @@ from fe_drivetrain.hub_loads import (
     surrogate_grid,
 )
 from fe_drivetrain.report import Chart, rounded, trace
-from fe_drivetrain.response import COMPONENTS
 from fe_drivetrain.suite import Jobs, Page, Run
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
@@ -154,7 +158,7 @@ def load_table(page: Page, hub: HubLoads) -> None:
                 "largest": flat[:, k].max(),
                 "standard deviation": flat[:, k].std(),
             }
-            for k, (component, unit) in enumerate(zip(COMPONENTS, units, strict=True))
+            for k, (component, unit) in enumerate(zip(FORCES, units, strict=True))
         ],
     )
 

@@ -8,9 +8,14 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import secants, shown, study
 from fe_drivetrain.cases.main_bearing.secants import FULL, LEAN, OF_FORM, QUANTITIES, SINGLE
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    FORCES,
+    Floats,
+)
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import COMPONENTS, secant_stiffness
+from fe_drivetrain.response import (
+    secant_stiffness,
+)
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Factors on the mesh sizes, coarse first: of the library's housing, and of the tall one.
@@ -41,10 +46,10 @@ def couplings(key: str, a: int, found: Any, parts: Any) -> list[Record]:
     return [
         {
             "housing": TITLES[key],
-            "moment": COMPONENTS[a],
+            "moment": FORCES[a],
             "secant [MN m/rad]": found.stiffness / 1e6,
             "scatter [%]": 100.0 * found.scatter,
-            "also follows": COMPONENTS[j] if j < 6 else "nothing on the bearing",
+            "also follows": FORCES[j] if j < 6 else "nothing on the bearing",
             "arm [m; of a moment -]": float(parts.arms[j]) if j < 6 else None,
             "size [%]": 100.0 * float(parts.sizes[j]),
             "share of the scatter [%]": 100.0 * float(parts.shares[j]),
@@ -250,7 +255,7 @@ def run(run: Run, page: Page) -> None:
             }
             | {
                 f"{c} [%]": 100.0 * float(v)
-                for c, v in zip(COMPONENTS, unit.fit.unexplained, strict=True)
+                for c, v in zip(FORCES, unit.fit.unexplained, strict=True)
             }
             for key, unit in finest.items()
         ],
@@ -294,10 +299,10 @@ def run(run: Run, page: Page) -> None:
     page.data(
         "secant",
         {
-            f"{key} {COMPONENTS[a]}": {"K_R": f.stiffness, "scatter": f.scatter}
+            f"{key} {FORCES[a]}": {"K_R": f.stiffness, "scatter": f.scatter}
             for (key, a), f in found.items()
         },
     )
-    page.data("statements", {f"{key} {COMPONENTS[a]}": s for (key, a), s in statements.items()})
+    page.data("statements", {f"{key} {FORCES[a]}": s for (key, a), s in statements.items()})
     page.data("beam errors", improvement)
     page.data("elastic centre", centre)

@@ -13,15 +13,9 @@ from fe_drivetrain.cases.main_bearing import (
     loads,
     study,
 )
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
 from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, hub_load_set
-from fe_drivetrain.response import (
-    COMPONENTS,
-    LOADS,
-    bearing_unit_stiffness,
-    secant_stiffness,
-    without_gearbox,
-)
+from fe_drivetrain.response import LOADS, bearing_unit_stiffness, secant_stiffness, without_gearbox
 from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.suite import Run
 
@@ -157,11 +151,11 @@ def springs(unit: Reacted) -> dict[str, Floats]:
     for a in (4, 5):
         by_secant[a] = secant_stiffness.secant(unit.loads, unit.motions, a).stiffness
     arm = np.array([0.0, 0.0, secant_stiffness.elastic_centre(stiffness)])
-    there = secant_stiffness.moved_spring(stiffness, -arm)
+    there = stiffness_transport(stiffness, -arm)
     return {
         SINGLE: np.diag(single),
         SECANT: np.diag(by_secant),
-        LEAN: secant_stiffness.moved_spring(np.diag(there.diagonal()), arm),
+        LEAN: stiffness_transport(np.diag(there.diagonal()), arm),
         FULL: stiffness,
     }
 
@@ -187,7 +181,7 @@ def beam_errors(unit: Reacted, hub: Floats) -> dict[str, Mapping[str, float]]:
     found: dict[str, Mapping[str, float]] = {}
     for form, beam in beams.items():
         error = _error(beam, unit.loads)
-        by = {q: float(error[COMPONENTS.index(q)]) for q in QUANTITIES}
+        by = {q: float(error[FORCES.index(q)]) for q in QUANTITIES}
         found[form] = by | {OF_FORM: float(_error(beam, beams[FULL])[4])}
     return found
 

@@ -6,7 +6,10 @@ import numpy as np
 
 from fe_drivetrain.cases.main_bearing.bands import Series
 from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt, spread
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    FORCES,
+    Floats,
+)
 from fe_drivetrain.report import (
     Image,
     NoPictureError,
@@ -14,7 +17,9 @@ from fe_drivetrain.report import (
     picture_of_deformation,
     picture_of_model,
 )
-from fe_drivetrain.response import COMPONENTS, LOADS
+from fe_drivetrain.response import (
+    LOADS,
+)
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Run
 
@@ -89,7 +94,7 @@ def reaction_table(page: Page, caption: str, reaction: Floats) -> None:
         f"{caption}. Below 0.01 % of their column's largest, or 1e-6, entries show as 0",
         [
             [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *row]
-            for c, row in zip(COMPONENTS, shown.tolist(), strict=True)
+            for c, row in zip(FORCES, shown.tolist(), strict=True)
         ],
         ["reaction", *(f"{load} [per {_unit(load)}]" for load in LOADS)],
     )

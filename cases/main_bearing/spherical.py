@@ -10,10 +10,16 @@ from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, s
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Solved
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import (
+    GRAVITY,
+    Floats,
+)
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.report import trace
-from fe_drivetrain.response import GRAVITY, LOADS, bearing_unit_stiffness
+from fe_drivetrain.response import (
+    LOADS,
+    bearing_unit_stiffness,
+)
 from fe_drivetrain.suite import Page, Record, Run
 
 FORMS = ("sliding", "averaged", "rigid")

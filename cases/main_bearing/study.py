@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import FORCES, Floats, InputError
 from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
 from fe_drivetrain.report import (
     AssumptionRow,
@@ -21,7 +21,6 @@ from fe_drivetrain.report import (
     picture_of_model,
 )
 from fe_drivetrain.response import (
-    COMPONENTS,
     LOADS,
     PLANES,
     Model,
@@ -348,7 +347,7 @@ def reaction_table(caption: str, reaction: Floats) -> Table:
         columns=["reaction", *(f"{c} [per {_unit(c)}]" for c in LOADS)],
         rows=[
             [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *(float(v) for v in shown[i])]
-            for i, c in enumerate(COMPONENTS)
+            for i, c in enumerate(FORCES)
         ],
     )
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from fe_drivetrain.beam import BeamSection, element_integrals, transport
-from fe_drivetrain.common import Floats
+from fe_drivetrain.beam import BeamSection, element_integrals
+from fe_drivetrain.common import Floats, wrench_transport
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import rounded, trace
 from fe_drivetrain.revolution import end_stiffness
@@ -59,7 +59,7 @@ def by_beam(shaft: Shaft, shear: bool = True) -> Floats:
     for piece, end in zip(shaft.pieces, shaft.stations[1:], strict=True):
         section = BeamSection(piece.length, piece.outer_diameter, piece.inner_diameter)
         own = element_integrals(section, STEEL, shear, 0.0, piece.length).flexibility
-        carried = transport(np.array(shaft.rear - end))
+        carried = wrench_transport([shaft.rear - end, 0.0, 0.0])
         total += carried.T @ own @ carried
     return total
 

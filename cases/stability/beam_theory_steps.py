@@ -8,8 +8,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import beam_maps as maps
 from fe_drivetrain.common import Floats
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.mesh import SAME_LENGTH
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.torsion_meridian import torsion_bounds
@@ -93,9 +92,9 @@ def bent_by_tractions(length: float, ratio: float) -> float:
         outer = np.where(at[:, 0] < length / 2, ratio, 1.0)
         return np.column_stack([64 / np.pi / outer**4 * at[:, 1] * normal[:, 0], 0 * at])
 
-    ends = mesh.sides(lambda x, r: (x < SAME_LENGTH) | (x > length - SAME_LENGTH))
+    ends = mesh.sides(lambda x, r: (x < LENGTH_TOLERANCE) | (x > length - LENGTH_TOLERANCE))
     loads = surface_loads(mesh, 1, ends, traction)
-    rim = mesh.where(lambda x, r: (x < SAME_LENGTH) & (r > ratio / 2 - SAME_LENGTH))
+    rim = mesh.where(lambda x, r: (x < LENGTH_TOLERANCE) & (r > ratio / 2 - LENGTH_TOLERANCE))
     held = (np.concatenate([freedoms(rim, 0), freedoms(rim, 1)]), np.zeros(2))
     return 2 * float(harmonic_response(mesh, maps.STEEL, 1, loads, held).energy[0])
 

@@ -9,7 +9,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import beam_maps as maps
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.mesh import SAME_LENGTH
+from fe_drivetrain.geometry import LENGTH_TOLERANCE
 from fe_drivetrain.revolution import (
     along_sides,
     freedoms,
@@ -376,7 +376,7 @@ def flexure_tip(tube: Tube, order: int) -> float:
 
     ends = [mesh.sides(partial(is_at, end)) for end in (0.0, tube.length)]
     loads = surface_loads(mesh, 1, np.vstack(ends), traction)
-    rim = mesh.where(lambda x, r: (x < SAME_LENGTH) & (r > tube.outer / 2 - SAME_LENGTH))
+    rim = mesh.where(lambda x, r: (x < LENGTH_TOLERANCE) & (r > tube.outer / 2 - LENGTH_TOLERANCE))
     held = (np.concatenate([freedoms(rim, 0), freedoms(rim, 1)]), np.zeros(2))
     u = harmonic_response(mesh, maps.STEEL, 1, loads, held).u[..., 0]
     means, slopes = [], []

@@ -22,13 +22,13 @@ import meshio
 import numpy as np
 
 from fe_drivetrain.commands import run_and_print, show_steps
-from fe_drivetrain.common import CACHE_VARIABLE, Cache
+from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions
 from fe_drivetrain.geometry import MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
 from fe_drivetrain.interfaces import freedoms
 from fe_drivetrain.mesh import cached_mesh, write
 from fe_drivetrain.mesh.cached import _content
-from fe_drivetrain.operator import rigid_motions, sparsity
+from fe_drivetrain.operator import sparsity
 from fe_drivetrain.report import Environment, Results, read_results
 from fe_drivetrain.report.page import render
 from fe_drivetrain.scene import MATERIALS

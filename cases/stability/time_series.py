@@ -355,7 +355,8 @@ def _refused(cp: Any, refusal: type[Exception]) -> list[tuple[str, str]]:
 
     import numpy as np
 
-    from fe_drivetrain.hub_loads import COMPONENTS, UNITS, read_hub_loads
+    from fe_drivetrain.common import FORCES
+    from fe_drivetrain.hub_loads import UNITS, read_hub_loads
 
     def said(call: Any) -> str:
         try:
@@ -372,7 +373,7 @@ def _refused(cp: Any, refusal: type[Exception]) -> list[tuple[str, str]]:
         ("2 samples against 3", said(lambda: cp.bias(good[:2], good))),
     ]
     heading = ",".join(
-        ["time [s]", *(f"{name} [{unit}]" for name, unit in zip(COMPONENTS, UNITS, strict=True))]
+        ["time [s]", *(f"{name} [{unit}]" for name, unit in zip(FORCES, UNITS, strict=True))]
     )
     files = {
         "a file with NaN": ["0,1,2,3,4,5,6", "1,1,nan,3,4,5,6", "2,1,2,3,4,5,7"],

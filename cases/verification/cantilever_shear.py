@@ -8,10 +8,10 @@ import numpy as np
 from fe_drivetrain.beam import cowper_shear_coefficient
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
-from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.common import Floats, Ints, rigid_motions
 from fe_drivetrain.interfaces import averaged_point
 from fe_drivetrain.mesh import Grading, face_weights
-from fe_drivetrain.operator import nodal_stresses, rigid_motions, traction_loads
+from fe_drivetrain.operator import nodal_stresses, traction_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS

@@ -3,10 +3,9 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, rigid_motions
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.mesh import brick, shaft_hexahedra
-from fe_drivetrain.operator import rigid_motions
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.validation import manufactured

@@ -4,9 +4,9 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.report import Chart
-from fe_drivetrain.response import GRAVITY, LOADS
+from fe_drivetrain.response import LOADS
 from fe_drivetrain.suite import Page, Run
 
 #: A typical mean load: hub forces [N] and moments [N m] (Fx 200 kN, Fz -370 kN, My 660 kN m), then

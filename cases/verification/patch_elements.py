@@ -3,10 +3,10 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.common import STRESSES, Floats, Ints
 from fe_drivetrain.interfaces import freedoms
 from fe_drivetrain.mesh import element_kind
-from fe_drivetrain.operator import COMPONENTS, tensor, traction_loads
+from fe_drivetrain.operator import tensor, traction_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.suite import Page, Record, Run
@@ -126,7 +126,7 @@ def run(run: Run, page: Page) -> None:
     )
     page.section("Patch tests")
     page.table(
-        f"Largest errors over six strain states ({', '.join(COMPONENTS)}), relative to the largest "
+        f"Largest errors over six strain states ({', '.join(STRESSES)}), relative to the largest "
         "value of each. Nodes are moved at random, inside and on the surface",
         rows,
     )

@@ -18,9 +18,10 @@ def run(run: Run) -> Any:
     from fe_drivetrain.cases.verification import (
         scenes,
     )
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import freedoms
     from fe_drivetrain.mesh import brick, renumbered
-    from fe_drivetrain.operator import rigid_motions, stresses
+    from fe_drivetrain.operator import stresses
     from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
     from fe_drivetrain.solve import solve_solid
     from fe_drivetrain.validation import (

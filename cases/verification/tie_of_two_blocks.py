@@ -270,8 +270,9 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     """Stiffness in torsion, pure bending and across; what is out of balance between the halves."""
     import numpy as np
 
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import held_freedoms, held_nodes
-    from fe_drivetrain.operator import rigid_motions, traction_loads
+    from fe_drivetrain.operator import traction_loads
     from fe_drivetrain.validation import (
         two_bodies,
     )

@@ -296,8 +296,8 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     """Stiffness in torsion and radially; energy of rigid motions beside that of unit strain."""
     import numpy as np
 
+    from fe_drivetrain.common import rigid_motions
     from fe_drivetrain.interfaces import freedoms, held_freedoms
-    from fe_drivetrain.operator import rigid_motions
     from fe_drivetrain.validation import (
         two_bodies,
     )
@@ -326,7 +326,7 @@ def rigid_energy(bodies: Any, tie: Any) -> float:
     """
     import numpy as np
 
-    from fe_drivetrain.operator import rigid_motions
+    from fe_drivetrain.common import rigid_motions
 
     K = bodies.stiffness(lame())
     motions = rigid_motions(bodies.points)

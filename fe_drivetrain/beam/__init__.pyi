@@ -10,7 +10,6 @@ from .of_scene import main_bearing_beam as main_bearing_beam
 from .sections import BeamSection as BeamSection
 from .sections import cowper_shear_coefficient as cowper_shear_coefficient
 from .sections import element_integrals as element_integrals
-from .sections import transport as transport
 from .shaft import Beam as Beam
 from .shaft import Support as Support
 from .shaft import shaft_stiffness as shaft_stiffness

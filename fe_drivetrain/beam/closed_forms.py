@@ -87,7 +87,7 @@ class MainBearingBeam:
                 least = "0 or more" if field.name in _MAY_BE_ZERO else "positive"
                 most = "(inf for rigid)" if field.name in _MAY_BE_INFINITE else "and finite"
                 raise InputError(
-                    f"main-bearing beam: {field.name} = {value:g} must be {least} {most}: mend "
+                    f"main-bearing beam: {field.name} = {value:g} must be {least} {most}: correct "
                     "the value, in SI units."
                 )
         if self.bore >= self.shaft_diameter:

@@ -1,8 +1,8 @@
 """Frames in space: straight Timoshenko beams between rigid bodies, condensed to reference points.
 
-A node is a rigid body with six freedoms at its position. A beam may end off its nodes' positions:
-so a cheek that many beams stand on is one node, and a beam's end moves with it as a rigid body
-does.
+A node is a rigid body with six degrees of freedom at its position. A beam may end off its nodes'
+positions: so a cheek that many beams stand on is one node, and a beam's end moves with it as a
+rigid body does.
 """
 
 from __future__ import annotations
@@ -13,11 +13,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain.beam.sections import cowper_shear_coefficient
+from fe_drivetrain.beam.sections import (
+    cowper_shear_coefficient,
+    flexibility,
+    gauss_points,
+    stiffness_of_ends,
+)
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
+from fe_drivetrain.common.spatial import point_motions, rigid_motions, wrench_transport
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.solve.condensation import Condensed, condense, wrench_transport
+from fe_drivetrain.solve.condensation import Condensed, condense
 
 
 @dataclass(frozen=True)
@@ -109,21 +115,18 @@ def beam_stiffness(section: CrossSection, length: float, material: Material) -> 
     Structural Analysis, section 5.6).
     """
     E, G = material.youngs_modulus, material.shear_modulus
-    L = length
-    # motion of the end for forces there, clamped at the start; then all from statics
-    F = np.zeros((6, 6))
-    F[0, 0] = L / (E * section.area)
-    F[3, 3] = L / (G * section.torsion)
-    about_y, about_z = E * section.inertias[0], E * section.inertias[1]
-    F[1, 1] = L**3 / (3 * about_z) + L / (G * section.shear_areas[0])
-    F[2, 2] = L**3 / (3 * about_y) + L / (G * section.shear_areas[1])
-    F[5, 5], F[4, 4] = L / about_z, L / about_y
-    F[1, 5] = F[5, 1] = L**2 / (2 * about_z)
-    F[2, 4] = F[4, 2] = -(L**2) / (2 * about_y)
-    end = np.linalg.inv(F)
-    balance = np.vstack([-wrench_transport(np.array([L, 0.0, 0.0])), np.eye(6)])
-    K = balance @ end @ balance.T
-    return np.asarray(0.5 * (K + K.T))
+    rigidities = np.array(
+        [
+            E * section.area,
+            *(G * area for area in section.shear_areas),
+            G * section.torsion,
+            *(E * inertia for inertia in section.inertias),
+        ]
+    )
+    # two points are exact: flexibilities are quadratic along a uniform beam
+    s, weight = gauss_points(0.0, length, 2)
+    compliance = weight[:, None] / rigidities
+    return stiffness_of_ends(flexibility(compliance, length - s), length)
 
 
 @dataclass(frozen=True)
@@ -239,8 +242,8 @@ class SpatialFrame:
             There is one point only, or two move as one.
         """
         K, n = self.stiffness, len(self.positions)
-        size = np.sqrt(K.diagonal())
-        scaled = K / np.outer(size, size)
+        size = diagonal_roots(K.diagonal())
+        scaled = scaled_to_unit_diagonal(K)
         # loads are in balance: what is held only takes the rigid motions out
         left = np.arange(6, 6 * n)
         factor = np.linalg.inv(scaled[np.ix_(left, left)])
@@ -252,7 +255,7 @@ class SpatialFrame:
 
         loads = np.hstack([self._spread(f) for f in followers])
         positions = np.array([f.position for f in followers])
-        rigid = np.vstack([wrench_transport(p - positions[0]).T for p in self.positions])
+        rigid = point_motions(self.positions, positions[0])
         mass = sparse.csr_array(self.mass)
         names = [f.name for f in followers]
         found = condense(names, positions, loads, mass, rigid, solved)

@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.scene.materials import Material
 
 
@@ -238,11 +240,10 @@ def element_integrals(
     while not section.uniform:
         points *= 2
         finer = _integrate(section, material, shear, begin, end, points)
-        size = np.sqrt(np.diag(finer.flexibility))
-        change = np.abs(finer.flexibility - result.flexibility)
+        change = largest_difference(result.flexibility, finer.flexibility)
         result = finer
         # Gauss converges geometrically: after a change this small only rounding is left.
-        if np.all(change <= 1e-12 * np.outer(size, size)):
+        if change <= 1e-12:
             break
         if points >= 1024:
             raise InputError(
@@ -252,26 +253,50 @@ def element_integrals(
     return result
 
 
-def transport(distance: Floats) -> Floats:
-    """Matrix that takes a force (6 components) at x + distance to its equal at x, (..., 6, 6).
+def gauss_points(begin: float, end: float, points: int) -> tuple[Floats, Floats]:
+    """Places (points,) of Gauss quadrature from `begin` to `end`, and their weights [m]."""
+    abscissa, weight = np.polynomial.legendre.leggauss(points)
+    return begin + (end - begin) * (abscissa + 1.0) / 2.0, weight * (end - begin) / 2.0
 
-    Its transpose takes a rigid motion at x to the one at x + distance.
+
+def flexibility(compliance: Floats, arm: Floats) -> Floats:
+    """Motion of the right end of a beam for forces there, its left end clamped.
+
+    Parameters
+    ----------
+    compliance : ndarray, (q, 6)
+        Strains of pieces of the beam per force and moment in them, times their lengths: weights of
+        a quadrature over rigidities.
+    arm : ndarray, (q,)
+        From each piece to the right end, m.
+
+    Returns
+    -------
+    ndarray, (6, 6)
     """
-    matrix = np.zeros((*distance.shape, 6, 6))
-    matrix[...] = np.eye(6)
-    matrix[..., 4, 2] = -distance
-    matrix[..., 5, 1] = distance
-    return matrix
+    carried = wrench_transport(along_x(arm))
+    return np.asarray(np.einsum("iab,ia,iac->bc", carried, compliance, carried))
+
+
+def stiffness_of_ends(compliance: Floats, length: float) -> Floats:
+    """(12, 12) stiffness of both ends of a free beam from the flexibility (6, 6) of its right end.
+
+    The forces on the left end balance those on the right one (Przemieniecki 1968, Theory of Matrix
+    Structural Analysis, section 5.6).
+    """
+    stiffness = np.linalg.inv(compliance)
+    stiffness = (stiffness + stiffness.T) / 2.0
+    balance = np.vstack([-wrench_transport(along_x(length)), np.eye(6)])
+    return np.asarray(balance @ stiffness @ balance.T)
 
 
 def _integrate(
     section: Section, material: Material, shear: bool, begin: float, end: float, points: int
 ) -> ElementIntegrals:
-    abscissa, weight = np.polynomial.legendre.leggauss(points)
-    s = begin + (end - begin) * (abscissa + 1.0) / 2.0
+    s, weight = gauss_points(begin, end, points)
     compliance, _ = _properties(section, material, shear, s)
-    weighted = compliance * (weight * (end - begin) / 2.0)[:, None]
-    carried = transport(end - s)
+    weighted = compliance * weight[:, None]
+    carried = wrench_transport(along_x(end - s))
 
     # The weight to the right of s. Three points are exact: mass is at most a quadratic, times arm.
     inner_abscissa, inner_weight = np.polynomial.legendre.leggauss(3)
@@ -279,9 +304,9 @@ def _integrate(
     t = left + (end - left) * (inner_abscissa + 1.0) / 2.0
     _, mass = _properties(section, material, shear, t.ravel())
     piece = mass.reshape(t.shape) * inner_weight * (end - left) / 2.0
-    beyond = np.einsum("ij,ijab->iab", piece, transport(t - left))[:, :, :3]
+    beyond = np.einsum("ij,ijab->iab", piece, wrench_transport(along_x(t - left)))[:, :, :3]
     return ElementIntegrals(
-        flexibility=np.einsum("iab,ia,iac->bc", carried, weighted, carried),
+        flexibility=flexibility(weighted, end - s),
         sag=np.einsum("iab,ia,iac->bc", carried, weighted, beyond[:-1]),
         weight=beyond[-1],
     )
@@ -316,9 +341,11 @@ def _properties(
 
 def _check_positive(what: str, value: float, unit: str) -> None:
     if not (value > 0.0 and np.isfinite(value)):
-        raise InputError(f"{what} {value:g} {unit} must be positive and finite: mend the value.")
+        raise InputError(f"{what} {value:g} {unit} must be positive and finite: correct the value.")
 
 
 def _check_not_negative(what: str, value: float, unit: str) -> None:
     if not (value >= 0.0 and np.isfinite(value)):
-        raise InputError(f"{what} {value:g} {unit} must be 0 or more and finite: mend the value.")
+        raise InputError(
+            f"{what} {value:g} {unit} must be 0 or more and finite: correct the value."
+        )

@@ -24,9 +24,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fe_drivetrain.beam.sections import Section, element_integrals, transport
+from fe_drivetrain.beam.sections import Section, element_integrals, stiffness_of_ends
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
+from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
 # Stations closer than this share of the beam's length are one station.
@@ -96,12 +98,13 @@ class Support:
         matrix = np.asarray(self.stiffness, dtype=float)
         rigid = np.isinf(np.diag(matrix))
         held = ~rigid & (np.diag(matrix) > 0.0)
-        root = np.sqrt(np.diag(matrix)[held])
-        value, vector = np.linalg.eigh(matrix[np.ix_(held, held)] / np.outer(root, root))
+        springs = matrix[np.ix_(held, held)]
+        root = diagonal_roots(np.diag(springs))
+        value, vector = np.linalg.eigh(scaled_to_unit_diagonal(springs))
         real = value > 1e-12
-        springs = np.zeros((int(real.sum()), 6))
-        springs[:, held] = (vector[:, real] * root[:, None]).T
-        directions = np.vstack([np.eye(6)[rigid], springs])
+        elastic = np.zeros((int(real.sum()), 6))
+        elastic[:, held] = (vector[:, real] * root[:, None]).T
+        directions = np.vstack([np.eye(6)[rigid], elastic])
         return directions, np.concatenate([np.zeros(int(rigid.sum())), 1.0 / value[real]])
 
 
@@ -320,7 +323,7 @@ def unit_load_response(
     vectors, compliance, owner = _held_directions(beam, _nearest(nodes, held))
     directions = np.zeros((nodes.size, 6, owner.size))
     directions[_nearest(nodes, held)[owner], :, np.arange(owner.size)] = vectors
-    rigid_body = np.swapaxes(transport(nodes - nodes[0]), -1, -2)
+    rigid_body = np.swapaxes(wrench_transport(along_x(nodes - nodes[0])), -1, -2)
     grip = np.einsum("nca,ncq->aq", directions, rigid_body)
     _refuse_mechanism(grip, nodes[0], beam.length)
 
@@ -435,10 +438,7 @@ def shaft_stiffness(beam: Beam, first: float, second: float) -> Floats:
             f"shaft between {first:g} m and {second:g} m is rigid in some direction and has no "
             "finite stiffness: give its sections finite rigidities."
         )
-    stiffness = np.linalg.inv(compliance)
-    stiffness = (stiffness + stiffness.T) / 2.0
-    balance = np.vstack([-transport(np.array(second - first)), np.eye(6)])
-    return np.asarray(balance @ stiffness @ balance.T)
+    return stiffness_of_ends(compliance, second - first)
 
 
 def _elements(beam: Beam, nodes: Floats) -> tuple[Floats, Floats, Floats]:
@@ -468,7 +468,7 @@ def _clamped_displacements(
     `forces` (n, 6, c) act at the nodes; `free` (n - 1, 6, c) is what each element's right end
     moves of itself.
     """
-    carry = transport(np.diff(nodes))
+    carry = wrench_transport(along_x(np.diff(nodes)))
     inside = np.array(forces[1:], dtype=float)
     for e in range(len(carry) - 2, -1, -1):
         inside[e] += carry[e + 1] @ inside[e + 1]
@@ -494,7 +494,7 @@ def _held_directions(
             if key in rigid:
                 raise InputError(
                     f"supports '{rigid[key]}' and '{support.name}' are both rigid in "
-                    f"{_AXES[axis]} at x = {support.x:g} m and their shares cannot be told: "
+                    f"{_AXES[axis]} at x = {support.x:g} m and their shares are indeterminate: "
                     "give at least one of them a finite stiffness."
                 )
             rigid[key] = support.name
@@ -569,13 +569,13 @@ def _solve_saddle(
         )
         if soft > _SOFT:
             raise InputError(
-                f"a spring of the supports is {soft:.1g} times softer than the shaft, and cannot "
-                "be told from none: take it away, or make it stiffer."
+                f"a spring of the supports is {soft:.1g} times softer than the shaft, too soft to "
+                "be distinguished from no support: remove it or make it stiffer."
             )
         names = ", ".join(f"'{support.name}'" for support in beam.supports)
         raise InputError(
             f"supports {names} are rigid and so is the shaft between them, and their shares "
-            "cannot be told: give a support or a section a finite stiffness."
+            "are indeterminate: give a support or a section a finite stiffness."
         )
     right = np.vstack([row[:, None] * gap, column[:, None] * resultant])
     solved = np.linalg.solve(matrix, right)
@@ -618,7 +618,7 @@ def _check_support_matrix(name: str, matrix: Floats) -> None:
     if np.isnan(matrix).any() or not np.all(diagonal >= 0.0):
         raise InputError(
             f"support '{name}': stiffness {diagonal.tolist()} must be 0 or more in each "
-            "direction, inf for rigid: mend the negative or missing value."
+            "direction, inf for rigid: correct the negative or missing value."
         )
     off = matrix - np.diag(np.where(np.isinf(diagonal), 0.0, diagonal))
     off[np.isinf(diagonal), np.isinf(diagonal)] = 0.0
@@ -628,8 +628,7 @@ def _check_support_matrix(name: str, matrix: Floats) -> None:
             f"support '{name}': a direction whose stiffness is 0 or inf must have no coupling "
             "terms: set the rest of its row and column to 0."
         )
-    root = np.where(alone, 1.0, np.sqrt(np.where(alone, 1.0, diagonal)))
-    scaled = np.where(alone[:, None] | alone, 0.0, off / np.outer(root, root))
+    scaled = scaled_to_unit_diagonal(off, np.where(alone, 1.0, diagonal))
     worst = float(np.abs(scaled - scaled.T).max())
     if worst > 1e-6:
         raise InputError(

@@ -16,7 +16,6 @@ from .formats.stiffness_file import write_stiffness_json as write_stiffness_json
 from .formats.torsion import torsional_damping as torsional_damping
 from .formats.torsion import torsional_stiffness as torsional_stiffness
 from .from_component import component_superelement as component_superelement
-from .from_scene import difference as difference
 from .from_scene import shaft_superelement as shaft_superelement
 from .from_scene import unit_superelement as unit_superelement
 from .lumped_shaft import lumped_superelement as lumped_superelement
@@ -30,5 +29,3 @@ from .scene_export import SEATS as SEATS
 from .scene_export import SHAFT as SHAFT
 from .scene_export import superelement_of as superelement_of
 from .superelement import Superelement as Superelement
-from .superelement import scaled as scaled
-from .superelement import symmetry_error as symmetry_error

@@ -9,10 +9,9 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.export.calculix_plan import DeckPlan, deck_label, plan_deck
 from fe_drivetrain.response.model import LOADS, Model
-from fe_drivetrain.response.unit_loads import resultant
-from fe_drivetrain.solve.condensation import wrench_transport
 
 DIGITS = 7
 """Significant digits in a .dat file (Fortran's 1p,e13.6)."""
@@ -156,7 +155,7 @@ def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) 
         if unit.bedplate is None:
             base = model.mesh.face_nodes(f"{name}.housing.base")
             base_forces[name] = forces[base]
-            reactions[name] = -resultant(model.mesh.points, base, flat, centre)
+            reactions[name] = -resultant(model.mesh.points[base], forces[base], centre)
         else:
             arm = model.points[f"{name}.base"].position - centre
             carried = _carried_at(model, plan, f"{name}.base", motions, flat)

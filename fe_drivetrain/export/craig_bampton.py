@@ -29,7 +29,6 @@ from fe_drivetrain.export.from_scene import scene_hash
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.shafts import (
     harmonic_mass,
-    harmonic_motions,
     meridian_shaft,
     motion_traction,
     reference_points,
@@ -230,11 +229,10 @@ class _Harmonic:
         K = harmonics.assembled(matrices, target[local], share[local], size)
         follow = sparse.csr_array((share, (np.arange(size), target)), shape=(size, size))
         M = follow.T @ harmonic_mass(mesh, material.density, n) @ follow
-        x, r = mesh.nodes.T
         columns = []
         for place, where in zip(places, sides, strict=True):
             tractions = np.column_stack([motion_traction(mesh, n, where, place, k) for k in (0, 1)])
-            motions = harmonic_motions(n, x - place, r).reshape(2, -1)
+            motions = harmonics.rigid_motions(mesh, n, place).T
             columns.append(tractions @ np.linalg.inv(motions @ tractions))
         free = np.unique(target[share != 0.0])
         self.K = sparse.csc_array(K[free][:, free])

@@ -7,7 +7,8 @@ from dataclasses import replace
 from importlib.metadata import version
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.from_scene import COARSER, ORDER, difference
+from fe_drivetrain.common.scaling import largest_difference
+from fe_drivetrain.export.from_scene import COARSER, ORDER
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
@@ -81,7 +82,7 @@ def component_superelement(
     if level == 3 and solids is not None:
         ratio = solids[1].sizes.edge / solids[0].sizes.edge
         if ratio > 1.0:  # else the coarser mesh had to be made finer
-            band = difference(others[0].stiffness, fine.stiffness) / (ratio**ORDER - 1.0)
+            band = largest_difference(others[0].stiffness, fine.stiffness) / (ratio**ORDER - 1.0)
     program = f"fe-drivetrain {version('fe-drivetrain')}"
     origin = Origin(component.title, component_hash(component), level_title, mesh, program)
     kind = "gearbox_housing" if isinstance(component, HousingComponent) else "planet_carrier"

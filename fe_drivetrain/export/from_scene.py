@@ -8,8 +8,8 @@ from importlib.metadata import version
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.fidelity.ladder import LevelModel
@@ -66,16 +66,9 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
         body.positions,
         body.stiffness,
         body.mass,
-        band=factor * difference(other.stiffness, body.stiffness),
+        band=factor * largest_difference(other.stiffness, body.stiffness),
         origin=scene_origin(scene, *level_and_mesh),
     )
-
-
-def difference(matrix: Floats, reference: Floats) -> float:
-    """Largest difference of two matrices, the reference scaled to a unit diagonal."""
-    size = np.sqrt(np.abs(reference.diagonal()))
-    size[size == 0.0] = 1.0
-    return float(np.abs((matrix - reference) / np.outer(size, size)).max())
 
 
 def supported_superelement(
@@ -111,7 +104,7 @@ def unit_superelement(scene: Scene, name: str) -> Superelement:
         np.array([[x, 0.0, 0.0]]),
         stiff,
         supported=True,
-        band=difference(soft, stiff),
+        band=largest_difference(soft, stiff),
         origin=scene_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),
     )
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.solve.condensation import on_supports
 
 
@@ -24,6 +25,7 @@ def natural_frequencies(
     K, left = on_supports(points, stiffness, supports or {})
     M = np.asarray(mass)[np.ix_(left, left)]
     # lengths and angles, points and modes equally: a unit diagonal keeps the digits of all
-    size = np.sqrt(M.diagonal())
-    values = linalg.eigh(K / np.outer(size, size), M / np.outer(size, size), eigvals_only=True)
+    values = linalg.eigh(
+        scaled_to_unit_diagonal(K, M.diagonal()), scaled_to_unit_diagonal(M), eigvals_only=True
+    )
     return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))

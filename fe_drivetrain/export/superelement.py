@@ -8,13 +8,13 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.solve.condensation import point_motions
+from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
+from fe_drivetrain.common.spatial import point_motions
 
 FRAME = (
     "x downwind along the shaft, z up, y = z cross x; origin at the main bearing's centre where "
     "the scene puts its shaft so"
 )
-FREEDOMS = ("ux", "uy", "uz", "rx", "ry", "rz")
 UNITS = "N/m, N, N m/rad; kg, kg m, kg m^2; m, rad"
 
 #: What a matrix may be off: of symmetry, of a rigid motion's forces, of a negative eigenvalue;
@@ -60,7 +60,7 @@ class Superelement:
     positions
         (n, 3) [m], in `FRAME`.
     stiffness
-        (6 n, 6 n), symmetric: `FREEDOMS` of each point to forces and moments there.
+        (6 n, 6 n), symmetric: `components.MOTIONS` of each point to forces and moments there.
     mass
         (6 n, 6 n), symmetric; None where there is none.
     supported
@@ -123,7 +123,7 @@ class Superelement:
     @property
     def rigid_motions(self) -> Floats:
         """(6 n, 6) unit motions of the whole about the first point."""
-        return point_motions(self.positions)
+        return point_motions(self.positions, self.positions[0])
 
     def rigid_error(self) -> float:
         """Largest force against a rigid motion, of those that its terms would have one by one."""
@@ -145,21 +145,3 @@ class Superelement:
         if not self.supported:
             found["force against rigid motions"] = self.rigid_error()
         return found
-
-
-def scaled(matrix: Floats) -> Floats:
-    """The matrix with a unit diagonal: lengths and angles count equally."""
-    size = np.sqrt(np.where(matrix.diagonal() > 0, matrix.diagonal(), 1.0))
-    return np.asarray(matrix / np.outer(size, size))
-
-
-def symmetry_error(matrix: Floats) -> float:
-    """Largest difference from its transpose, with a unit diagonal."""
-    found = scaled(matrix)
-    return float(np.abs(found - found.T).max())
-
-
-def least_eigenvalue(matrix: Floats) -> float:
-    """The least eigenvalue, with a unit diagonal."""
-    found = scaled(matrix)
-    return float(np.linalg.eigvalsh(0.5 * (found + found.T))[0])

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.convergence import grid_convergence
 from fe_drivetrain.fidelity.ladder import (
@@ -25,10 +26,7 @@ from fe_drivetrain.fidelity.ladder import (
     statics_level,
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft
-from fe_drivetrain.response.model import COMPONENTS
 from fe_drivetrain.scene.scene import Scene
-
-MOTIONS = ("ux", "uy", "uz", "rx", "ry", "rz")
 
 #: Factors on mesh sizes of the two coarser assemblies that give the top level its band.
 COARSER = (1.8, 1.35)
@@ -62,7 +60,7 @@ class Quantity:
             The name is none of the scene's.
         """
         names = [unit.bearing.name for unit in scene.bearing_units] + ["gearbox"]
-        known = [f"{name}.{c}" for name in names for c in COMPONENTS]
+        known = [f"{name}.{c}" for name in names for c in FORCES]
         known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
         if self.name not in known:
             raise InputError(f"quantity {self.name!r} is unknown: use one of {', '.join(known)}")
@@ -84,7 +82,7 @@ class Quantity:
                 return np.array([np.nan])
             row = 6 * model.points.index("hub") + motion
             return np.array([1.0 / model.compliance[row, row]])
-        row = model.reaction_matrices[owner][COMPONENTS.index(component)]
+        row = model.reaction_matrices[owner][FORCES.index(component)]
         if self.load is not None:
             # 0 times what is not known is 0
             return np.array([row[self.load != 0] @ self.load[self.load != 0]])

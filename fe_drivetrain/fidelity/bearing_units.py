@@ -9,18 +9,15 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, joint_stiffness, roller_joint
 from fe_drivetrain.mesh.cached import cached_mesh
-from fe_drivetrain.mesh.facets import MEANS, face_weights
-from fe_drivetrain.operator.incompressible import assemble_unlocked
+from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.scene import Coupling, Scene, as_numbers
-from fe_drivetrain.solve.condensation import wrench_transport
-from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import solve
+from fe_drivetrain.solve.coupled_solid import coupled_solid, point_compliance
 
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
 
@@ -81,41 +78,29 @@ def unit_stiffness(
     else:
         face = f"{name}.housing.bore"
 
-    n = len(mesh.points)
-    n_freedoms = 3 * n + (6 if coupling == "rigid" else 0)
-    K = sum(
-        assemble_unlocked(
-            mesh.points, mesh.cells[mesh.part_cells(part)], scene.material_of(part).lame, n_freedoms
-        )
-        for part in parts
-    )
-    cells = np.concatenate([mesh.cells[mesh.part_cells(part)] for part in parts])
-    nodes = mesh.face_nodes(face)
     centre = np.array([unit.bearing.x, 0.0, 0.0])
+    materials = {part: scene.material_of(part) for part in parts}
+    solid = coupled_solid(mesh, materials, [Attachment(name, face, centre, coupling)])
+    n_freedoms = solid.n_freedoms
     base = f"{name}.housing.base"
-    held = [constraints.fixed(base, mesh.face_nodes(base), n_freedoms)]
-    left_out = np.setdiff1d(np.arange(n), np.concatenate([cells.ravel(), nodes]))
-    held.append(constraints.fixed("parts left out", left_out, n_freedoms))
-    if coupling == "rigid":
-        point = constraints.rigid_point(name, centre, 3 * n, n_freedoms)
-        held.append(constraints.rigid_face(name, nodes, mesh.points, point))
-    else:
-        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
-        point = constraints.averaged_point(name, nodes, weights, mesh.points, centre, n_freedoms)
-    ground = np.zeros((6, 6))
+    left_out = np.setdiff1d(
+        np.arange(len(mesh.points)),
+        np.concatenate([solid.cells.ravel(), mesh.face_nodes(face)]),
+    )
+    held = [
+        constraints.fixed(base, mesh.face_nodes(base), n_freedoms),
+        constraints.fixed("parts left out", left_out, n_freedoms),
+    ]
+    springs: list[tuple[constraints.ReferencePoint, Floats]] = []
     if unit.rollers is not None:
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
         ground = free.T @ free
-        for at, k in (*roller_joint(unit, mesh, n_freedoms).springs, (point, ground)):
-            K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
-    elimination = constraints.eliminate(held, n_freedoms)
-    system = reduce(mesh.points, cells, K, elimination)
-    F = point.motion.T.toarray()
-    compliance = F.T @ (elimination.T @ solve(system, elimination.T.T @ F, method).x)
+        springs = [*roller_joint(unit, mesh, n_freedoms).springs, (solid.points[0], ground)]
+    compliance = point_compliance(solid, held, springs, method)
     stiffness = np.linalg.inv(compliance)
     if unit.rollers is not None:
         carried = np.eye(6) - np.linalg.pinv(free) @ free
-        stiffness = carried.T @ (stiffness - ground) @ carried
+        stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
     if unit.bedplate is not None:
         # the base moves as a rigid body, so this is exact
         lever = wrench_transport(np.array([0.0, 0.0, unit.housing.centre_height])).T

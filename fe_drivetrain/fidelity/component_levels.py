@@ -14,24 +14,20 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import least_eigenvalue, scaled_to_unit_diagonal
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
 from fe_drivetrain.fidelity.ladder import Cost, LevelModel
-from fe_drivetrain.response.model import COMPONENTS
 from fe_drivetrain.scene.component import (
     CarrierComponent,
     Component,
     HousingComponent,
     material_of,
 )
-from fe_drivetrain.solve.condensation import (
-    Condensed,
-    on_supports,
-    point_motions,
-    supported,
-    wrench_transport,
-)
+from fe_drivetrain.solve.condensation import Condensed, on_supports, supported
 
 #: Couplings of a spring matrix below this share of its diagonal are not worth a name.
 NAMED_FROM = 1e-3
@@ -39,7 +35,7 @@ NAMED_FROM = 1e-3
 
 def loads_of(component: Component) -> tuple[str, ...]:
     """Names of the unit loads: "ring.Fx" and so on [N, N m], then gravity along x, y, z [m/s^2]."""
-    at_points = [f"{name}.{c}" for name in component.loaded for c in COMPONENTS]
+    at_points = [f"{name}.{c}" for name in component.loaded for c in FORCES]
     return (*at_points, "gravity.x", "gravity.y", "gravity.z")
 
 
@@ -48,7 +44,7 @@ def rigid_level(component: Component) -> LevelModel:
     start = time.perf_counter()
     names = [a.name for a in component.attachments]
     positions = np.array([a.position for a in component.attachments])
-    motions = point_motions(positions)
+    motions = point_motions(positions, positions[0])
     volume, centre = component.body.volume_and_centre()
     mass = material_of(component).density * volume
     weight = mass * wrench_transport(np.array(centre) - positions[0])[:, :3]
@@ -60,9 +56,8 @@ def rigid_level(component: Component) -> LevelModel:
         return LevelModel(0, "rigid body", ("every stiffness",), cost, {"hub": resultants})
     parts = {name: motions[6 * k : 6 * k + 6] for k, name in enumerate(names)}
     springs = component.supports
-    K = sum(parts[name].T @ k @ parts[name] for name, k in springs.items())
-    size = np.sqrt(np.diag(K))
-    if not (size > 0).all() or np.linalg.eigvalsh(K / np.outer(size, size))[0] < 1e-13:
+    K = np.asarray(sum(parts[name].T @ k @ parts[name] for name, k in springs.items()))
+    if least_eigenvalue(K) < 1e-13:
         raise InputError(_FREE)
     reactions = {
         name: k @ parts[name] @ np.linalg.solve(K, resultants) for name, k in springs.items()
@@ -199,11 +194,9 @@ def gearbox_springs(ring: Floats) -> GearboxSprings:
     ring
         (6, 6), of `LevelModel.stiffness` at "ring" or of `stiffness_on_supports`.
     """
-    motions = ("ux", "uy", "uz", "rx", "ry", "rz")
-    size = np.sqrt(np.diag(ring))
-    share = ring / np.outer(size, size)
+    share = scaled_to_unit_diagonal(ring)
     left_out = {
-        f"{motions[i]}-{motions[j]}": float(share[i, j])
+        f"{MOTIONS[i]}-{MOTIONS[j]}": float(share[i, j])
         for i in range(6)
         for j in range(i + 1, 6)
         if abs(share[i, j]) >= NAMED_FROM

@@ -17,8 +17,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.response.model import COMPONENTS, LOADS, Model
+from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.response.unit_loads import Response
 
 
@@ -104,7 +105,7 @@ def moment_elasticities(model: Model, response: Response, load: str) -> dict[str
     name = scene.bearing_units[0].bearing.name
     arm = scene.shaft.rear - scene.bearing_units[0].bearing.x
     column = LOADS.index(load)
-    moment = response.reactions[name][COMPONENTS.index("My"), column]
+    moment = response.reactions[name][FORCES.index("My"), column]
     k = float(spring)
     lift = -response.motions["gearbox"][2, column]  # work of the weight
     found = {}

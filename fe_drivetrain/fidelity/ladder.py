@@ -14,7 +14,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.bearing_units import scene_supports, unit_stiffness
 from fe_drivetrain.fidelity.shafts import (
     beam_shaft,
@@ -24,10 +26,10 @@ from fe_drivetrain.fidelity.shafts import (
 )
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.interfaces.joints import joint_stiffness
-from fe_drivetrain.response.model import COMPONENTS, LOADS, build_model, mesh_scene
+from fe_drivetrain.response.model import LOADS, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.scene import Coupling, Scene
-from fe_drivetrain.solve.condensation import Condensed, supported, wrench_transport
+from fe_drivetrain.solve.condensation import Condensed, supported
 
 TITLES = (
     "statics",
@@ -108,7 +110,7 @@ class LevelModel:
         stuck = [
             f"{name} {c}"
             for name, part in zip(at, np.split(compliance.diagonal(), len(at)), strict=True)
-            for c, value in zip(("ux", "uy", "uz", "rx", "ry", "rz"), part, strict=True)
+            for c, value in zip(MOTIONS, part, strict=True)
             if value <= 0.0
         ]
         if stuck:
@@ -143,7 +145,7 @@ def statics_level(scene: Scene) -> LevelModel:
     for (name, c), row, sure in zip(carried, found, decided, strict=True):
         matrices[name][c] = row if sure else np.nan
     unknown = [
-        f"{name} {COMPONENTS[c]}" for (name, c), s in zip(carried, decided, strict=True) if not s
+        f"{name} {FORCES[c]}" for (name, c), s in zip(carried, decided, strict=True) if not s
     ]
     neglects = ["every stiffness"]
     if unknown:
@@ -264,5 +266,5 @@ def _unit_loads(body: Condensed) -> Floats:
 def _applied(body: Condensed, positions: Floats) -> Floats:
     """(6, 10) resultants of `model.LOADS` about the hub."""
     n = len(body.names)
-    carry = np.hstack([wrench_transport(p - positions[0]) for p in positions])
+    carry = point_motions(positions, positions[0]).T
     return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(body)

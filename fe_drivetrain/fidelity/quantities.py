@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.fidelity.adviser import MOTIONS, Quantity
+from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.response.model import COMPONENTS, LOADS
+from fe_drivetrain.response.model import LOADS
 from fe_drivetrain.scene.scene import SPHERICAL_JOINTS, Scene
 from fe_drivetrain.solve.condensation import Condensed, keep_points
 
@@ -113,7 +114,7 @@ def _resisted(stiffness: Floats) -> tuple[Floats, Floats, Floats]:
 def known_names(scene: Scene) -> list[str]:
     """All that can be asked of a scene."""
     units = [unit.bearing.name for unit in scene.bearing_units]
-    names = [f"{name}.{c}" for name in (*units, "gearbox") for c in COMPONENTS]
+    names = [f"{name}.{c}" for name in (*units, "gearbox") for c in FORCES]
     return names + stiffness_names(scene)
 
 

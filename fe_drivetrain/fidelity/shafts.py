@@ -11,26 +11,20 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy import linalg, sparse
+from scipy import sparse
 
 from fe_drivetrain.beam.of_scene import beam_of_scene
 from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.mesh.cached import cached_mesh
-from fe_drivetrain.mesh.facets import MEANS, face_weights
-from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
-from fe_drivetrain.operator.elasticity import rigid_motions
-from fe_drivetrain.operator.incompressible import assemble_unlocked
-from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.revolution import harmonics
 from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
+from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import Condensed, condense
-from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import solve
+from fe_drivetrain.solve.coupled_solid import condensed_solid
 
 
 def reference_points(scene: Scene) -> tuple[tuple[str, ...], Floats]:
@@ -186,32 +180,13 @@ def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
     names, positions = reference_points(scene)
     bearings = [unit.bearing for unit in scene.bearing_units]
     mesh = cached_mesh(scene.shaft, bearings, {}, scene.mesh, frozenset())
-    n = len(mesh.points)
     faces = ["shaft.front", *(f"{b.name}.outer" for b in bearings), "shaft.rear"]
-    points = []
-    for name, face, position in zip(names, faces, positions, strict=True):
-        nodes = mesh.face_nodes(face)
-        weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
-        points.append(
-            constraints.averaged_point(name, nodes, weights, mesh.points, position, 3 * n)
-        )
-    K = None
-    mass = sparse.csr_array((3 * n, 3 * n))
-    for part in mesh.part_names:
-        material = scene.material_of(part)
-        cells = mesh.cells[mesh.part_cells(part)]
-        own = assemble_unlocked(mesh.points, cells, material.lame, 3 * n)
-        K = own if K is None else K + own
-        mass = mass + mass_matrix(mesh.points, cells, material.density, 3 * n)
-    elimination = constraints.eliminate([_pins(mesh.points)], 3 * n)
-    system = reduce(mesh.points, mesh.cells, K, elimination)
-
-    def solved(F: Floats) -> Floats:
-        return np.asarray(elimination.T @ solve(system, elimination.T.T @ F, method).x)
-
-    loads = np.hstack([point.motion.T.toarray() for point in points])
-    rigid = rigid_motions(mesh.points, positions[0])
-    return condense(names, positions, loads, mass, rigid, solved)
+    attachments = [
+        Attachment(name, face, position, "averaged")
+        for name, face, position in zip(names, faces, positions, strict=True)
+    ]
+    materials = {part: scene.material_of(part) for part in mesh.part_names}
+    return condensed_solid(mesh, materials, attachments, method).body
 
 
 def condensed_shaft(scene: Scene, level: int) -> Condensed:
@@ -224,56 +199,31 @@ def condensed_shaft(scene: Scene, level: int) -> Condensed:
     return condensers[level](scene)
 
 
-def _pins(points: Floats) -> constraints.Constraint:
-    """Six freedoms of three nodes that are far apart: they hold a solid without straining it."""
-    a = int(np.argmin(points[:, 0]))
-    b = int(np.argmax(np.linalg.norm(points - points[a], axis=1)))
-    along = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
-    c = int(np.argmax(np.linalg.norm(np.cross(points - points[a], along), axis=1)))
-    nodes = np.array([a, b, c])
-    length = float(np.linalg.norm(points[b] - points[a]))
-    motions = rigid_motions(points[nodes], points[nodes].mean(axis=0))
-    motions[:, 3:] /= length
-    best = linalg.qr(motions.T, mode="r", pivoting=True)[1][:6]
-    return constraints.held_freedoms("pins", constraints.freedoms(nodes).ravel()[best], points.size)
-
-
 def _coupled_sides(
     mesh: Meridian, shaft: Shaft, spans: Sequence[tuple[float, float]]
 ) -> list[Ints]:
     """Sides of the meridian that each reference point moves with."""
 
     def end(at: float) -> Ints:
-        return mesh.sides(lambda x, r: np.abs(x - at) < SAME_LENGTH)
+        return mesh.sides(lambda x, r: np.abs(x - at) < LENGTH_TOLERANCE)
 
     def seat(low: float, high: float) -> Ints:
         radius = shaft.outer_radius((low + high) / 2)
         return mesh.sides(
             lambda x, r: (
-                (np.abs(r - radius) < SAME_LENGTH)
-                & (x > low - SAME_LENGTH)
-                & (x < high + SAME_LENGTH)
+                (np.abs(r - radius) < LENGTH_TOLERANCE)
+                & (x > low - LENGTH_TOLERANCE)
+                & (x < high + LENGTH_TOLERANCE)
             )
         )
 
     return [end(shaft.front), *(seat(*span) for span in spans), end(shaft.rear)]
 
 
-def harmonic_motions(n: int, x: Floats, r: Floats) -> Floats:
-    """(2, ..., 3) amplitudes of a rigid motion in harmonic n: along x and about it; along y and
-    about the line along z through x = 0."""
-    one, zero = np.ones_like(x), np.zeros_like(x)
-    first, second = {
-        0: ((one, zero, zero), (zero, zero, r)),
-        1: ((zero, one, -one), (-r, x, -x)),
-    }[n]
-    return np.stack([np.stack(first, axis=-1), np.stack(second, axis=-1)])
-
-
 def motion_traction(mesh: Meridian, n: int, sides: Ints, place: float, k: int) -> Floats:
     """Nodal forces of a traction as large as the k-th rigid motion about x = place."""
     return harmonics.surface_loads(
-        mesh, n, sides, lambda at, _: harmonic_motions(n, at[:, 0] - place, at[:, 1])[k]
+        mesh, n, sides, lambda at, _: harmonics.rigid_motions_at(at - [place, 0.0], n)[:, :, k]
     )
 
 
@@ -292,7 +242,7 @@ def _harmonic(
     columns = []
     for place, where in zip(positions[:, 0], sides, strict=True):
         tractions = np.column_stack([motion_traction(mesh, n, where, place, k) for k in (0, 1)])
-        here = harmonic_motions(n, x - place, r).reshape(2, -1)
+        here = harmonics.rigid_motions(mesh, n, place).T
         # scaled to do unit work on these motions, tractions take the face's mean one, as RBE3 does
         columns.append(tractions @ np.linalg.inv(here @ tractions))
     # loads are in balance: what is held only takes the rigid motions out
@@ -302,7 +252,7 @@ def _harmonic(
         1: harmonics.freedoms(np.array(ends), 1),
     }[n]
     solved = harmonics.harmonic_solver(mesh, material, n, held)
-    rigid = harmonic_motions(n, x - positions[0, 0], r).reshape(2, -1).T
+    rigid = harmonics.rigid_motions(mesh, n, positions[0, 0])
     return condense(names, positions, np.hstack(columns), mass, rigid, solved, kept)
 
 

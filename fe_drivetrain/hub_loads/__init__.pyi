@@ -1,6 +1,5 @@
 from .aero_rotor import assumptions as assumptions
 from .files import read_hub_loads as read_hub_loads
-from .histories import COMPONENTS as COMPONENTS
 from .histories import UNITS as UNITS
 from .histories import LoadHistory as LoadHistory
 from .surrogate import SHEARS as SHEARS

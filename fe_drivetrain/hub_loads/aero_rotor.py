@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 
 CUT_IN, CUT_OUT = 4.0, 25.0
@@ -52,7 +53,7 @@ class Rotor:
         "Fingersh, Hand and Laxson 2006 (NREL/TP-500-40566) at 80 m: blades 3 x 6.8 t, hub 12.2 t, "
         "pitch system 4.7 t, nose cone 1.0 t; the 2015 revision in WISDEM gives 32 to 37 t",
     )
-    gravity: float = _given(9.80665, "m/s^2", "standard gravity")
+    gravity: float = _given(GRAVITY, "m/s^2", "standard gravity")
     air_density: float = _given(1.225, "kg/m^3", "IEC 61400-1, standard atmosphere")
     blades: int = field(default=3, metadata={"unit": "-", "source": "Stirling 2023"})
     blade_start: float = _given(6.0, "m", "aerofoils begin at 15 % of the radius; root is inert")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.strict_yaml import shown
@@ -23,15 +24,9 @@ from fe_drivetrain.hub_loads.channels import (
     in_si,
     parse_number,
 )
-from fe_drivetrain.hub_loads.histories import (
-    COMPONENTS,
-    UNITS,
-    Attribute,
-    LoadHistory,
-    require_sound,
-)
+from fe_drivetrain.hub_loads.histories import UNITS, Attribute, LoadHistory, require_sound
 
-_CSV_COLUMNS = ("time", *COMPONENTS)
+_CSV_COLUMNS = ("time", *FORCES)
 _CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
@@ -98,9 +93,9 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     time = in_si(source, channels["time"], TIME_UNITS)
     tables = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
     loads = [
-        in_si(source, channels[name], table) for name, table in zip(COMPONENTS, tables, strict=True)
+        in_si(source, channels[name], table) for name, table in zip(FORCES, tables, strict=True)
     ]
-    columns = dict(zip(COMPONENTS, loads, strict=True))
+    columns = dict(zip(FORCES, loads, strict=True))
     require_sound(f"hub loads '{source}'", time, columns, rows)
     return LoadHistory(file.stem, time, np.column_stack(loads), {"source": file.name} | attributes)
 
@@ -139,7 +134,7 @@ def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]
         if not match[2]:
             raise InputError(
                 f"hub loads '{file}': column '{title.strip()}' has no unit; write it like "
-                f"'{name} [{'s' if name == 'time' else UNITS[COMPONENTS.index(name)]}]'"
+                f"'{name} [{'s' if name == 'time' else UNITS[FORCES.index(name)]}]'"
             )
         places[name] = (place, match[2])
     missing = [name for name in _CSV_COLUMNS if name not in places]

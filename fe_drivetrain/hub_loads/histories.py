@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.statistics import CONSTANT
 
-COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 LARGEST_LOAD = 1e12
@@ -68,15 +68,15 @@ class LoadHistory:
     def __post_init__(self) -> None:
         time = _frozen(self.time)
         loads = _frozen(self.loads)
-        if time.ndim != 1 or loads.shape != (time.size, len(COMPONENTS)):
+        if time.ndim != 1 or loads.shape != (time.size, len(FORCES)):
             raise InputError(
                 f"load history '{self.name}': time has shape {time.shape} and loads {loads.shape}; "
-                f"give (n,) and (n, 6) in the order {', '.join(COMPONENTS)}"
+                f"give (n,) and (n, 6) in the order {', '.join(FORCES)}"
             )
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "loads", loads)
         object.__setattr__(self, "attributes", dict(self.attributes))
-        columns = dict(zip(COMPONENTS, loads.T, strict=True))
+        columns = dict(zip(FORCES, loads.T, strict=True))
         require_sound(f"load history '{self.name}'", time, columns)
 
     def __len__(self) -> int:
@@ -90,9 +90,9 @@ class LoadHistory:
         InputError
             If there is no component of that name.
         """
-        if name not in COMPONENTS:
-            raise InputError(f"hub-load component '{name}' is not one of {', '.join(COMPONENTS)}")
-        return self.loads[:, COMPONENTS.index(name)]
+        if name not in FORCES:
+            raise InputError(f"hub-load component '{name}' is not one of {', '.join(FORCES)}")
+        return self.loads[:, FORCES.index(name)]
 
     def between(self, start: float, stop: float = np.inf) -> LoadHistory:
         """The samples with start <= time <= stop [s], for example without a start-up transient."""

@@ -25,6 +25,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.aero_rotor import (
     CUT_IN,
@@ -35,7 +36,7 @@ from fe_drivetrain.hub_loads.aero_rotor import (
     assumptions,
     operating_point,
 )
-from fe_drivetrain.hub_loads.histories import COMPONENTS, MIN_SAMPLES, Attribute, LoadHistory
+from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.hub_loads.wind import (
     REFERENCE_INTENSITY,
     DiscTurbulence,
@@ -230,7 +231,7 @@ def hub_load_set(
     rotor = rotor or Rotor()
     grid = tuple(surrogate_grid() if conditions is None else conditions)
     time = _time(duration, rate)
-    loads = np.empty((len(grid), time.size, len(COMPONENTS)))
+    loads = np.empty((len(grid), time.size, len(FORCES)))
     kept = _cache(cache)
     done = 0
 

@@ -1,8 +1,8 @@
 """Interfaces, supports and reference points as linear constraints, eliminated and never penalised.
 
-A constraint is a row of C in C u = 0 over all freedoms u: three displacements a node, then six
-freedoms for each rigid reference point. ``eliminate`` turns all rows together into u = T q, where
-q are the freedoms that are left, so that stiffness contrast cannot spoil the conditioning.
+A constraint is a row of C in C u = 0 over all degrees of freedom u: three displacements a node,
+then six for each rigid reference point. ``eliminate`` turns all rows together into u = T q, where q
+are the degrees of freedom that are left, so that stiffness contrast cannot spoil the conditioning.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.common.spatial import rigid_motions
 
 AXES = ("x", "y", "z")
 

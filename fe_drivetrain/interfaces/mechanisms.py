@@ -11,14 +11,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg, sparse
-from scipy.sparse.csgraph import connected_components
+from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import AXES, Constraint, ReferencePoint
+from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.operator.elasticity import rigid_motions
 
 # Relative to constraint rows of size one: far above round-off, far below any real restraint.
 _NULL = 1e-9
@@ -98,7 +98,7 @@ class _StrainFree:
         return found
 
 
-def bodies(mesh: Mesh) -> tuple[Ints, list[tuple[str, ...]]]:
+def named_bodies(mesh: Mesh) -> tuple[Ints, list[tuple[str, ...]]]:
     """Which body each node belongs to, and the names of the parts of each body.
 
     Returns
@@ -106,14 +106,11 @@ def bodies(mesh: Mesh) -> tuple[Ints, list[tuple[str, ...]]]:
     body_of_node, part_names
         (n_nodes,) and one tuple of names for each body.
     """
-    n = len(mesh.points)
-    first = np.repeat(mesh.cells[:, 0], mesh.cells.shape[1])
-    graph = sparse.coo_array((np.ones(first.size), (first, mesh.cells.ravel())), shape=(n, n))
-    count, body_of_node = connected_components(graph, directed=False)
+    body_of_node = connected_bodies(mesh.cells, len(mesh.points))
     body_of_cell = body_of_node[mesh.cells[:, 0]]
     names = [
         tuple(mesh.part_names[p] for p in np.unique(mesh.part[body_of_cell == body]))
-        for body in range(count)
+        for body in range(body_of_node.max() + 1)
     ]
     return body_of_node, names
 
@@ -246,7 +243,7 @@ def warn_of_weak_restraints(
 
 
 def _strain_free(mesh: Mesh, n_freedoms: int) -> _StrainFree:
-    body_of_node, names = bodies(mesh)
+    body_of_node, names = named_bodies(mesh)
     n = len(mesh.points)
     length = float(np.ptp(mesh.points, axis=0).max())
     centres = np.array([mesh.points[body_of_node == b].mean(axis=0) for b in range(len(names))])

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.mesh.facets import FacetKind, facet_kind, facet_points
 
 REACH = 0.25  # of a facet's size: faces further apart do not touch
@@ -21,7 +21,6 @@ _STRAIGHT = 1e-9  # of a facet's size
 _SLIVER = 1e-14  # of a window: pieces that are smaller are none
 _STEP = 1e-12  # of a facet: Newton's last step, which squares itself once more
 _STEPS = 20
-_CHUNK = 2048  # windows at a time
 _DEGREE = {3: 1, 6: 2, 4: 2, 8: 3, 9: 4}  # of the shape functions on a straight facet
 _OUTLINE = {
     3: (0, 1, 2),
@@ -68,8 +67,8 @@ def common_pieces(points: Floats, slave: Ints, master: Ints, reach: float = REAC
     master_normals = facet_normals(points, master)
     centres, radii = circles(outline)
     found = []
-    for start in range(0, len(windows), _CHUNK):
-        part = windows[start : start + _CHUNK]
+    for rows in chunks(len(windows), CHUNK // 2):
+        part = windows[rows]
         window, facet = near_pairs(*circles(part), centres, radii)
         normals = np.cross(part[:, 1] - part[:, 0], part[:, 2] - part[:, 0])
         normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -80,7 +79,7 @@ def common_pieces(points: Floats, slave: Ints, master: Ints, reach: float = REAC
         distances = outline[facet] - part[window, None, 0]
         polygons = np.einsum("pij,pvj->pvi", to_window[window], distances)[:, ::-1]
         pair, triangles = _cut(polygons)
-        owner, local = np.divmod(start + window[pair], len(reference))
+        owner, local = np.divmod(rows.start + window[pair], len(reference))
         found.append(
             _integrated(
                 points, slave, master, owner, facet[pair], reference[local], triangles, reach

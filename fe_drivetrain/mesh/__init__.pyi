@@ -4,6 +4,7 @@ from .blocks import FACES as FACES
 from .blocks import Block as Block
 from .blocks import brick as brick
 from .blocks import joined as joined
+from .bodies import connected_bodies as connected_bodies
 from .cached import cached_mesh as cached_mesh
 from .checks import FLATTEST as FLATTEST
 from .checks import find_faults as find_faults
@@ -12,11 +13,11 @@ from .facets import MEANS as MEANS
 from .facets import face_weights as face_weights
 from .facets import facet_points as facet_points
 from .facets import local_facets as local_facets
+from .facets import volume_weights as volume_weights
 from .files import write as write
 from .generation import generate as generate
 from .generation import read_gmsh as read_gmsh
 from .generation import relax_flat_cells as relax_flat_cells
-from .hexahedra import SAME_LENGTH as SAME_LENGTH
 from .hexahedra import UNGRADED as UNGRADED
 from .hexahedra import Grading as Grading
 from .hexahedra import Hexahedra as Hexahedra
@@ -33,10 +34,10 @@ from .measures import jacobians as jacobians
 from .measures import lattice as lattice
 from .measures import quality as quality
 from .measures import volume as volume
-from .mesh import EDGES as EDGES
 from .mesh import FACETS as FACETS
 from .mesh import Mesh as Mesh
 from .mesh import boundary as boundary
+from .shapes import TETRAHEDRON_EDGES as TETRAHEDRON_EDGES
 from .shapes import element_kind as element_kind
 from .shapes import is_straight as is_straight
 from .shapes import jacobian as jacobian

@@ -17,7 +17,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.facets import local_facets
 from fe_drivetrain.mesh.hexahedra import VTK_LATTICE
 from fe_drivetrain.mesh.linear import renumbered
-from fe_drivetrain.mesh.shapes import element_kind
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES, element_kind
 
 FACES = ("x0", "x1", "y0", "y1", "z0", "z1")
 
@@ -134,7 +134,6 @@ def _tetrahedra(nodes: int) -> list[Ints]:
             corners[step:, axis] = 2
         if np.linalg.det(corners[1:] - corners[0]) < 0:
             corners[[2, 3]] = corners[[3, 2]]
-        mids = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]
-        places = [*corners, *((corners[i] + corners[j]) // 2 for i, j in mids)]
+        places = [*corners, *((corners[i] + corners[j]) // 2 for i, j in TETRAHEDRON_EDGES)]
         found.append(np.array(places[:nodes]))
     return found

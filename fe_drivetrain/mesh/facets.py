@@ -7,9 +7,15 @@ import numpy as np
 from skfem import ElementQuad1, ElementQuad2, ElementQuadS2, ElementTriP1, ElementTriP2
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.shapes import HEXAHEDRON_EDGES, HEXAHEDRON_FACES, Nodal, element_kind
+from fe_drivetrain.mesh.shapes import (
+    HEXAHEDRON_EDGES,
+    HEXAHEDRON_FACES,
+    Nodal,
+    element_kind,
+    jacobian,
+)
 
 MEANS = 4
 """Degree of the quadrature for means over a face, which need less than loads do."""
@@ -140,4 +146,26 @@ def face_weights(points: Floats, facets: Ints, n_nodes: int, degree: int | None 
     at = facet_points(points, facets, degree)
     weights = np.zeros(n_nodes)
     np.add.at(weights, facets, at.areas @ at.values)
+    return weights
+
+
+def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
+    """Integrals of the shape functions over elements of any kind; (n_nodes,) [m^3].
+
+    Parameters
+    ----------
+    points
+        (n, 3) node coordinates [m].
+    cells
+        (n_cells, k) node numbers in VTK's order.
+    n_nodes
+        Length of the result.
+    """
+    kind = element_kind(cells.shape[1])
+    X, W = get_quadrature(kind.element.refdom, kind.degree)
+    values, gradients = kind.shape(X)
+    weights = np.zeros(n_nodes)
+    for chunk in chunks(len(cells)):
+        determinant = jacobian(points, cells[chunk], gradients)[1]
+        np.add.at(weights, cells[chunk], (np.abs(determinant) * W) @ values)
     return weights

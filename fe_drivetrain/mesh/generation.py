@@ -24,7 +24,8 @@ from fe_drivetrain.geometry import (
     size_name,
 )
 from fe_drivetrain.mesh.measures import inverted_cells, scaled_jacobians
-from fe_drivetrain.mesh.mesh import EDGES, FACETS, Mesh, part_of
+from fe_drivetrain.mesh.mesh import FACETS, Mesh, part_of
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 
 GMSH_TO_VTK = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
 """Columns of gmsh's ten-node tetrahedron in the order of VTK, meshio and scikit-fem."""
@@ -123,7 +124,7 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
         if len(flat) == 0:
             break
         mids, first = np.unique(flat[:, 4:], return_index=True)
-        ends = flat[:, np.array(EDGES)].reshape(-1, 2)[first]
+        ends = flat[:, TETRAHEDRON_EDGES].reshape(-1, 2)[first]
         free = moves[mids]
         straight = points[ends[free]].mean(axis=1)
         points[mids[free]] = (points[mids[free]] + straight) / 2
@@ -188,7 +189,7 @@ def _in_order(cells: Ints, n_nodes: int) -> tuple[Ints, Ints]:
     gmsh puts mid-side nodes far from their corners, and parts in no order. Beyond the cache of a
     processor, the product of a matrix with vectors then takes three times as long.
     """
-    corners = np.array(EDGES)
+    corners = TETRAHEDRON_EDGES
     ends = np.concatenate([cells[:, corners[:, k]].ravel() for k in (0, 1)])
     middles = np.tile(cells[:, 4:].ravel(), 2)
     graph = sparse.coo_matrix((np.ones(len(ends)), (ends, middles)), shape=(n_nodes, n_nodes))

@@ -17,13 +17,10 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.mesh.linear import renumbered
 
 Nodes = Literal[8, 20, 27]
-
-SAME_LENGTH = 1e-9
-"""Two lengths closer than this (m) are the same length."""
 
 CORE = 0.5
 """Radius inside which a solid length has its core, as a share of its least radius."""
@@ -148,13 +145,13 @@ def shaft_hexahedra(
     return Hexahedra(
         mesh.points,
         mesh.cells,
-        np.flatnonzero(np.abs(x - shaft.front) < SAME_LENGTH),
-        np.flatnonzero(np.abs(x - shaft.rear) < SAME_LENGTH),
+        np.flatnonzero(np.abs(x - shaft.front) < LENGTH_TOLERANCE),
+        np.flatnonzero(np.abs(x - shaft.rear) < LENGTH_TOLERANCE),
         {
             name: np.flatnonzero(
-                (np.abs(r - seat_radii[name]) < SAME_LENGTH)
-                & (x > low - SAME_LENGTH)
-                & (x < high + SAME_LENGTH)
+                (np.abs(r - seat_radii[name]) < LENGTH_TOLERANCE)
+                & (x > low - LENGTH_TOLERANCE)
+                & (x < high + LENGTH_TOLERANCE)
             )
             for name, (low, high) in seats.items()
         },
@@ -265,8 +262,8 @@ def _lines(pieces: list[_Piece]) -> list[list[float]]:
                     radius = pieces[one].radius(share, end)
                     wall = pieces[other].inner, pieces[other].outer[beginning]
                     there = [pieces[other].radius(s, beginning) for s in shares[other]]
-                    inside = wall[0] - SAME_LENGTH < radius < wall[1] + SAME_LENGTH
-                    if inside and min(abs(radius - r) for r in there) > SAME_LENGTH:
+                    inside = wall[0] - LENGTH_TOLERANCE < radius < wall[1] + LENGTH_TOLERANCE
+                    if inside and min(abs(radius - r) for r in there) > LENGTH_TOLERANCE:
                         shares[other].append(pieces[other].share(radius, beginning))
                         changed = True
     return [sorted(s) for s in shares]
@@ -370,7 +367,7 @@ def _meridian(
 def _merged(nodes: Floats, columns: Ints) -> tuple[Floats, Ints]:
     """Nodes of one column and one radius merged; positions, and each old node's new id."""
     order = np.lexsort((nodes[:, 1], columns))
-    apart = (np.diff(columns[order]) > 0) | (np.diff(nodes[order, 1]) > SAME_LENGTH)
+    apart = (np.diff(columns[order]) > 0) | (np.diff(nodes[order, 1]) > LENGTH_TOLERANCE)
     rank = np.concatenate([[0], np.cumsum(apart)])
     number = np.empty(len(nodes), dtype=np.int64)
     number[order] = rank
@@ -381,11 +378,11 @@ def _step_stations(pieces: list[_Piece]) -> dict[float, list[float]]:
     """Radii of the re-entrant edges by the x of their step."""
     found: dict[float, list[float]] = {}
     for one, two in pairwise(pieces):
-        if abs(one.outer[1] - two.outer[0]) > SAME_LENGTH:
+        if abs(one.outer[1] - two.outer[0]) > LENGTH_TOLERANCE:
             found.setdefault(one.x1, []).append(min(one.outer[1], two.outer[0]))
         # the core of a solid length is no edge, but the end of its neighbour's bore is
         bores = [0.0 if piece.solid else piece.inner for piece in (one, two)]
-        if abs(bores[0] - bores[1]) > SAME_LENGTH:
+        if abs(bores[0] - bores[1]) > LENGTH_TOLERANCE:
             found.setdefault(one.x1, []).append(max(bores))
     return found
 
@@ -410,7 +407,7 @@ def _radial_lattices(
             for end, side in product((0, 1), (0, 1)):
                 radius = piece.radius((low, high)[side], end)
                 corners = steps.get((piece.x0, piece.x1)[end], [])
-                if any(abs(radius - r) < SAME_LENGTH for r in corners):
+                if any(abs(radius - r) < LENGTH_TOLERANCE for r in corners):
                     sides[side] = max(sides[side], grading.steps)
                 is_end = (p, end) in ((0, 0), (len(pieces) - 1, 1))
                 is_surface = (low, high)[side] == side and not (side == 0 and piece.solid)
@@ -432,7 +429,7 @@ def _along(
     grading: Grading,
 ) -> Floats:
     """Lattice of half edges along a piece, m, with a vertex at each cut inside it."""
-    inside = [c for c in cuts if piece.x0 + SAME_LENGTH < c < piece.x1 - SAME_LENGTH]
+    inside = [c for c in cuts if piece.x0 + LENGTH_TOLERANCE < c < piece.x1 - LENGTH_TOLERANCE]
     lattice = [np.array([piece.x0])]
     for a, b in pairwise([piece.x0, *inside, piece.x1]):
         low, high = (

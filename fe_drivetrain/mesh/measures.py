@@ -9,7 +9,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.mesh.mesh import EDGES, Mesh
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES, element_kind
 
 _AREA_DEGREE = 8
 
@@ -23,25 +24,6 @@ def lattice(order: int) -> Ints:
         for k in range(order + 1 - i - j)
     ]
     return np.array(rows)
-
-
-def shape_gradients(points: Floats) -> Floats:
-    """Gradients of the ten quadratic shape functions, in VTK's order.
-
-    Parameters
-    ----------
-    points
-        (q, 4) barycentric coordinates in the reference tetrahedron.
-
-    Returns
-    -------
-    (q, 10, 3) derivatives with respect to the three reference coordinates.
-    """
-    g = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    corners = (4 * points - 1)[:, :, None] * g
-    a, b = np.array(EDGES).T
-    mids = 4 * (points[:, a, None] * g[b] + points[:, b, None] * g[a])
-    return np.concatenate([corners, mids], axis=1)
 
 
 CUBIC = lattice(3) / 3
@@ -92,7 +74,7 @@ def jacobians(points: Floats, cells: Ints, at: Floats = CUBIC) -> Floats:
     -------
     (ne, q) determinants, m3; six times the volume for an element with straight edges.
     """
-    gradients = shape_gradients(at).transpose(1, 2, 0).reshape(10, -1)
+    gradients = element_kind(10).shape(at[:, 1:].T)[1].transpose(2, 1, 0).reshape(10, -1)
     blocks = []
     # in blocks, so that the Jacobians of a large mesh never stand in memory all at once
     for start in range(0, len(cells), _BLOCK):
@@ -127,7 +109,7 @@ def inverted_cells(mesh: Mesh, depth: int = 3) -> Ints:
     """
     # of an element straight to round-off, the Jacobian at its centre is that everywhere
     nodes = mesh.points[mesh.cells]
-    first, second = np.array(EDGES).T
+    first, second = TETRAHEDRON_EDGES.T
     sagitta = nodes[:, 4:] - (nodes[:, first] + nodes[:, second]) / 2
     round_off = 1e-14 * np.abs(mesh.points).max(initial=0.0)
     curved = np.abs(sagitta).reshape(-1, 18).max(axis=1, initial=0.0) > round_off

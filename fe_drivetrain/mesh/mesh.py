@@ -12,9 +12,6 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.facets import local_facets
 
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-"""Corners of the edges whose mid-side nodes are local nodes 4 to 9."""
-
 FACETS = local_facets(10)
 """Local nodes of the four facets of a tetrahedron, turned outward: corners, then mid-sides."""
 

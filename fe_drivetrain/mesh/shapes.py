@@ -19,7 +19,9 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 
 _STRAIGHT = 2e-13  # an edge node this close to the middle of its edge (per edge length) is on it
-_EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
+
+#: Corners of a tetrahedron's edges, whose middles are local nodes 4 to 9 in VTK's order.
+TETRAHEDRON_EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
 
 # VTK's hexahedron on the unit cube: corners, then mid-sides of the edges, faces (the mean of these
 # four corners) and the centre.
@@ -150,7 +152,7 @@ def shape_functions(element: Element, points: Floats) -> tuple[Floats, Floats]:
 
 def is_straight(points: Floats, cells: Ints) -> NDArray[np.bool_]:
     """Which ten-node tetrahedra have only straight edges, and so an affine map; (n_cells,)."""
-    ends = points[cells[:, _EDGES]]
+    ends = points[cells[:, TETRAHEDRON_EDGES]]
     middle = points[cells[:, 4:]]
     length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
     offset = np.linalg.norm(middle - ends.mean(axis=2), axis=2)

@@ -1,13 +1,10 @@
 from .elasticity import assemble as assemble
-from .elasticity import rigid_motions as rigid_motions
 from .elasticity import sparsity as sparsity
-from .elasticity import volume_weights as volume_weights
 from .loads import Traction as Traction
 from .loads import body_loads as body_loads
 from .loads import pressure as pressure
 from .loads import traction_loads as traction_loads
 from .mass import mass_matrix as mass_matrix
-from .stress import COMPONENTS as COMPONENTS
 from .stress import nodal_stresses as nodal_stresses
 from .stress import principal as principal
 from .stress import strains as strains

@@ -10,17 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from skfem import (
-    ElementTetP2,
-)
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTet
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.mesh.shapes import element_kind, is_straight, jacobian, shape_functions
+from fe_drivetrain.mesh.shapes import element_kind, is_straight
 from fe_drivetrain.operator import kernels
-
-_CHUNK = 4096  # elements at a time: keeps the work arrays inside the cache and memory bounded
 
 
 @dataclass(frozen=True)
@@ -102,38 +95,3 @@ def assemble(
     return sparse.bsr_array(
         (data, pattern.indices, pattern.indptr), shape=(3 * n_blocks, 3 * n_blocks)
     )
-
-
-def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
-    """Integrals of the shape functions over the elements; (n_nodes,) [m^3]."""
-    X, W = get_quadrature(RefTet, 4)
-    values, gradients = shape_functions(ElementTetP2(), X)
-    weights = np.zeros(n_nodes)
-    for start in range(0, len(cells), _CHUNK):
-        part = cells[start : start + _CHUNK]
-        determinant = jacobian(points, part, gradients)[1]
-        np.add.at(weights, part, (np.abs(determinant) * W) @ values)
-    return weights
-
-
-def rigid_motions(points: Floats, centre: Floats | None = None) -> Floats:
-    """The six rigid motions of a set of nodes.
-
-    Parameters
-    ----------
-    points
-        (n, 3) node coordinates [m].
-    centre
-        (3,) point about which the rotations turn; the origin where not given.
-
-    Returns
-    -------
-    motions
-        (3 n, 6): unit translations along x, y, z [m], unit rotations about x, y, z [rad].
-    """
-    r = points if centre is None else points - centre
-    motions = np.zeros((len(points), 3, 6))
-    motions[:, :, :3] = np.eye(3)
-    for axis in range(3):
-        motions[:, :, 3 + axis] = np.cross(np.eye(3)[axis], r)
-    return motions.reshape(-1, 6)

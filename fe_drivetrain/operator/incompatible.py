@@ -15,14 +15,12 @@ import numpy as np
 from scipy import sparse
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
 from fe_drivetrain.operator.incompressible import plus_products
-
-_CHUNK = 1024  # cells at a time
 
 
 def assemble(
@@ -32,25 +30,9 @@ def assemble(
     n_freedoms: int | None = None,
     pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
-    """Assemble the stiffness with incompatible modes; as `elasticity.assemble` otherwise.
+    """Assemble the stiffness with incompatible modes.
 
-    Parameters
-    ----------
-    points
-        (n, 3) node coordinates [m].
-    cells
-        (n_cells, 8) node numbers in VTK's order.
-    lame
-        Lame's constants (lambda, mu) [Pa].
-    n_freedoms
-        Order of the matrix; 3 n where not given.
-    pattern
-        As for `elasticity.assemble`.
-
-    Returns
-    -------
-    stiffness
-        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
+    Arguments and result are those of `elasticity.assemble`, for hexahedra of 8 nodes.
 
     Raises
     ------
@@ -64,10 +46,7 @@ def assemble(
         )
     size = 3 * len(points) if n_freedoms is None else n_freedoms
     rows = np.concatenate(
-        [
-            _condensed(points, cells[start : start + _CHUNK], lame)
-            for start in range(0, len(cells), _CHUNK)
-        ]
+        [_condensed(points, cells[chunk], lame) for chunk in chunks(len(cells), CHUNK // 4)]
     )
     plain = elasticity.assemble(points, cells, lame, n_freedoms, pattern)
     return plus_products(plain, -1.0, rows, cells, size)

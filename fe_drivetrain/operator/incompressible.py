@@ -19,7 +19,7 @@ import numpy as np
 from scipy import sparse
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 from fe_drivetrain.operator import elasticity
@@ -36,8 +36,6 @@ two elements across (``cases/stability/volumetric_locking.py``). Structural meta
 #: Functions that the dilatation of an element is projected on, by its number of nodes.
 FUNCTIONS = {8: 1, 10: 1, 20: 4, 27: 4}
 
-_CHUNK = 1024  # cells at a time
-
 
 def assemble(
     points: Floats,
@@ -46,25 +44,10 @@ def assemble(
     n_freedoms: int | None = None,
     pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
-    """Assemble the stiffness, the dilatation projected; as `elasticity.assemble` otherwise.
+    """Assemble the stiffness, the dilatation projected.
 
-    Parameters
-    ----------
-    points
-        (n, 3) node coordinates [m].
-    cells
-        (n_cells, k) node numbers in VTK's order; tetrahedra of 10, hexahedra of 8, 20 or 27 nodes.
-    lame
-        Lame's constants (lambda, mu) [Pa].
-    n_freedoms
-        Order of the matrix; 3 n where not given.
-    pattern
-        As for `elasticity.assemble`.
-
-    Returns
-    -------
-    stiffness
-        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
+    Arguments and result are those of `elasticity.assemble`, for tetrahedra of 10 and hexahedra
+    of 8, 20 or 27 nodes.
 
     Raises
     ------
@@ -73,10 +56,7 @@ def assemble(
     """
     size = 3 * len(points) if n_freedoms is None else n_freedoms
     rows = np.concatenate(
-        [
-            _projected(points, cells[start : start + _CHUNK])[0]
-            for start in range(0, len(cells), _CHUNK)
-        ]
+        [_projected(points, cells[chunk])[0] for chunk in chunks(len(cells), CHUNK // 4)]
     )
     plain = elasticity.assemble(points, cells, (0.0, lame[1]), n_freedoms, pattern)
     return plus_products(plain, lame[0], rows, cells, size)
@@ -124,21 +104,21 @@ def stresses(
     Returns
     -------
     stresses
-        (n_cells, n_q, 6) in the order of `stress.COMPONENTS` [Pa].
+        (n_cells, n_q, 6) in the order of `components.STRESSES` [Pa].
     """
     kind = element_kind(cells.shape[1])
     values = kind.shape(at)[0]
     found = 2.0 * lame[1] * strains(points, cells, u, at)
     displacements = u[: points.size].reshape(-1, 3)
-    for start in range(0, len(cells), _CHUNK):
-        some = cells[start : start + _CHUNK]
+    for chunk in chunks(len(cells), CHUNK // 4):
+        some = cells[chunk]
         rows, factor = _projected(points, some)
         coefficients = np.einsum("epki,eki->ep", rows, displacements[some])
         positions = np.einsum("qn,eni->eqi", values, points[some])
         functions = _functions(points[some], positions, rows.shape[1])
         orthonormal = np.linalg.solve(factor[:, None], functions[..., None])[..., 0]
         dilatation = np.einsum("eqp,ep->eq", orthonormal, coefficients)
-        found[start : start + len(some), :, :3] += lame[0] * dilatation[..., None]
+        found[chunk, :, :3] += lame[0] * dilatation[..., None]
     return found
 
 

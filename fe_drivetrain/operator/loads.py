@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 
@@ -14,8 +14,6 @@ Traction = Callable[[Floats, Floats], Floats]
 
 Field = Callable[[Floats], Floats]
 """Of positions (n, 3) [m]: vectors (n, 3)."""
-
-_CHUNK = 4096  # cells at a time
 _DEGREE = 7  # smooth loads on curved quadratic elements, to round-off or nearly
 
 
@@ -83,8 +81,8 @@ def body_loads(
     X, W = get_quadrature(kind.element.refdom, _DEGREE)
     values, gradients = kind.shape(X)
     forces = np.zeros((len(points) if n_freedoms is None else n_freedoms // 3, 3))
-    for start in range(0, len(cells), _CHUNK):
-        part = cells[start : start + _CHUNK]
+    for rows in chunks(len(cells)):
+        part = cells[rows]
         volumes = np.abs(jacobian(points, part, gradients)[1]) * W
         positions = np.einsum("qn,eni->eqi", values, points[part])
         given = (

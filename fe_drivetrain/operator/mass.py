@@ -6,11 +6,10 @@ import numpy as np
 from scipy import sparse
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 
 _DEGREE = 6  # exact where sides are straight; curved ones add what the stiffness neglects, too
-_CHUNK = 4096
 
 
 def mass_matrix(points: Floats, cells: Ints, density: float, n_freedoms: int) -> sparse.csr_array:
@@ -37,8 +36,8 @@ def mass_matrix(points: Floats, cells: Ints, density: float, n_freedoms: int) ->
     products = values[:, :, None] * values[:, None, :]
     nodes = n_freedoms // 3 + 1
     total = sparse.csr_array((nodes, nodes))
-    for start in range(0, len(cells), _CHUNK):
-        part = cells[start : start + _CHUNK]
+    for chunk in chunks(len(cells)):
+        part = cells[chunk]
         determinant = jacobian(points, part, gradients)[1]
         local = density * np.einsum("eq,qij->eij", np.abs(determinant) * W, products)
         rows = np.broadcast_to(part[:, :, None], local.shape).ravel()

@@ -4,12 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.mesh.shapes import ElementKind, element_kind, jacobian, shape_functions
-
-COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
-
-_CHUNK = 4096  # cells at a time
 
 
 def stresses(
@@ -33,7 +29,7 @@ def stresses(
     Returns
     -------
     stresses
-        (n_cells, n_q, 6) in the order of `COMPONENTS` [Pa].
+        (n_cells, n_q, 6) in the order of `STRESSES` [Pa].
     """
     lam, mu = lame
     e = strains(points, cells, u, at)
@@ -48,11 +44,10 @@ def strains(points: Floats, cells: Ints, u: Floats, at: Floats) -> Floats:
     gradients = kind.shape(at)[1]
     displacements = u[: 3 * len(points)].reshape(-1, 3)
     found = np.empty((len(cells), at.shape[1], 6))
-    for start in range(0, len(cells), _CHUNK):
-        part = cells[start : start + _CHUNK]
+    for rows in chunks(len(cells)):
+        part = cells[rows]
         physical = jacobian(points, part, gradients)[0]
         g = np.einsum("eqkn,eni->eqik", physical, displacements[part])
-        rows = slice(start, start + len(part))
         for c, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))):
             found[rows, :, c] = 0.5 * (g[..., i, j] + g[..., j, i])
     return found
@@ -81,8 +76,8 @@ def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, fl
     gradients = kind.shape(at)[1]
     volume = np.concatenate(
         [
-            np.abs(jacobian(points, cells[start : start + _CHUNK], gradients)[1]) @ weights
-            for start in range(0, len(cells), _CHUNK)
+            np.abs(jacobian(points, cells[rows], gradients)[1]) @ weights
+            for rows in chunks(len(cells))
         ]
     )
     total, count = np.zeros((len(points), 6)), np.zeros(len(points))

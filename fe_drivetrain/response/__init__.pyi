@@ -4,13 +4,11 @@ from .bearing_stiffness import Plane as Plane
 from .bearing_stiffness import bearing_unit_stiffness as bearing_unit_stiffness
 from .bearing_stiffness import tilt_stiffness as tilt_stiffness
 from .bearing_stiffness import without_gearbox as without_gearbox
-from .model import COMPONENTS as COMPONENTS
 from .model import LOADS as LOADS
 from .model import Model as Model
 from .model import build_model as build_model
 from .model import joint_pairs as joint_pairs
 from .model import mesh_scene as mesh_scene
 from .model import needed_faces as needed_faces
-from .unit_loads import GRAVITY as GRAVITY
 from .unit_loads import Response as Response
 from .unit_loads import unit_load_response as unit_load_response

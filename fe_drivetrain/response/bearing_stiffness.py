@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.operator.elasticity import rigid_motions
+from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
@@ -157,10 +157,8 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
                     f"carries everything, but {other!r} carries a part: take away the gearbox "
                     "stiffness and other bearings"
                 )
-        to_rear = np.eye(6)
-        to_rear[:3] = rigid_motions(
-            response.positions["gearbox"][None], response.positions[bearing]
-        )
+        arm = response.positions["gearbox"] - response.positions[bearing]
+        to_rear = wrench_transport(arm).T
         motion = np.linalg.solve(to_rear, response.motions["gearbox"][:, :6])
         compliance = motion @ np.linalg.inv(wrench)
     else:
@@ -168,7 +166,7 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
         # Hub loads that make a pure force at the bearing's centre: with a bending moment there,
         # the ring would store more energy by stiffening the shaft than all else by its give.
         arm = response.positions["hub"] - response.positions[bearing]
-        load = np.vstack([np.eye(3), -np.cross(arm, np.eye(3)).T])
+        load = wrench_transport(-arm)[:, :3]
         compliance = load.T @ energy[:6, :6] @ load
     n = len(compliance)
     inverse = np.linalg.inv(0.5 * (compliance + compliance.T))

@@ -8,6 +8,7 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
@@ -15,18 +16,15 @@ from fe_drivetrain.interfaces.joints import SECTORS, roller_joint, spring_joint
 from fe_drivetrain.interfaces.mechanisms import refuse_mechanisms, warn_of_weak_restraints
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.checks import refuse_unsound
-from fe_drivetrain.mesh.facets import MEANS, face_weights
+from fe_drivetrain.mesh.facets import MEANS, face_weights, volume_weights
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.operator.elasticity import volume_weights
 from fe_drivetrain.operator.incompressible import assemble_unlocked, warn_of_averaging
 from fe_drivetrain.scene.scene import BearingUnit, Scene, Springs, as_numbers
-
-COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 #: The unit loads of every scene, in the order of the columns of every response: hub forces [N] and
 #: moments [N m], a uniform acceleration [m/s^2] along each axis, 1 N of gearbox weight (along -z).
 LOADS = (
-    *(f"hub.{c}" for c in COMPONENTS),
+    *(f"hub.{c}" for c in FORCES),
     "gravity.x",
     "gravity.y",
     "gravity.z",

@@ -16,11 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.response.model import COMPONENTS
-from fe_drivetrain.solve.condensation import wrench_transport
-
-MOTIONS = ("ux", "uy", "uz", "rx", "ry", "rz")
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.common.spatial import wrench_transport
 
 #: Of the root mean square rotation: a case that turns the bearing by less has no secant of its own,
 #: for M / theta tends to infinity wherever anything else causes a moment.
@@ -197,8 +196,8 @@ def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> 
     InputError
         The stiffness holds fewer than six motions, as that of a spherical joint.
     """
-    scale = np.sqrt(np.abs(matrix.diagonal()))
-    if not scale.all() or np.linalg.cond(matrix / np.outer(scale, scale)) > 1.0 / _INDEPENDENT:
+    scaled = scaled_to_unit_diagonal(matrix, np.abs(matrix.diagonal()))
+    if not matrix.diagonal().all() or np.linalg.cond(scaled) > 1.0 / _INDEPENDENT:
         raise InputError(
             "the stiffness leaves a motion of the bearing free, and has no compliance: couplings "
             "of a moment need a bearing that holds all six motions"
@@ -224,7 +223,7 @@ def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> 
 def statement(found: Secant, parts: Parts) -> str:
     """One sentence: whether a torsional spring is the right form, and if not, what breaks it."""
     a = found.component
-    moment = COMPONENTS[a]
+    moment = FORCES[a]
     axis = "xyz"[a - 3]
     cases = f"{len(found.secants):,} load case{'s' if len(found.secants) > 1 else ''}"
     scatter = f"K_R about {axis} scatters by {100 * found.scatter:.2g} % over {cases}"
@@ -243,9 +242,9 @@ def statement(found: Secant, parts: Parts) -> str:
     reason = _REASONS.get((a, j))
     arm = f"{parts.arms[j]:.3g} m" if j < 3 else f"{parts.arms[j]:.3g}"
     return (
-        f"{wrong}: {moment} also follows {COMPONENTS[j]}"
+        f"{wrong}: {moment} also follows {FORCES[j]}"
         + (f" ({reason})" if reason else "")
-        + f"; {arm} times {COMPONENTS[j]} is {100 * parts.sizes[j]:.2g} % of {moment} beside what "
+        + f"; {arm} times {FORCES[j]} is {100 * parts.sizes[j]:.2g} % of {moment} beside what "
         f"is proportional to {MOTIONS[a]}, and causes {share}"
     )
 
@@ -268,14 +267,7 @@ def moved(loads: Floats, motions: Floats, arm: Floats) -> tuple[Floats, Floats]:
 
     Between the two points the bearing moves as a rigid body.
     """
-    T = wrench_transport(-np.asarray(arm, dtype=float))
-    return loads @ T.T, motions @ np.linalg.inv(T)
-
-
-def moved_spring(matrix: Floats, arm: Floats) -> Floats:
-    """A spring (6, 6) an arm (3,) [m] away, transformed to the bearing's centre."""
-    T = wrench_transport(np.asarray(arm, dtype=float))
-    return np.asarray(T @ matrix @ T.T)
+    return loads @ wrench_transport(-arm).T, motions @ wrench_transport(arm)
 
 
 def _rms(values: Floats) -> Floats:

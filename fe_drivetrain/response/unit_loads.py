@@ -5,16 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import eliminate, freedoms
-from fe_drivetrain.response.model import COMPONENTS, LOADS, Model
-from fe_drivetrain.solve.condensation import wrench_transport
+from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import solve
-
-#: Standard gravity [m/s^2] (CGPM 1901).
-GRAVITY = 9.80665
 
 
 @dataclass(frozen=True)
@@ -71,7 +69,7 @@ class Response:
         labels, matrix
             "NAME Fx" to "NAME Mz" for each reaction, and (n_labels, 10).
         """
-        labels = [f"{name} {c}" for name in self.reactions for c in COMPONENTS]
+        labels = [f"{name} {c}" for name in self.reactions for c in FORCES]
         return labels, np.vstack(list(self.reactions.values()))
 
     def history(
@@ -182,31 +180,6 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     )
 
 
-def resultant(points: Floats, nodes: Ints, forces: Floats, centre: Floats) -> Floats:
-    """Force and moment about a point of nodal forces.
-
-    Parameters
-    ----------
-    points
-        (n_nodes, 3) [m].
-    nodes
-        (n,) the nodes to sum over.
-    forces
-        (n_freedoms, n_loads) nodal forces [N].
-    centre
-        (3,) [m].
-
-    Returns
-    -------
-    resultant
-        (6, n_loads) [N, N m].
-    """
-    f = forces[freedoms(nodes)]
-    r = points[nodes] - centre
-    moment = np.cross(r[:, :, None], f, axis=1).sum(axis=0)
-    return np.vstack([f.sum(axis=0), moment])
-
-
 def _reactions(
     model: Model, multipliers: Mapping[str, Floats], U: Floats, cases: Floats
 ) -> dict[str, Floats]:
@@ -218,9 +191,8 @@ def _reactions(
         centre = model.points[f"{name}.seat"].position
         if unit.bedplate is None:
             base = mesh.face_nodes(f"{name}.housing.base")
-            forces = np.zeros_like(U)
-            forces[freedoms(base).ravel()] = multipliers[f"{name}.housing.base"]
-            reactions[name] = -resultant(mesh.points, base, forces, centre)
+            forces = multipliers[f"{name}.housing.base"].reshape(len(base), 3, -1)
+            reactions[name] = -resultant(mesh.points[base], forces, centre)
         else:
             point = model.points[f"{name}.base"]
             carried = _carried_at(model, f"{name}.base", multipliers, U)
@@ -231,7 +203,8 @@ def _reactions(
         ):
             # What a part's neighbour puts on it: its internal forces less the loads inside it.
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
-            reactions[key] = resultant(mesh.points, mesh.face_nodes(face), forces, centre)
+            nodes = mesh.face_nodes(face)
+            reactions[key] = resultant(mesh.points[nodes], forces[freedoms(nodes)], centre)
     reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)
     return reactions
 
@@ -253,7 +226,7 @@ def _equilibrium_error(
     """Largest component of (applied - reacted) about the origin, relative to each load's size."""
     mesh = model.mesh
     applied = np.zeros((6, len(LOADS)))
-    applied[:, :6] = _about_origin(np.eye(6), model.points["hub"].position)
+    applied[:, :6] = wrench_transport(model.points["hub"].position)
     mass = model.mass
     first_moment = mass @ mesh.points
     for axis in range(3):
@@ -262,15 +235,8 @@ def _equilibrium_error(
         applied[3:, 6 + axis] = np.cross(first_moment, e)
     weight = np.zeros((6, 1))
     weight[2] = -1.0
-    applied[:, [9]] = _about_origin(weight, model.points["gearbox"].position)
+    applied[:, [9]] = wrench_transport(model.points["gearbox"].position) @ weight
     reacted = np.zeros_like(applied)
     for name in (*(unit.bearing.name for unit in model.scene.bearing_units), "gearbox"):
-        reacted += _about_origin(reactions[name], positions[name])
+        reacted += wrench_transport(positions[name]) @ reactions[name]
     return float((np.abs(applied - reacted).max(axis=0) / np.abs(applied).max(axis=0)).max())
-
-
-def _about_origin(forces: Floats, position: Floats) -> Floats:
-    """The same (6, n) forces and moments, with the moments about the origin."""
-    moved = forces.copy()
-    moved[3:] += np.cross(position, forces[:3], axisb=0).T
-    return moved

@@ -1,9 +1,10 @@
-"""Elimination by fronts: a mesh of few, rich elements condensed to the freedoms kept, or factored.
+"""Elimination by fronts: a mesh of few, rich elements condensed to what is kept, or factored.
 
 Elements are joined two by two along a nested dissection of the mesh; what then belongs to no other
 element is eliminated at once, in a dense front (Duff and Reid 1983, ACM Trans. Math. Softw. 9,
 302-325). For elements of high order the fronts are large and few, which a general sparse factor
-can't know.
+cannot know: a harmonic of a shaft takes 44 ms where SuperLU takes 117 ms
+(``cases/performance/level_two.py``), and that is why there is a factorisation of our own here.
 """
 
 from __future__ import annotations

@@ -19,13 +19,10 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
+from fe_drivetrain.geometry import LENGTH_TOLERANCE
 from fe_drivetrain.revolution import frontal
 from fe_drivetrain.revolution.meridian_mesh import Meridian
 from fe_drivetrain.scene.materials import Material
-
-COMPONENTS = ("xx", "rr", "tt", "xr", "xt", "rt")
-"""Of stress: the first four go round as cos(n t), the last two as sin(n t)."""
 
 Traction = Callable[[Floats, Floats], Floats]
 """Of (k, 2) positions [m] and outward normals, each x and radius: (k, 3) amplitudes [Pa]."""
@@ -221,7 +218,7 @@ def stresses(
 
     Returns
     -------
-    (k, q, 6) in the order of `COMPONENTS` [Pa]; on the axis the limits.
+    (k, q, 6) in the order of `CYLINDRICAL_STRESSES` [Pa]; on the axis the limits.
     """
     chosen = mesh.cells if cells is None else mesh.cells[cells]
     places = np.broadcast_to(at, (len(chosen), *np.shape(at)[-2:]))
@@ -240,7 +237,7 @@ def stresses(
     )
 
     def over_radius(f: Floats, slope: Floats) -> Floats:
-        on_axis = r < SAME_LENGTH
+        on_axis = r < LENGTH_TOLERANCE
         return np.where(on_axis, slope, f / np.where(on_axis, 1.0, r))
 
     e_tt = over_radius(ur + n * ut, ur_r + n * ut_r)
@@ -284,9 +281,12 @@ def element_matrices(
     return np.asarray(turn(n) * frontal.element_matrices(grams, material_law(lame, n)))
 
 
-def rigid_motions(mesh: Meridian, n: int) -> Floats:
-    """(3 n_nodes, k) motions without strain: n = 0 along x, about x; n = 1 along y, about z."""
-    return rigid_motions_at(mesh.nodes, n).reshape(3 * len(mesh.nodes), -1)
+def rigid_motions(mesh: Meridian, n: int, x: float = 0.0) -> Floats:
+    """(3 n_nodes, k) motions without strain: n = 0 along x, about x; n = 1 along y, about z.
+
+    The rotation about z is about the line along z through ``x`` [m] on the axis.
+    """
+    return rigid_motions_at(mesh.nodes - [x, 0.0], n).reshape(3 * len(mesh.nodes), -1)
 
 
 def rigid_motions_at(places: Floats, n: int) -> Floats:
@@ -359,7 +359,7 @@ def _check_held(mesh: Meridian, n: int, which: Ints) -> None:
         names = ("along x and about x", "sideways and about its diameter")[n]
         raise InputError(
             f"the body of revolution is free to move {names} in harmonic {n}: hold at least "
-            f"{motions.shape[1]} freedoms that stop this"
+            f"{motions.shape[1]} degrees of freedom that prevent this"
         )
 
 

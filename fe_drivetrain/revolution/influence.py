@@ -25,7 +25,7 @@ from scipy import linalg, special
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
+from fe_drivetrain.geometry import LENGTH_TOLERANCE
 from fe_drivetrain.revolution.harmonics import (
     Traction,
     along_sides,
@@ -326,10 +326,10 @@ def _mean(mesh: Meridian, strip: Strip) -> tuple[Ints, Floats]:
         if not len(cells):
             continue
         _, at, _ = along_sides(mesh, side, cells, np.array([0.0, 0.5, 1.0]))
-        on = np.flatnonzero((np.abs(at[..., 1] - strip.radius) < SAME_LENGTH).all(axis=1))
+        on = np.flatnonzero((np.abs(at[..., 1] - strip.radius) < LENGTH_TOLERANCE).all(axis=1))
         for cell, (start, end) in zip(cells[on], at[on][:, [0, 2], 0], strict=True):
             low, high = max(strip.low, min(start, end)), min(strip.high, max(start, end))
-            if high - low < SAME_LENGTH:
+            if high - low < LENGTH_TOLERANCE:
                 continue
             x = low + (high - low) * (abscissa + 1.0) / 2.0
             values, _, _ = along_sides(mesh, side, cells[:1], (x - start) / (end - start))
@@ -368,9 +368,9 @@ def _tractions(mesh: Meridian, n: int, anchor: Strip) -> Floats:
     """Nodal forces (3 n_nodes, r) of tractions on the anchor as large as each rigid motion."""
     sides = mesh.sides(
         lambda x, r: (
-            (np.abs(r - anchor.radius) < SAME_LENGTH)
-            & (x > anchor.low - SAME_LENGTH)
-            & (x < anchor.high + SAME_LENGTH)
+            (np.abs(r - anchor.radius) < LENGTH_TOLERANCE)
+            & (x > anchor.low - LENGTH_TOLERANCE)
+            & (x < anchor.high + LENGTH_TOLERANCE)
         )
     )
     if not len(sides):

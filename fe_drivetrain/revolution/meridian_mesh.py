@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.geometry.meridian import HIGHEST_ORDER, meridian_triangles, outline
 from fe_drivetrain.geometry.shaft import Segment
-from fe_drivetrain.mesh.hexahedra import SAME_LENGTH, shaft_quadrilaterals
+from fe_drivetrain.mesh.hexahedra import shaft_quadrilaterals
 
 Where = Callable[[Floats, Floats], NDArray[np.bool_]]
 """Of x and radius [m], any shape: whether a place is meant."""
@@ -225,8 +225,8 @@ def _quadrilaterals(
     arcs = [arc for arc in outline(shaft) if arc.centre is not None]
     feet = [_foot(arc) for arc in arcs]
     graded = [(x, r) for x, r in _sharp_corners(sharp).tolist()]
-    graded = [c for c in graded if all(math.dist(c, foot) > SAME_LENGTH for foot in feet)]
-    graded += [c for c in corners if all(math.dist(c, s) > SAME_LENGTH for s in graded)]
+    graded = [c for c in graded if all(math.dist(c, foot) > LENGTH_TOLERANCE for foot in feet)]
+    graded += [c for c in corners if all(math.dist(c, s) > LENGTH_TOLERANCE for s in graded)]
     curved: list[tuple[int, int, Place]] = []
     for arc, foot in zip(arcs, feet, strict=True):
         added = mesh.round_off(foot, arc)
@@ -278,8 +278,8 @@ def _sharp_corners(shaft: Shaft) -> Floats:
     before, after = at - np.roll(at, 1, axis=0), np.roll(at, -1, axis=0) - at
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     bend = cross / (np.hypot(*before.T) * np.hypot(*after.T))
-    end = np.abs(at[:, :1] - [shaft.front, shaft.rear]).min(axis=1) < SAME_LENGTH
-    return np.asarray(at[(at[:, 1] > SAME_LENGTH) & ((bend < -1e-6) | (end & (bend > 1e-6)))])
+    end = np.abs(at[:, :1] - [shaft.front, shaft.rear]).min(axis=1) < LENGTH_TOLERANCE
+    return np.asarray(at[(at[:, 1] > LENGTH_TOLERANCE) & ((bend < -1e-6) | (end & (bend > 1e-6)))])
 
 
 class _Quads:
@@ -347,7 +347,7 @@ class _Quads:
             end
             for tip in (arc.start, arc.end)
             for end, length in lengths.items()
-            if math.dist(_towards(foot, self.at[end], reach / length), tip) < SAME_LENGTH
+            if math.dist(_towards(foot, self.at[end], reach / length), tip) < LENGTH_TOLERANCE
         ]
         if len(on) != 2 or reach > _ROOM * min(lengths[end] for end in on):
             return None
@@ -383,7 +383,7 @@ def _inside(corners: Sequence[Place], s: float, t: float) -> Place:
 
 def _on_axis(nodes: Floats) -> Floats:
     nodes = nodes.copy()
-    nodes[np.abs(nodes[:, 1]) < SAME_LENGTH, 1] = 0.0
+    nodes[np.abs(nodes[:, 1]) < LENGTH_TOLERANCE, 1] = 0.0
     return nodes
 
 

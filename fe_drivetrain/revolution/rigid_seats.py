@@ -10,8 +10,7 @@ from scipy.linalg import block_diag
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.mesh.hexahedra import SAME_LENGTH
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.revolution import frontal
 from fe_drivetrain.revolution.harmonics import material_law, on_axis, rigid_motions_at, turn
 from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
@@ -93,10 +92,10 @@ def seat_stiffness(
     x, r = mesh.nodes.T
     nodes = []
     for seat, radius in zip(seats, radii, strict=True):
-        low, high = seat[0] - SAME_LENGTH, seat[1] + SAME_LENGTH
+        low, high = seat[0] - LENGTH_TOLERANCE, seat[1] + LENGTH_TOLERANCE
         here = (x > low) & (x < high)
         if _wide(seat):
-            here &= np.abs(r - np.interp(x, seat, radius)) < SAME_LENGTH
+            here &= np.abs(r - np.interp(x, seat, radius)) < LENGTH_TOLERANCE
         nodes.append((np.flatnonzero(here), 0.5 * (seat[0] + seat[1])))
     return stiffness_between_seats(mesh, material, nodes)
 
@@ -104,7 +103,7 @@ def seat_stiffness(
 def stiffness_between_ends(mesh: Meridian, material: Material) -> Floats:
     """`end_stiffness` of a meridian, whose ends are its nodes of least and of greatest x."""
     x = mesh.nodes[:, 0]
-    ends = [(np.flatnonzero(np.abs(x - end) < SAME_LENGTH), end) for end in (x.min(), x.max())]
+    ends = [(np.flatnonzero(np.abs(x - end) < LENGTH_TOLERANCE), end) for end in (x.min(), x.max())]
     return stiffness_between_seats(mesh, material, ends)
 
 
@@ -158,21 +157,21 @@ def stiffness_between_seats(
 
 
 def _wide(seat: tuple[float, float]) -> bool:
-    return seat[1] - seat[0] > SAME_LENGTH
+    return seat[1] - seat[0] > LENGTH_TOLERANCE
 
 
 def _seat(shaft: Shaft, seat: tuple[float, float]) -> tuple[float, float]:
     """Outer radius of a seat at its ends [m]; of an end face what stands there twice."""
     low, high = seat
     if not _wide(seat):
-        if min(abs(low - shaft.front), abs(low - shaft.rear)) > SAME_LENGTH or high < low:
+        if min(abs(low - shaft.front), abs(low - shaft.rear)) > LENGTH_TOLERANCE or high < low:
             raise InputError(
                 f"seat from x = {low:g} m to {high:g} m has no width: give its two ends in "
                 f"ascending order, or twice {shaft.front:g} m or {shaft.rear:g} m for an end face"
             )
         return 0.0, 0.0
     for piece, (start, end) in zip(shaft.pieces, pairwise(shaft.stations), strict=True):
-        if start - SAME_LENGTH <= low and high <= end + SAME_LENGTH:
+        if start - LENGTH_TOLERANCE <= low and high <= end + LENGTH_TOLERANCE:
             widths = np.interp(seat, [start, end], [piece.outer_diameter, piece.end_diameter])
             return float(widths[0] / 2), float(widths[1] / 2)
     raise InputError(

@@ -24,7 +24,7 @@ from fe_drivetrain.scene.scene import (
 
 
 class Attachment(NamedTuple):
-    """A reference point of a component.
+    """A reference point of a body, and the face that it moves with.
 
     Attributes
     ----------

@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
 from fe_drivetrain.scene.materials import Material, known_materials
@@ -177,8 +178,7 @@ def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:
         )
     else:
         K = np.array(stiffness)
-        size = np.sqrt(np.maximum(K.diagonal(), 1e-300))
-        scaled = K / np.outer(size, size)
+        scaled = scaled_to_unit_diagonal(K, np.maximum(K.diagonal(), 1e-300))
         if not np.isfinite(K).all() or np.abs(scaled - scaled.T).max() > 1e-6:
             raise ValueError(f"stiffness of bearing {name!r} must be six symmetric rows of numbers")
         if np.linalg.eigvalsh(scaled)[0] < -1e-9:

@@ -2,7 +2,11 @@ from .condensation import Condensed as Condensed
 from .condensation import condense as condense
 from .condensation import keep_points as keep_points
 from .condensation import supported as supported
-from .condensation import wrench_transport as wrench_transport
+from .coupled_solid import CondensedSolid as CondensedSolid
+from .coupled_solid import CoupledSolid as CoupledSolid
+from .coupled_solid import condensed_solid as condensed_solid
+from .coupled_solid import coupled_solid as coupled_solid
+from .coupled_solid import point_compliance as point_compliance
 from .error_estimate import ErrorEstimate as ErrorEstimate
 from .error_estimate import recovery_estimate as recovery_estimate
 from .multigrid import MAX_ITERATIONS as MAX_ITERATIONS

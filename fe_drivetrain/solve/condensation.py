@@ -17,6 +17,8 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve, scaled_to_unit_diagonal
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 
 
 @dataclass(frozen=True)
@@ -53,23 +55,7 @@ class Condensed:
     @property
     def rigid_motions(self) -> Floats:
         """(6 n, 6) the motions that no force resists, about the first point."""
-        return point_motions(self.positions)
-
-
-def wrench_transport(arm: Floats) -> Floats:
-    """(6, 6) that takes forces and moments at a + arm to the same about a; (3,) arm [m].
-
-    Its transpose takes a rigid motion about a to the motion of a + arm.
-    """
-    x, y, z = arm
-    T = np.eye(6)
-    T[3:, :3] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
-    return T
-
-
-def point_motions(positions: Floats) -> Floats:
-    """(6 n, 6) motions of n points (n, 3) that move as one rigid body, about the first."""
-    return np.vstack([wrench_transport(p - positions[0]).T for p in positions])
+        return point_motions(self.positions, self.positions[0])
 
 
 def condense(
@@ -124,8 +110,7 @@ def condense(
     strained, sagged = U[:, : pairs.shape[1]], U[:, pairs.shape[1] :]
     flexibility = pairs.T @ strained
     flexibility = 0.5 * (flexibility + flexibility.T)
-    size = np.sqrt(np.abs(flexibility.diagonal()))
-    if np.linalg.cond(flexibility / np.outer(size, size)) > 1e14:
+    if np.linalg.cond(scaled_to_unit_diagonal(flexibility)) > 1e14:
         raise InputError(
             f"the points {', '.join(names)} cannot all be kept: two of them move as one; "
             "leave one out"
@@ -261,14 +246,13 @@ def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
     F = np.hstack([np.eye(6 * n), body.gravity])
     K, free = on_supports(body.names, body.stiffness, supports)
     # translations and rotations have other units: judged with a unit diagonal
-    size = np.sqrt(K.diagonal())
-    if not (size > 0).all() or np.linalg.eigvalsh(K / np.outer(size, size))[0] < _FREE:
+    if least_eigenvalue(K) < _FREE:
         raise InputError(
             f"the supports {', '.join(supports)} leave the body free to move: add a support, or "
             "stiffness to one"
         )
     U = np.zeros((6 * n, F.shape[1]))
-    U[free] = np.linalg.solve(K / np.outer(size, size), F[free] / size[:, None]) / size[:, None]
+    U[free] = scaled_solve(K, F[free])
     # what is rigidly held carries what the body and the loads leave there
     carried = F - body.stiffness @ U
     return Supported(U, {name: carried[body.rows(name)] for name in supports})

@@ -24,7 +24,7 @@ import numpy as np
 from scipy import sparse
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.mesh.shapes import ElementKind, element_kind, jacobian
 from fe_drivetrain.operator.stress import stresses
 
@@ -32,8 +32,6 @@ Lame = tuple[float, float]
 
 #: Factor on the estimate for a band: measured on exact cases, it is above a third of the error.
 SAFETY = 3.0
-
-_CHUNK = 2048  # cells at a time
 #: Degree of the polynomials, by the number of nodes of the elements.
 _DEGREE = {4: 0, 8: 0, 10: 1, 20: 2, 27: 2}
 # Weights, relative to the number of points, that hold the terms of degree 2 near zero where a patch
@@ -109,8 +107,7 @@ def _energies(
     at, weights = get_quadrature(kind.element.refdom, 4 if kind.n_corners == 4 else 5)
     blend, _ = element_kind(kind.n_corners).shape(at)
     values, gradients = kind.shape(at)
-    for start in range(0, len(cells), _CHUNK):
-        rows = slice(start, start + _CHUNK)
+    for rows in chunks(len(cells), CHUNK // 2):
         s = stresses(points, cells[rows], u, lame, at)
         terms = patches.terms(rows, values @ points[cells[rows]])
         recovered = np.einsum(
@@ -124,7 +121,7 @@ def _energies(
 
 
 def energy_density(s: Floats, lame: Lame) -> Floats:
-    """Strain energy per volume of stresses (..., 6), ordered as `stress.COMPONENTS` [J/m^3]."""
+    """Strain energy per volume of stresses (..., 6), ordered as `components.STRESSES` [J/m^3]."""
     lam, mu = lame
     squares = (s[..., :3] ** 2).sum(axis=-1) + 2.0 * (s[..., 3:] ** 2).sum(axis=-1)
     trace = s[..., :3].sum(axis=-1)
@@ -174,8 +171,7 @@ class _Patches:
         n, n_terms = len(self._centre), (1, 4, 10)[self._degree]
         left = np.zeros((n, n_terms * n_terms))
         right = np.zeros((n, n_terms * 6))
-        for start in range(0, len(cells), _CHUNK):
-            rows = slice(start, start + _CHUNK)
+        for rows in chunks(len(cells), CHUNK // 2):
             s = stresses(points, cells[rows], u, lame, at)
             terms = self.terms(rows, values @ points[cells[rows]])
             patch = self.local[rows].ravel()

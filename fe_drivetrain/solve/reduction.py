@@ -1,7 +1,8 @@
 """The system that is solved: constraints eliminated, still in 3x3 node blocks.
 
-Eliminated freedoms keep their place, with a diagonal entry and nothing else. So nodes stay blocks,
-whatever an interface took from them, and solvers learn of nodes, rigid motions and corner nodes.
+Eliminated degrees of freedom keep their place, with a diagonal entry and nothing else. So nodes
+stay blocks, whatever an interface took from them, and solvers learn of nodes, rigid motions and
+corner nodes.
 """
 
 from dataclasses import dataclass
@@ -9,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import Elimination
+from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import kernels
-from fe_drivetrain.operator.elasticity import rigid_motions
 
 
 @dataclass(frozen=True)
@@ -88,9 +89,9 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
         The constraints.
     """
     T, free = elimination.T, elimination.free
-    motions = _rigid_motions(points, elimination)
+    motions = _motions_with_points(points, elimination)
     body = np.full(len(free) // 3, -1)
-    body[: len(points)] = bodies(cells, len(points))
+    body[: len(points)] = connected_bodies(cells, len(points))
     prolongation = None
     if cells.shape[1] not in (4, 8):
         prolongation, corners = _prolongation(cells, len(points), T, free)
@@ -107,18 +108,6 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
     diagonal = np.zeros((n_blocks, 3, 3))
     diagonal[K.indices[here]] = K.data[here]
     return diagonal
-
-
-def bodies(cells: Ints, n_nodes: int) -> Ints:
-    """(n_nodes,) which body each node belongs to: parts that share nodes are one."""
-    corners = cells[:, : element_kind(cells.shape[1]).n_corners]
-    first = np.repeat(corners[:, 0], corners.shape[1] - 1)
-    shape = (n_nodes, n_nodes)
-    graph = sparse.coo_array((np.ones(first.size), (first, corners[:, 1:].ravel())), shape=shape)
-    body = connected_components(graph, directed=False)[1]
-    middles = cells[:, corners.shape[1] :]
-    body[middles] = body[corners[:, :1]]
-    return np.unique(body, return_inverse=True)[1]
 
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
@@ -166,7 +155,7 @@ def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
     return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
 
 
-def _rigid_motions(points: Floats, elimination: Elimination) -> Floats:
+def _motions_with_points(points: Floats, elimination: Elimination) -> Floats:
     """(n_freedoms, 6) rigid motions; reference points follow through their constraints."""
     n = 3 * len(points)
     motions = np.zeros((len(elimination.free), 6))

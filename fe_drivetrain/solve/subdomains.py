@@ -11,13 +11,12 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy import linalg, sparse
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.solve.reduction import Elements
 
-_CHUNK = 1024  # elements at a time
 _DIGITS = 3
 _WIDE = 12  # freedoms that an eliminated one may depend on, in elements that count
 _LOOSE = (1e-14, 1e-12, 1e-10, 1e-8, 1e-6)  # of the mean diagonal, least first
@@ -117,8 +116,8 @@ def shown_lame(elements: Elements) -> Floats:
     kind = element_kind(cells.shape[1])
     gradients, weights = kind.table(2 if kind.n_corners == 4 else kind.degree)
     H = np.zeros((len(points), 3, 3))
-    for start in range(0, len(cells), _CHUNK):
-        some = cells[start : start + _CHUNK]
+    for rows in chunks(len(cells), CHUNK // 4):
+        some = cells[rows]
         physical, determinant = jacobian(points, some, gradients)
         weighted = physical * (np.abs(determinant) * weights)[..., None, None]
         each = np.einsum("eqia,eqja->eaij", weighted, physical, optimize=True)

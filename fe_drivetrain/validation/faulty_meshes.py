@@ -10,7 +10,8 @@ import numpy as np
 
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import EDGES, FACETS, Block, Mesh, brick, generate, joined
+from fe_drivetrain.mesh import FACETS, Block, Mesh, brick, generate, joined
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.validation import (
     slivers,
 )
@@ -104,7 +105,7 @@ def faulty(mesh: Mesh, seed: int = 0) -> Iterator[Faulty]:
     top = cells[cell, 3]
     height = float((points[top] - base[0]) @ normal)
     moved[top] -= (height - 1e-8 * math.copysign(size, height)) * normal
-    for (i, j), middle in zip(EDGES, cells[cell, 4:], strict=True):
+    for (i, j), middle in zip(TETRAHEDRON_EDGES, cells[cell, 4:], strict=True):
         moved[middle] = (moved[cells[cell, i]] + moved[cells[cell, j]]) / 2
     yield Faulty(
         "corner moved into the opposite facet",
@@ -208,7 +209,7 @@ def _inner_cells(mesh: Mesh, part: str) -> Ints:
         return_counts=True,
     )[1:]
     inside = (count[keys.reshape(-1, 4)] == 2).all(axis=1)
-    a, b = np.array(EDGES).T
+    a, b = TETRAHEDRON_EDGES.T
     ends = mesh.points[mesh.cells]
     straight = np.abs(ends[:, 4:] - (ends[:, a] + ends[:, b]) / 2).max(axis=(1, 2)) < 1e-12
     surface = np.zeros(len(mesh.points), dtype=bool)
@@ -242,23 +243,23 @@ def _halved(mesh: Mesh, cell: int) -> Mesh:
         new = corners.copy()
         new[old] = middle
         mids = []
-        for i, j in EDGES:
+        for i, j in TETRAHEDRON_EDGES:
             mids.append(len(points))
             points = np.vstack([points, (points[new[i]] + points[new[j]]) / 2])
         rows.append(np.concatenate([new, mids]))
     # what is not on the cut edge keeps the nodes that the neighbours have
     for row in rows:
-        for k, (i, j) in enumerate(EDGES):
-            for m, (a, b) in enumerate(EDGES):
+        for k, (i, j) in enumerate(TETRAHEDRON_EDGES):
+            for m, (a, b) in enumerate(TETRAHEDRON_EDGES):
                 if {row[i], row[j]} == {corners[a], corners[b]}:
                     row[4 + k] = mesh.cells[cell, 4 + m]
     # of the two new edges in the cut one node each
     first, second = rows
     pairs = {
         frozenset((int(first[i]), int(first[j]))): int(first[4 + k])
-        for k, (i, j) in enumerate(EDGES)
+        for k, (i, j) in enumerate(TETRAHEDRON_EDGES)
     }
-    for k, (i, j) in enumerate(EDGES):
+    for k, (i, j) in enumerate(TETRAHEDRON_EDGES):
         common = frozenset((int(second[i]), int(second[j])))
         second[4 + k] = pairs.get(common, int(second[4 + k]))
     cells = np.vstack([np.delete(mesh.cells, cell, axis=0), rows])

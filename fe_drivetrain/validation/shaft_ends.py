@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.common import Floats, Ints, rigid_motions
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import generate, shaft_hexahedra
-from fe_drivetrain.operator import rigid_motions
 from fe_drivetrain.scene import MATERIALS, Material
 from fe_drivetrain.solve import solve_solid
 

@@ -13,7 +13,8 @@ from scipy.sparse.linalg import LinearOperator, onenormest, splu
 from fe_drivetrain.common import Floats, InputError, Ints
 from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.interfaces import Constraint, eliminate, held_nodes
-from fe_drivetrain.mesh import EDGES, Mesh, boundary
+from fe_drivetrain.mesh import Mesh, boundary
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.operator import assemble, traction_loads
 from fe_drivetrain.solve import System, reduce, solve
 from fe_drivetrain.validation.exact_blocks import (
@@ -82,7 +83,7 @@ def as_mesh(points: Floats, corners: Ints, nodes: int) -> Mesh:
     """Tetrahedra of four nodes as they are, or with nodes in the middle of their straight edges."""
     cells = corners
     if nodes == 10:
-        ends = np.sort(corners[:, np.array(EDGES)].reshape(-1, 2), axis=1)
+        ends = np.sort(corners[:, TETRAHEDRON_EDGES].reshape(-1, 2), axis=1)
         edges, which = np.unique(ends, axis=0, return_inverse=True)
         cells = np.hstack([corners, len(points) + which.reshape(-1, 6)])
         points = np.vstack([points, points[edges].mean(axis=1)])

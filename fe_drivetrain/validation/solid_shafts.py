@@ -18,10 +18,9 @@ from scipy import sparse
 
 from fe_drivetrain.common import Floats, InputError, Ints
 from fe_drivetrain.compare import DOUBTFUL, grid_convergence
-from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Section, Shaft
 from fe_drivetrain.interfaces import averaged_point
 from fe_drivetrain.mesh import (
-    SAME_LENGTH,
     UNGRADED,
     Grading,
     element_kind,
@@ -76,7 +75,7 @@ class Solid:
 
     def section_nodes(self, x: float) -> Ints:
         """Nodes of the section at x, a plane of nodes."""
-        return np.flatnonzero(np.abs(self.points[:, 0] - x) < SAME_LENGTH)
+        return np.flatnonzero(np.abs(self.points[:, 0] - x) < LENGTH_TOLERANCE)
 
     def section_facets(self, x: float) -> Ints:
         """(n, 9) facets of the section at x, each once.
@@ -86,7 +85,7 @@ class Solid:
         InputError
             No elements meet in that plane.
         """
-        there = (np.abs(self.points[self.facets, 0] - x) < SAME_LENGTH).all(axis=1)
+        there = (np.abs(self.points[self.facets, 0] - x) < LENGTH_TOLERANCE).all(axis=1)
         facets = self.facets[there]
         if not len(facets):
             raise InputError(f"no elements meet at x = {x:g} m: give a station of the mesh")

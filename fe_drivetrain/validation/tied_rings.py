@@ -10,7 +10,7 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats, InputError, rigid_motions
 from fe_drivetrain.interfaces import (
     Constraint,
     freedoms,
@@ -20,7 +20,7 @@ from fe_drivetrain.interfaces import (
     settled,
 )
 from fe_drivetrain.mesh import Block, brick, element_kind, joined, shape_functions
-from fe_drivetrain.operator import rigid_motions, stresses, tensor
+from fe_drivetrain.operator import stresses, tensor
 from fe_drivetrain.validation import (
     two_bodies,
 )

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, rigid_motions
 from fe_drivetrain.interfaces import Constraint, mortar_tie, node_tie
 from fe_drivetrain.mesh import brick, element_kind, shape_functions
-from fe_drivetrain.operator import rigid_motions, stresses, tensor, traction_loads
+from fe_drivetrain.operator import stresses, tensor, traction_loads
 from fe_drivetrain.validation import (
     two_bodies,
 )

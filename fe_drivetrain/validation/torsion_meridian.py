@@ -21,8 +21,8 @@ import numpy as np
 from skfem import Basis, BilinearForm, ElementTriP4, MeshQuad, condense, solve
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.geometry import Shaft
-from fe_drivetrain.mesh import SAME_LENGTH, shaft_quadrilaterals
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
+from fe_drivetrain.mesh import shaft_quadrilaterals
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def torsion_bounds(shaft: Shaft, shear_modulus: float, size: float, halvings: in
     mesh = _triangles(shaft, size, halvings)
     basis = Basis(mesh, ElementTriP4(), intorder=12)
     x, r = basis.doflocs
-    front, rear = (np.abs(x - end) < SAME_LENGTH for end in (shaft.front, shaft.rear))
+    front, rear = (np.abs(x - end) < LENGTH_TOLERANCE for end in (shaft.front, shaft.rear))
 
     def angle(u: Any, v: Any, w: Any) -> Any:
         return w.x[1] ** 3 * (u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1])
@@ -78,7 +78,7 @@ def torsion_bounds(shaft: Shaft, shear_modulus: float, size: float, halvings: in
     outside[mesh.boundary_facets()] = True
     bore = shaft.pieces[0].inner_diameter / 2
     for axis, value in ((0, shaft.front), (0, shaft.rear), (1, bore)):
-        outside &= np.abs(ends[axis] - value).max(axis=0) > SAME_LENGTH
+        outside &= np.abs(ends[axis] - value).max(axis=0) > LENGTH_TOLERANCE
     surface = np.zeros(basis.N, dtype=bool)
     surface[basis.get_dofs(np.flatnonzero(outside)).all()] = True
     if bore > 0:
@@ -86,7 +86,7 @@ def torsion_bounds(shaft: Shaft, shear_modulus: float, size: float, halvings: in
         def function(u: Any, v: Any, w: Any) -> Any:
             return (u.grad[0] * v.grad[0] + u.grad[1] * v.grad[1]) / w.x[1] ** 3
 
-        inside = np.abs(r - bore) < SAME_LENGTH
+        inside = np.abs(r - bore) < LENGTH_TOLERANCE
         least = _least(basis, function, surface.astype(float), surface | inside)
     else:
 

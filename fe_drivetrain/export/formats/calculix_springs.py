@@ -19,6 +19,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.export.formats.statement import (
     comment_lines,
     commented,
@@ -26,7 +27,7 @@ from fe_drivetrain.export.formats.statement import (
     statement,
     text_of,
 )
-from fe_drivetrain.export.superelement import Superelement, scaled
+from fe_drivetrain.export.superelement import Superelement
 
 _TERMS = 4  # of an equation on a line: the most that ccx reads
 _END = "end"
@@ -99,8 +100,8 @@ def squares(matrix: Floats) -> tuple[Floats, Floats]:
         (r, m) of the m freedoms; the matrix is ``forms.T @ diag(values) @ forms``, and what no form
         sees has neither stiffness nor mass.
     """
-    size = np.sqrt(np.where(matrix.diagonal() > 0, matrix.diagonal(), 1.0))
-    unit = scaled(matrix)
+    size = diagonal_roots(matrix.diagonal())
+    unit = scaled_to_unit_diagonal(matrix)
     values, vectors = np.linalg.eigh(0.5 * (unit + unit.T))
     vectors[np.abs(vectors) < np.finfo(float).eps] = 0.0
     # below this it is the round-off of an eigenvalue that is zero

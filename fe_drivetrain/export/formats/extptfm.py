@@ -15,11 +15,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.formats.statement import comment_lines, statement, text_of
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
-
-GRAVITY = 9.80665
 
 _BLOCKS = {
     "mass": "!Mass Matrix (Units (kg,m))",

@@ -14,8 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.superelement import FRAME, FREEDOMS, UNITS, Origin, Superelement
+from fe_drivetrain.export.superelement import FRAME, UNITS, Origin, Superelement
 
 _WIDTH = 78
 _NUMBER = re.compile(r"[-+0-9.eE]+")
@@ -33,7 +34,7 @@ def statement(element: Superelement) -> dict[str, str]:
         "mesh": origin.mesh,
         "frame": FRAME,
         "units": UNITS,
-        "freedoms": f"{' '.join(FREEDOMS)} of each point, in this order",
+        "freedoms": f"{' '.join(MOTIONS)} of each point, in this order",
         "supports": "in the stiffness" if element.supported else "none: the body is free",
         "band": "not known" if element.band is None else f"{element.band!r} of the stiffness",
     }
@@ -126,7 +127,7 @@ def _points(entries: Mapping[str, str]) -> tuple[tuple[str, ...], Floats]:
 
 def freedom_labels(element: Superelement) -> list[str]:
     """The 6 n freedoms by name, as in "hub ux"."""
-    return [f"{point} {freedom}" for point in element.points for freedom in FREEDOMS]
+    return [f"{point} {freedom}" for point in element.points for freedom in MOTIONS]
 
 
 def text_of(path: Path, kind: str) -> str:

@@ -8,6 +8,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.scaling import least_eigenvalue
 from fe_drivetrain.export.superelement import FRAME
 
 
@@ -18,7 +20,7 @@ class StiffnessMatrix(BaseModel):
 
     name: str
     reference_point: tuple[float, float, float] = Field(description="[m], in the frame")
-    freedoms: tuple[str, ...] = ("ux", "uy", "uz", "rx", "ry", "rz")
+    freedoms: tuple[str, ...] = MOTIONS
     units: Literal["N/m, N, N m/rad"] = "N/m, N, N m/rad"
     matrix: list[list[float]]
     description: str
@@ -32,8 +34,7 @@ class StiffnessMatrix(BaseModel):
         if np.abs(k - k.T).max() > 1e-9 * size:
             raise ValueError(f"stiffness {self.name!r} is not symmetric")
         # Translations and rotations differ in unit: judge definiteness with a unit diagonal.
-        d = np.sqrt(np.where(k.diagonal() > 0, k.diagonal(), 1.0))
-        if np.linalg.eigvalsh(k / np.outer(d, d)).min() < -1e-9:
+        if least_eigenvalue(k) < -1e-9:
             raise ValueError(f"stiffness {self.name!r} is not positive semidefinite")
         return self
 

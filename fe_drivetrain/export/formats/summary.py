@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.export.formats.superelement_json import OriginFile, read_content
@@ -23,7 +24,7 @@ from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_leve
 from fe_drivetrain.fidelity.quantities import shaft_numbers, unit_numbers
 from fe_drivetrain.fidelity.shafts import meridian_shaft
 from fe_drivetrain.geometry import unit_solids
-from fe_drivetrain.response.model import COMPONENTS, LOADS
+from fe_drivetrain.response.model import LOADS
 from fe_drivetrain.scene.scene import Coupling, Scene
 
 
@@ -150,7 +151,7 @@ def _reactions(model: LevelModel) -> ReactionsFile:
     return ReactionsFile(
         level=f"{model.level} {model.title}",
         loads=list(LOADS),
-        components=list(COMPONENTS),
+        components=list(FORCES),
         matrices={name: matrix.tolist() for name, matrix in model.reaction_matrices.items()},
     )
 

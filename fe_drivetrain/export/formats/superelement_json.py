@@ -8,8 +8,10 @@ from typing import Literal, TypeVar
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.superelement import FRAME, FREEDOMS, UNITS, Origin, Superelement, scaled
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.export.superelement import FRAME, UNITS, Origin, Superelement
 
 _SINGULAR = 1e13  # condition of a stiffness with a unit diagonal
 
@@ -38,7 +40,7 @@ class SuperelementFile(_File):
     name: str
     frame: str = FRAME
     units: str = UNITS
-    freedoms: tuple[str, ...] = Field(default=FREEDOMS, description="order of each point's six")
+    freedoms: tuple[str, ...] = Field(default=MOTIONS, description="order of each point's six")
     points: list[str]
     positions: list[tuple[float, float, float]] = Field(description="[m]")
     supported: bool = Field(
@@ -125,7 +127,10 @@ def read_content(path: Path, kind: type[_Content], what: str) -> _Content:
 
 
 def _compliance(element: Superelement) -> list[list[float]] | None:
-    if not element.supported or np.linalg.cond(scaled(element.stiffness)) > _SINGULAR:
+    if (
+        not element.supported
+        or np.linalg.cond(scaled_to_unit_diagonal(element.stiffness)) > _SINGULAR
+    ):
         return None
     inverse = np.linalg.inv(element.stiffness)
     return (0.5 * (inverse + inverse.T)).tolist()  # type: ignore[no-any-return]

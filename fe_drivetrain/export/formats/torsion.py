@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_solve
 from fe_drivetrain.export.superelement import Superelement
 
 
@@ -46,9 +47,8 @@ def torsional_stiffness(element: Superelement, first: str, second: str) -> float
     free = np.setdiff1d(np.arange(len(element.stiffness)), np.arange(start, start + 6))
     K = element.stiffness[np.ix_(free, free)]
     torque = (free == 6 * element.points.index(second) + 3).astype(float)
-    size = np.sqrt(np.where(K.diagonal() > 0, K.diagonal(), 1.0))
     try:
-        twist = float(torque @ (np.linalg.solve(K / np.outer(size, size), torque / size) / size))
+        twist = float(torque @ scaled_solve(K, torque))
     except np.linalg.LinAlgError:
         twist = np.inf
     if not 0 < twist < np.inf:

@@ -27,10 +27,11 @@ from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.scaling import diagonal_roots, largest_difference, scaled_to_unit_diagonal
+from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.export.craig_bampton import CraigBampton
 from fe_drivetrain.export.lumped_shaft import rigid_mass
-from fe_drivetrain.export.superelement import ALLOWED, Superelement, scaled
-from fe_drivetrain.solve.condensation import wrench_transport
+from fe_drivetrain.export.superelement import ALLOWED, Superelement
 
 STANDING_STILL = (0.0, 0.0, 0.0)
 
@@ -238,8 +239,8 @@ def floating_system(
     carry = np.vstack([wrench_transport(offset).T[:3] for offset in offsets])
     spread = np.kron(np.eye(n), carry)
     gathered = np.kron(np.eye(n), np.linalg.pinv(carry))
-    size = np.sqrt(M.diagonal())
-    _, modes = linalg.eigh(K / np.outer(size, size), M / np.outer(size, size))
+    size = diagonal_roots(M.diagonal())
+    _, modes = linalg.eigh(scaled_to_unit_diagonal(K, M.diagonal()), scaled_to_unit_diagonal(M))
     mesh = fem.FEMinterface()
     mesh.nodes = {"Position": (body.positions[:, None] + offsets).reshape(-1, 3)}
     mesh.massMatrix = sparse.csr_matrix(gathered.T @ M @ gathered)
@@ -253,7 +254,7 @@ def floating_system(
     )
     # it takes the centre of mass from a stretch of the mesh, which is right of lumped masses only;
     # a rotation knows better
-    whole = spread @ _rigid_motions(body.positions)
+    whole = spread @ point_motions(body.positions)
     about = whole.T @ mesh.massMatrix @ whole
     reduced.chiU = np.array([about[5, 1], about[3, 2], about[4, 0]]) / about[0, 0]
     number = reduced.AddObjectFFRFreducedOrder(system, gravity=list(gravity), name=body.name)
@@ -398,24 +399,13 @@ def bodies_of(body: Superelement) -> list[tuple[float, Floats, Floats]]:
         centre = np.array([block[5, 1], block[3, 2], block[4, 0]]) / mass
         rebuilt[rows, rows] = rigid_mass(mass, centre, block[3:, 3:])
         found.append((mass, centre, block[3:, 3:]))
-    apart = float(np.abs(scaled(body.mass) - _like(rebuilt, body.mass)).max())
+    apart = largest_difference(rebuilt, body.mass)
     if apart > ALLOWED:
         raise InputError(
             f"superelement {body.name!r} has the mass of an elastic body, not of rigid ones at its "
             f"points, by {apart:.1g} of its diagonal: take the flexible body"
         )
     return found
-
-
-def _rigid_motions(positions: Floats) -> Floats:
-    """(6 n, 6) unit motions of points about the origin."""
-    return np.vstack([wrench_transport(place).T for place in positions])
-
-
-def _like(matrix: Floats, other: Floats) -> Floats:
-    """The matrix over the sizes that give the other one a unit diagonal."""
-    size = np.sqrt(np.where(other.diagonal() > 0, other.diagonal(), 1.0))
-    return np.asarray(matrix / np.outer(size, size))
 
 
 def _matrices(body: Superelement | CraigBampton) -> tuple[Floats, Floats]:

@@ -31,6 +31,7 @@ from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.beam.shaft import Beam
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.scaling import scaled_solve
 from fe_drivetrain.fidelity.shafts import ringed_shaft
 from fe_drivetrain.scene.scene import Scene
 
@@ -99,10 +100,7 @@ class Rotor:
         for x, load in loads.items():
             first = 6 * self.node(x)
             F[first : first + 6] += load
-        K = self.matrix("K")
-        size = np.sqrt(K.diagonal())
-        solved = np.linalg.solve(K / np.outer(size, size), F / size) / size
-        return np.asarray(solved.reshape(n, 6))
+        return scaled_solve(self.matrix("K"), F).reshape(n, 6)
 
     def reactions(self, deflections: Floats) -> dict[str, Floats]:
         """What the shaft puts on each support (6,) [N, N m], from motions of the nodes (n, 6)."""

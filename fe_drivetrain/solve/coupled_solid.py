@@ -1,0 +1,249 @@
+"""A meshed solid whose faces move reference points: assembled, coupled, and condensed to these.
+
+Shafts, components and bearing units all come this way: the parts of a mesh and their materials, the
+faces and how each holds its point, then either the free body condensed to the points
+(`condensed_solid`) or the compliance of a held one there (`point_compliance`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg, sparse
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.spatial import point_motions, rigid_motions
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.interfaces.constraints import Constraint, Elimination, ReferencePoint
+from fe_drivetrain.mesh.facets import MEANS, face_weights
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.operator.incompressible import assemble_unlocked
+from fe_drivetrain.operator.mass import mass_matrix
+from fe_drivetrain.scene.component import Attachment
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.solve.condensation import Condensed, condense
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.solvers import Solver, factorise, solve
+
+
+@dataclass(frozen=True)
+class CoupledSolid:
+    """Parts of a mesh with reference points on their faces, not held yet.
+
+    Attributes
+    ----------
+    mesh
+        The mesh; nodes of parts that are left out have no stiffness.
+    cells
+        (n_cells, k) of the parts.
+    stiffness
+        (n, n): three degrees of freedom a node first, then six of each point with a rigid face
+        [N/m, N, N m/rad].
+    attachments
+        Of the faces.
+    points
+        Their reference points, in the same order.
+    rigid_faces
+        Constraints that make faces rigid (RBE2).
+    """
+
+    mesh: Mesh
+    cells: Ints
+    stiffness: sparse.bsr_array
+    attachments: tuple[Attachment, ...]
+    points: tuple[ReferencePoint, ...]
+    rigid_faces: tuple[Constraint, ...]
+
+    @property
+    def n_freedoms(self) -> int:
+        """Number of degrees of freedom, of the nodes and of points with a rigid face."""
+        return int(self.stiffness.shape[0])
+
+    @property
+    def loads(self) -> Floats:
+        """(n, 6 p) nodal forces of a unit force or moment at each of the p points."""
+        return np.hstack([point.motion.T.toarray() for point in self.points])
+
+
+@dataclass(frozen=True)
+class CondensedSolid:
+    """A free solid condensed to its reference points, and what leads back to its nodes.
+
+    Attributes
+    ----------
+    mesh
+        Its mesh.
+    body
+        It, condensed to its points.
+    unknowns
+        Of the system.
+    """
+
+    mesh: Mesh
+    body: Condensed
+    unknowns: int
+    _loads: Floats
+    _rigid: Floats
+    _elimination: Elimination
+    _solver: Solver
+
+    def displacements(self, motions: Floats) -> Floats:
+        """Displacements of all nodes (n, 3) where the points move so, and nothing else loads it.
+
+        Parameters
+        ----------
+        motions
+            (6 p,) of the p points [m, rad].
+        """
+        forces = self.body.stiffness @ motions
+        T = self._elimination.T
+        u = np.asarray(T @ self._solver.solve(T.T @ (self._loads @ forces[:, None])).x)[:, 0]
+        u += self._rigid @ (motions[:6] - self._loads[:, :6].T @ u)
+        return u[: self.mesh.points.size].reshape(-1, 3)
+
+
+def coupled_solid(
+    mesh: Mesh, materials: Mapping[str, Material], attachments: Sequence[Attachment]
+) -> CoupledSolid:
+    """Assemble parts of a mesh and couple faces to reference points.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    materials : mapping of str to Material
+        Of each part that is assembled, by its name in the mesh.
+    attachments : sequence of Attachment
+        Reference points with their faces.
+    """
+    n = len(mesh.points)
+    n_freedoms = 3 * n + 6 * sum(a.coupling == "rigid" for a in attachments)
+    points, rigid_faces, own = [], [], 3 * n
+    for name, face, position, coupling in attachments:
+        nodes = mesh.face_nodes(face)
+        if coupling == "rigid":
+            point = constraints.rigid_point(name, position, own, n_freedoms)
+            rigid_faces.append(constraints.rigid_face(name, nodes, mesh.points, point))
+            own += 6
+        else:
+            weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
+            point = constraints.averaged_point(
+                name, nodes, weights, mesh.points, position, n_freedoms
+            )
+        points.append(point)
+    cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
+    K = sum(
+        assemble_unlocked(mesh.points, some, material.lame, n_freedoms)
+        for some, material in zip(cells, materials.values(), strict=True)
+    )
+    return CoupledSolid(
+        mesh, np.concatenate(cells), K, tuple(attachments), tuple(points), tuple(rigid_faces)
+    )
+
+
+def condensed_solid(
+    mesh: Mesh,
+    materials: Mapping[str, Material],
+    attachments: Sequence[Attachment],
+    method: str = "auto",
+) -> CondensedSolid:
+    """Solve a free solid for unit loads at its reference points, and condense it to these.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh, all parts of it joined.
+    materials : mapping of str to Material
+        Of every part, by its name in the mesh.
+    attachments : sequence of Attachment
+        Reference points with their faces; at least two.
+    method : str
+        Solver, see `fe_drivetrain.solve.solvers.factorise`.
+
+    Raises
+    ------
+    InputError
+        There is only one point, or two move as one.
+    """
+    solid = coupled_solid(mesh, materials, attachments)
+    n, total = 3 * len(mesh.points), solid.n_freedoms
+    mass = sum(
+        mass_matrix(mesh.points, mesh.cells[mesh.part_cells(part)], material.density, total)
+        for part, material in materials.items()
+    )
+    rigidly = [mesh.face_nodes(a.face) for a in attachments if a.coupling == "rigid"]
+    pinned = np.setdiff1d(np.unique(solid.cells), np.concatenate([[], *rigidly]))
+    pins = _pins(mesh.points, pinned, total)
+    elimination = constraints.eliminate([pins, *solid.rigid_faces], total)
+    system = reduce(mesh.points, solid.cells, solid.stiffness, elimination)
+    # of unit loads between the points, and three of gravity
+    solver = factorise(system, method, 6 * len(solid.points) - 3)
+
+    def solved(F: Floats) -> Floats:
+        return np.asarray(elimination.T @ solver.solve(elimination.T.T @ F).x)
+
+    positions = np.array([a.position for a in attachments])
+    rigid = np.zeros((total, 6))
+    rigid[:n] = rigid_motions(mesh.points, positions[0])
+    own = [a.position for a in attachments if a.coupling == "rigid"]
+    rigid[n:] = point_motions(np.reshape(own, (-1, 3)), positions[0])
+    loads = solid.loads
+    body = condense([a.name for a in attachments], positions, loads, mass, rigid, solved)
+    return CondensedSolid(mesh, body, system.n_free, loads, rigid, elimination, solver)
+
+
+def point_compliance(
+    solid: CoupledSolid,
+    held: Sequence[Constraint],
+    springs: Sequence[tuple[ReferencePoint, Floats]] = (),
+    method: str = "auto",
+) -> Floats:
+    """Motions of a held solid's reference points for unit forces and moments there.
+
+    Parameters
+    ----------
+    solid : CoupledSolid
+        The solid.
+    held : sequence of Constraint
+        What holds it.
+    springs : sequence of (ReferencePoint, ndarray (6, 6))
+        Springs to ground at reference points [N/m, N, N m/rad].
+    method : str
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+
+    Returns
+    -------
+    ndarray, (6 p, 6 p)
+        Of the p points [m/N, 1/N, rad/(N m)].
+
+    Raises
+    ------
+    InputError
+        The solid is not held, or two constraints hold one degree of freedom.
+    """
+    K = solid.stiffness
+    for at, k in springs:
+        K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
+    elimination = constraints.eliminate([*held, *solid.rigid_faces], solid.n_freedoms)
+    system = reduce(solid.mesh.points, solid.cells, K, elimination)
+    F = solid.loads
+    return np.asarray(F.T @ (elimination.T @ solve(system, elimination.T.T @ F, method).x))
+
+
+def _pins(points: Floats, allowed: Ints, n_freedoms: int) -> Constraint:
+    """Six degrees of freedom of three nodes far apart: they hold a solid without straining it."""
+    some = points[allowed]
+    extent = np.ptp(some, axis=0)
+    # the longest axis, and of a round body, whose two differ by the mesh alone, the first
+    a = int(np.argmin(some[:, np.argmax(extent > 0.99 * extent.max())]))
+    length = np.linalg.norm(some - some[a], axis=1)
+    b = int(np.argmax(length))
+    along = (some[b] - some[a]) / length[b]
+    c = int(np.argmax(np.linalg.norm(np.cross(some - some[a], along), axis=1)))
+    nodes = allowed[[a, b, c]]
+    motions = rigid_motions(points[nodes], points[nodes].mean(axis=0))
+    motions[:, 3:] /= length[b]
+    best = linalg.qr(motions.T, mode="r", pivoting=True)[1][:6]
+    return constraints.held_freedoms("pins", constraints.freedoms(nodes).ravel()[best], n_freedoms)
