@@ -13,7 +13,7 @@ from fe_drivetrain.compare import resultant
 from fe_drivetrain.hub_loads import Condition, hub_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.suite import Page, Run, grouped
+from fe_drivetrain.suite import Page, Record, Run, grouped
 
 KINDS = {"DSRB": "spherical", "DTRB": "bonded"}
 WALLS = (100, 75, 50)
@@ -123,7 +123,8 @@ def run(run: Run, page: Page) -> None:
 
     for name, series in series_of.items():
         shown.check_series(page, series, name)
-    rows, traces = [], []
+    rows: list[Record] = []
+    traces = []
     for label, whole in whole_of.items():
         reference: Floats | None = None
         for wall in walls:
@@ -137,7 +138,7 @@ def run(run: Run, page: Page) -> None:
             predicted = (
                 change_of_beam(history.loads, whole, scene, tilt) if label == "DTRB" else 0.0
             )
-            row = {
+            row: Record = {
                 "bearing": label,
                 "wall [%]": wall,
                 "bore [m]": scene.shaft.sections[0].inner_diameter,
