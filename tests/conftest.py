@@ -1,9 +1,10 @@
 """What several test modules use: coarse scenes, built once a session, and commands in a folder."""
 
 import os
+import shutil
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 from tiny_case import SCRIPT, Result, count
 
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.common import cache, processes
+from fe_drivetrain.common import cache, threads
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
@@ -46,12 +47,38 @@ def coarse_scene(kind: str, **changes: object) -> Scene:
     return change_scene(library_scene(f"main_bearing_{kind}"), COARSE | changes)
 
 
+#: Programs that tests start; all else that they need is a Python package.
+PROGRAMS = ("ccx", "chromium")
+
+#: Where this is set, a test that is skipped has failed: everything that tests need is installed.
+NO_SKIP_VARIABLE = "FE_DRIVETRAIN_NO_SKIP"
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test where a program or package that its mark ``needs`` names is not installed."""
+    for name in (name for mark in item.iter_markers("needs") for name in mark.args):
+        if name not in PROGRAMS:
+            pytest.importorskip(name, exc_type=ImportError)
+        elif shutil.which(name) is None:
+            pytest.skip(f"there is no program {name}")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Let no test be skipped where none may be."""
+    report = yield
+    if report.skipped and os.environ.get(NO_SKIP_VARIABLE):
+        report.outcome = "failed"
+    return report
+
+
 @pytest.fixture(scope="session", autouse=True)
 def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """A cache for the tests alone, and one process; tests of either set their own."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(cache.CACHE_VARIABLE, str(tmp_path_factory.mktemp("cache")))
-        patch.setenv(processes.CORES_VARIABLE, "1")
+        patch.setenv(threads.CORES_VARIABLE, "1")
         yield
 
 

@@ -205,9 +205,9 @@ def assume(page: Page, scene: Scene) -> None:
     for unit in scene.bearing_units:
         name = unit.bearing.name
         for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.housing)):
-            for what, value, unit_of, source in part.assumptions():
+            for what, value, unit_of_it, source in part.assumptions():
                 if unit.housing.base == "bolted" or not what.startswith(("bolt_", "washer_")):
-                    page.assume(f"{owner}: {what}", value, unit_of, source)
+                    page.assume(f"{owner}: {what}", value, unit_of_it, source)
     names = [unit.bearing.name for unit in scene.bearing_units]
     for name in ("shaft", *names, *(f"{name}.housing" for name in names)):
         material = scene.material_of(name)
