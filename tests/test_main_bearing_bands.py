@@ -12,8 +12,10 @@ from fe_drivetrain.cases.main_bearing.bands import (
     LEAST_ORDER,
     Series,
 )
+from fe_drivetrain.cases.main_bearing.shown import check_series
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.page import Page
 
 
 def series_of_order(order, limit=5.0):
@@ -42,15 +44,21 @@ def test_no_coarser_mesh_gives_no_band():
     series = Series(series_of_order(1.0).levels[-1:])
     assert not series.complete
     assert series.band(lambda f: float(f["K_R"][0, 1])) is None
-    assert series.checked("bonded") == []
+    assert checks_of(series) == []
     assert "No bands" in series.note()
 
 
-def test_coarser_solutions_out_of_balance_are_told():
+def checks_of(series):
+    page = Page()
+    check_series(page, series, "bonded")
+    return page.verdicts
+
+
+def test_coarser_solutions_out_of_balance_are_reported():
     good = series_of_order(1.0)
-    assert all(v.passed for v in good.checked("bonded"))
+    assert [v.passed for v in checks_of(good)] == [True]
     spoiled = Series(({**good.levels[0], "free checks": np.array([1e-3, 0.0])}, *good.levels[1:]))
-    assert not all(v.passed for v in spoiled.checked("bonded"))
+    assert [v.passed for v in checks_of(spoiled)] == [False]
 
 
 def test_mesh_too_coarse_for_the_walls_is_left_out(tmp_path):

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
-from fe_drivetrain.cases.main_bearing import (
-    study,
-)
+from fe_drivetrain.cases.main_bearing import shown, study
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.mechanisms import find_mechanisms, named_bodies, weak_restraints
 from fe_drivetrain.mesh.measures import quality
@@ -14,6 +12,7 @@ from fe_drivetrain.response.model import build_model
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.page import Page
 
 
 def test_bodies_are_parts_that_share_nodes(spherical_mesh, bonded_model):
@@ -169,4 +168,6 @@ def test_a_warning_reaches_the_progress_lines_and_the_page(spherical_mesh, tmp_p
     solved = study.solve_scene(run, scene, "soft", (spherical_mesh, quality(spherical_mesh)))
     sentence = "shaft and main_bearing can nearly turn about x through (0, 0, 0) m"
     assert any(line.startswith(f"warning: soft: {sentence}") for line in lines)
-    assert sentence in study.mesh_table({"soft": solved}).caption
+    page = Page()
+    shown.mesh_section(page, {"soft": solved})
+    assert sentence in page.sections[0].items[0].caption

@@ -1,4 +1,4 @@
-"""The band of every FE figure: the same scene on two coarser meshes, and what the series shows."""
+"""The band of every FE value: the same scene on two coarser meshes, and what the series shows."""
 
 from __future__ import annotations
 
@@ -7,17 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing import (
-    study,
-)
+from fe_drivetrain.cases.main_bearing import study
 from fe_drivetrain.cases.main_bearing.study import (
-    ESTIMATORS,
     Solved,
     Tilt,
 )
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.report import Table, Verdict, judge
 from fe_drivetrain.response import Response, bearing_unit_stiffness
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Jobs, Run, RunJob
@@ -181,24 +177,6 @@ class Series:
             np.max([f[name] for f in self.levels[:-1] for name in f if name.endswith("checks")])
         )
 
-    def checked(self, label: str) -> list[Verdict]:
-        """Whether the coarser solutions are in balance; nothing where there are none."""
-        if not self.complete:
-            return []
-        errors = [f[name] for f in self.levels[:-1] for name in f if name.endswith("checks")]
-        return [
-            judge(
-                f"{label}, coarser meshes of its bands: equilibrium and linearity, the worst",
-                float(np.max(errors)),
-                0.0,
-                tolerance=1e-8,
-                relative=False,
-                source="exact",
-                reason="solver accuracy",
-                measure="identity",
-            )
-        ]
-
     def note(self) -> str:
         """How bands come about, for the page."""
         if self.complete:
@@ -220,20 +198,3 @@ class Series:
                 band = self.convergence(lambda f, i=i, j=j: float(f[name][i, j])).uncertainty
                 shares.append(band / size[j])
         return f"bands are at most {100.0 * max(shares):.2g} % of their column's largest"
-
-
-def tilt_table(tilt: Tilt, series: Series) -> Table:
-    """K_R by plane and estimator, each with its band, beside the thesis's."""
-    table = study.tilt_table(tilt)
-    columns, rows = [table.columns[0]], [[row[0]] for row in table.rows]
-    for k, estimator in enumerate(ESTIMATORS):
-        columns += [estimator, f"± {estimator}"]
-        for plane, (row, given) in enumerate(zip(rows, table.rows, strict=True)):
-            band = series.band(lambda f, p=plane, k=k: float(f["K_R"][p, k]) / 1e6)
-            row += [given[1 + k], band]
-    rest = 1 + len(ESTIMATORS)
-    return Table(
-        caption=table.caption,
-        columns=[*columns, *table.columns[rest:]],
-        rows=[[*row, *given[rest:]] for row, given in zip(rows, table.rows, strict=True)],
-    )

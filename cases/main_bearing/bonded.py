@@ -31,7 +31,7 @@ def shares_of(
     pinned: Floats,
 ) -> list[Record]:
     """Reactions in bending to unit hub loads, (component, load) each: FE and three beams."""
-    rows = []
+    rows: list[Record] = []
     for load, component in ((2, 2), (2, 4), (4, 2), (4, 4), (1, 1), (1, 5), (5, 1), (5, 5)):
         at = component, load
         value = float(reaction[at])

@@ -38,7 +38,7 @@ def deflections(solved: Solved, matrix: Floats, series: bands.Series, label: str
         ).displacements
         for rings in (False, True)
     )
-    rows = []
+    rows: list[Record] = []
     for quantity, station, point, component in (
         ("hub deflection uz [µm]", 0, "hub", 2),
         ("slope ry at the bearing [µrad]", 1, f"{name}.seat", 4),

@@ -123,7 +123,8 @@ def run(run: Run, page: Page) -> None:
 
     for name, series in series_of.items():
         shown.check_series(page, series, name)
-    rows, traces = [], []
+    rows: list[Record] = []
+    traces = []
     for label, whole in whole_of.items():
         reference: Floats | None = None
         for wall in walls:

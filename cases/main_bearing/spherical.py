@@ -51,7 +51,7 @@ def deflections(
 ) -> list[Record]:
     """Deflection and slope at the hub (station -2) and at the bearing (-1), FE and beams."""
     name = solved[FORMS[0]].bearing
-    rows = []
+    rows: list[Record] = []
     for k, (load, label) in enumerate(((2, "Fz = 1 kN"), (4, "My = 1 kN m"))):
         for quantity, unit, station, point, component in (
             ("hub deflection uz", "µm", -2, "hub", 2),

@@ -1,4 +1,4 @@
-"""What the main-bearing cases share: their scene, its solution, and how both are shown."""
+"""What the main-bearing cases share: their scene and its solution."""
 
 import warnings
 from dataclasses import dataclass, replace
@@ -6,20 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import FORCES, Floats, InputError
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
-from fe_drivetrain.report import (
-    AssumptionRow,
-    Image,
-    NoPictureError,
-    Section,
-    Table,
-    Text,
-    Verdict,
-    judge,
-    picture_of_deformation,
-    picture_of_model,
-)
 from fe_drivetrain.response import (
     LOADS,
     PLANES,
@@ -35,8 +23,6 @@ from fe_drivetrain.response import (
 from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
 from fe_drivetrain.solve import METHODS
 from fe_drivetrain.suite import Run
-
-SOURCE = "Stirling 2023, PhD thesis, chapter 3 (sections 3.1 to 3.3, Table 3.1)"
 
 #: Keys of --set that are the case's own; every other key changes the scene.
 OWN_KEYS = ("scene", "solver")
@@ -224,173 +210,6 @@ def spread(values: dict[str, float]) -> float:
     return 100.0 * (max(found) - min(found)) / float(np.median(found))
 
 
-def tilt_table(tilt: Tilt) -> Table:
-    """K_R by plane and estimator beside the thesis's."""
-    published = {"vertical": 145.0, "horizontal": 392.0}
-    rows: list[list[Any]] = []
-    for plane, values in tilt.by_plane.items():
-        k = [v / 1e6 for v in values.values()]
-        rows.append([plane, *k, spread(values), published[plane]])
-    return Table(
-        caption="K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed. The "
-        "thesis's figures belong to its own housing, whose dimensions it does not give",
-        columns=["plane", *ESTIMATORS, "spread [%]", "Stirling 2023"],
-        rows=rows,
-    )
-
-
-def matrix_table(caption: str, matrix: Floats) -> Table:
-    """A 6x6 stiffness."""
-    names = ("ux", "uy", "uz", "rx", "ry", "rz")
-    size = np.sqrt(np.outer(matrix.diagonal(), matrix.diagonal()))
-    shown = np.where(np.abs(matrix) < 1e-3 * size, 0.0, matrix)
-    return Table(
-        caption=caption + " [N/m, N, N m/rad]; terms below 0.1 % of their diagonals shown as 0",
-        columns=["", *names],
-        rows=[[names[i], *(float(v) for v in shown[i])] for i in range(6)],
-    )
-
-
-def check_verdicts(solved: Solved, label: str) -> list[Verdict]:
-    """The two independent checks that every solution carries."""
-    source = "exact"
-    return [
-        judge(
-            f"{label}: total equilibrium, applied less reacted",
-            solved.response.equilibrium_error,
-            0.0,
-            tolerance=1e-8,
-            relative=False,
-            source=source,
-            reason="reactions come from the residual on constrained freedoms: solver accuracy",
-            measure="identity",
-        ),
-        judge(
-            f"{label}: linearity, a random load solved directly against superposed",
-            solved.response.superposition_error,
-            0.0,
-            tolerance=1e-8,
-            relative=False,
-            source=source,
-            reason="the scene is linear: solver accuracy",
-            measure="identity",
-        ),
-    ]
-
-
-def mesh_table(solutions: dict[str, Solved]) -> Table:
-    """Mesh, solver and diagnostics of each solution."""
-    rows: list[list[Any]] = []
-    for label, s in solutions.items():
-        mesh = s.model.mesh
-        rows.append(
-            [
-                label,
-                len(mesh.cells),
-                len(mesh.points),
-                s.response.n_unknowns,
-                s.quality.minimum_scaled_jacobian,
-                s.response.method,
-                s.response.iterations or None,
-                s.response.seconds,
-                s.response.residual,
-                s.response.energy_error,
-                s.response.equilibrium_error,
-                s.response.superposition_error,
-            ]
-        )
-    return Table(
-        caption="Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve. "
-        f"Solver {_choices(solutions)}{_warnings(solutions)}",
-        columns=[
-            "model",
-            "elements",
-            "nodes",
-            "unknowns",
-            "minimum scaled Jacobian",
-            "solver",
-            "iterations",
-            "set-up and solve [s]",
-            "relative residual",
-            "energy error",
-            "equilibrium error",
-            "superposition error",
-        ],
-        rows=rows,
-    )
-
-
-def _choices(solutions: dict[str, Solved]) -> str:
-    """Which solver, and why, of each model that gives another reason."""
-    reasons: dict[str, str] = {}
-    for label, s in solutions.items():
-        reasons.setdefault(s.response.reason, label)
-    return "; ".join(f"({label}): {reason}" for reason, label in reasons.items())
-
-
-def _warnings(solutions: dict[str, Solved]) -> str:
-    """What the models warn of, each once, with the first model that does."""
-    found: dict[str, str] = {}
-    for label, s in solutions.items():
-        for warning in s.model.warnings:
-            found.setdefault(warning, label)
-    return "".join(f". Warning ({label}): {warning}" for warning, label in found.items())
-
-
-def reaction_table(caption: str, reaction: Floats) -> Table:
-    """A (6, 10) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
-    size = np.abs(reaction).max(axis=0)
-    # A column may hold nothing but round-off: the bearing feels no torque, no gearbox weight.
-    shown = np.where(np.abs(reaction) < np.maximum(1e-4 * size, 1e-6), 0.0, reaction)
-    return Table(
-        caption=f"{caption}. Below 0.01 % of their column's largest, or 1e-6, entries show as 0",
-        columns=["reaction", *(f"{c} [per {_unit(c)}]" for c in LOADS)],
-        rows=[
-            [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *(float(v) for v in shown[i])]
-            for i, c in enumerate(FORCES)
-        ],
-    )
-
-
-def _unit(load: str) -> str:
-    if load.startswith("gravity"):
-        return "m/s²"
-    return "N m" if load.startswith("hub.M") else "N"
-
-
-def picture_section(run: Run, solved: Solved, loads: Floats, what: str) -> Section:
-    """Pictures of the model and of its deformed shape; says why where there is none.
-
-    Parameters
-    ----------
-    loads
-        (10,) load factors of the deformed shape.
-    what
-        The loads in words.
-    """
-    items: list[Any] = []
-    with run.step("pictures"):
-        try:
-            picture_of_model(solved.model, run.folder / "model.png")
-            factor = picture_of_deformation(
-                solved.model, solved.response, loads, run.folder / "deformed.png"
-            )
-        except NoPictureError as reason:
-            items.append(Text(text=f"No picture: {reason}"))
-        else:
-            items += [
-                Image(
-                    caption=f"{solved.scene.title}: parts, loads and supports",
-                    file="model.png",
-                ),
-                Image(
-                    caption=f"Deformed {factor:,.0f} times too large, under {what}",
-                    file="deformed.png",
-                ),
-            ]
-    return Section(title="Model", items=items)
-
-
 def write_mesh_files(run: Run, solved: Solved, name: str) -> None:
     """The mesh for ParaView (.vtu) and gmsh (.msh), with unit-load displacements."""
     fields = {
@@ -400,56 +219,3 @@ def write_mesh_files(run: Run, solved: Solved, name: str) -> None:
     with run.step("mesh files"):
         write(solved.model.mesh, run.folder / f"{name}.vtu", fields)
         write(solved.model.mesh, run.folder / f"{name}.msh")
-
-
-def assumptions(scene: Scene) -> list[AssumptionRow]:
-    """Everything that the thesis does not give."""
-    unit = scene.bearing_units[0]
-    torque = scene.gearbox.stiffness[3]
-    base = {
-        "fixed": "the whole underside of the housing is fixed, as in the thesis",
-        "bolted": "four washer footprints are fixed; in the thesis the whole underside",
-    }[unit.housing.base]
-    rows: list[tuple[Any, ...]] = [
-        (
-            "gearbox torque reaction",
-            torque if torque == "rigid" else float(torque),
-            "" if torque == "rigid" else "N m/rad",
-            "a spherical joint lets the shaft spin, so the gearbox must react torque; the thesis "
-            "names three translational springs only",
-        ),
-        (
-            "coupling of hub and gearbox",
-            f"{scene.hub.coupling}, {scene.gearbox.coupling}",
-            "",
-            "averaged: loads and springs act on the mean motion of the shaft's end face (RBE3)",
-        ),
-        ("bedplate", "rigid", "", base),
-        ("clearance, friction, damping", "none", "", "as in the thesis: quasi-static, linear"),
-    ]
-    for unit in scene.bearing_units:
-        name = unit.bearing.name
-        for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.housing)):
-            rows += [
-                (f"{owner}: {row[0]}", *row[1:])
-                for row in part.assumptions()
-                if unit.housing.base == "bolted" or not row[0].startswith(("bolt_", "washer_"))
-            ]
-    for name in _parts(scene):
-        material = scene.material_of(name)
-        own = material in scene.materials.values()
-        rows.append(
-            (
-                f"{name}: E, nu, density",
-                f"{material.youngs_modulus / 1e9:g} GPa, {material.poisson_ratio:g}, "
-                f"{material.density:g} kg/m³",
-                "",
-                "given by the scene" if own else "assumed: the thesis names no material",
-            )
-        )
-    return [AssumptionRow(name=n, value=v, unit=u, source=s) for n, v, u, s in rows]
-
-
-def _parts(scene: Scene) -> list[str]:
-    names = [unit.bearing.name for unit in scene.bearing_units]
-    return ["shaft", *names, *(f"{name}.housing" for name in names)]

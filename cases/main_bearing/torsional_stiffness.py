@@ -55,7 +55,7 @@ def by_load(free: Solved, series: bands.Series) -> list[Record]:
     """K_R under a hub moment, and under a hub force with the same moment at the bearing."""
     seat = f"{free.bearing}.seat"
     arm = free.scene.bearing_units[0].bearing.x - free.scene.shaft.front
-    rows = []
+    rows: list[Record] = []
     for plane in PLANES:
         by_moment = free.response.motions[seat][plane.moment, plane.moment]
         by_force = free.response.motions[seat][plane.moment, plane.force]
