@@ -60,10 +60,15 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
 
 
 def _take_back_signals() -> None:
-    """Undo what gmsh does behind Python's back: from then on a terminate signal ends it at once."""
+    """Undo what gmsh does behind Python's back.
+
+    From then on a terminate signal ends the process at once, and so does writing to a pipe that
+    nobody reads any more.
+    """
     if threading.current_thread() is not threading.main_thread():
         return  # only there can it be undone
-    for number in (signal.SIGINT, signal.SIGTERM):
+    changed = {"SIGINT", "SIGTERM", "SIGPIPE"}  # not every system has all of them
+    for number in (number for number in signal.Signals if number.name in changed):
         handler = signal.getsignal(number)
         if handler is not None:  # None: not set from Python
             signal.signal(number, handler)

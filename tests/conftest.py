@@ -13,7 +13,7 @@ import pytest
 from tiny_case import SCRIPT, Result, count
 
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.common import cache, processes
+from fe_drivetrain.common import cache, threads
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
@@ -51,7 +51,7 @@ def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[No
     """A cache for the tests alone, and one process; tests of either set their own."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(cache.CACHE_VARIABLE, str(tmp_path_factory.mktemp("cache")))
-        patch.setenv(processes.CORES_VARIABLE, "1")
+        patch.setenv(threads.CORES_VARIABLE, "1")
         yield
 
 

@@ -6,9 +6,7 @@ import pytest
 from fe_drivetrain.cases.stability import (
     beam_maps as maps,
 )
-from fe_drivetrain.cases.stability.beam_theory_flange import (
-    plate_rotation,
-)
+from fe_drivetrain.validation.clamped_plates import boss_rotation
 from fe_drivetrain.validation.shaft_theory import (
     Tube,
 )
@@ -69,9 +67,9 @@ def test_a_narrow_plate_is_a_strip_round_the_boss():
     E, nu = maps.STEEL.youngs_modulus, maps.STEEL.poisson_ratio
     D = E * thickness**3 / (12 * (1 - nu**2))
     strip = width**3 / (12 * np.pi * D * outer**3)
-    found = plate_rotation(outer, outer - width, thickness, maps.STEEL)
+    found = boss_rotation(outer, outer - width, thickness, maps.STEEL)
     assert found == pytest.approx(strip, rel=3 * width / outer)
     # thinner, wider: softer
-    assert plate_rotation(outer, 1.0, 0.1, maps.STEEL) == pytest.approx(
-        8 * plate_rotation(outer, 1.0, 0.2, maps.STEEL), rel=1e-12
+    assert boss_rotation(outer, 1.0, 0.1, maps.STEEL) == pytest.approx(
+        8 * boss_rotation(outer, 1.0, 0.2, maps.STEEL), rel=1e-12
     )

@@ -25,7 +25,7 @@ from fe_drivetrain.commands.run import run_and_print
 from fe_drivetrain.common import files
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
 from fe_drivetrain.common.files import HiddenFolder, atomic_path
-from fe_drivetrain.common.processes import CORES_VARIABLE as CORES
+from fe_drivetrain.common.threads import CORES_VARIABLE as CORES
 from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.mesh import cached
 from fe_drivetrain.report.results import Environment, Results, judge, read_results
@@ -460,6 +460,19 @@ def test_a_mesh_leaves_the_terminate_signal_to_python() -> None:
     finally:
         signal.signal(signal.SIGTERM, before)
     assert len(got) == 2
+
+
+def test_after_a_mesh_a_pipe_that_nobody_reads_is_an_error_and_no_sudden_end() -> None:
+    def write() -> int:
+        with gmsh_session():
+            pass
+        read, write_end = os.pipe()
+        os.close(read)
+        with pytest.raises(BrokenPipeError):
+            os.write(write_end, b"1")
+        return 0
+
+    assert in_child(write) == 0
 
 
 # --- a real scene, killed from outside ------------------------------------------------------------

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from fe_drivetrain.mesh.mesh import Mesh, area, boundary
+from fe_drivetrain.mesh.measures import area
+from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.report.pictures.deformation import (
     exaggeration,
     picture_of_deformation,

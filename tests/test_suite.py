@@ -12,7 +12,7 @@ import pytest
 
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.common.processes import CORES_VARIABLE, cores
+from fe_drivetrain.common.threads import CORES_VARIABLE, cores
 from fe_drivetrain.report.page import write_index
 from fe_drivetrain.report.results import Environment, Results, judge, read_results
 from fe_drivetrain.suite.case import OldCase as Case

@@ -1,8 +1,5 @@
 """The elastic operator beside scikit-fem's generic form: same matrix, other time."""
 
-import os
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -23,7 +20,7 @@ from skfem import (
 )
 from skfem.models.elasticity import linear_elasticity
 
-from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.common import Floats, Ints, run_python
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.mesh import element_kind, generate, is_straight
@@ -45,10 +42,9 @@ _COMPILE = """
 import time
 import numpy as np
 start = time.perf_counter()
-from fe_drivetrain import multigrid
-from fe_drivetrain.elasticity import assemble
 from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.reduction import reduce
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.solve import multigrid, reduce
 imported = time.perf_counter()
 points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [.5, 0, 0], [.5, .5, 0],
                    [0, .5, 0], [0, 0, .5], [.5, 0, .5], [0, .5, .51]], dtype=float)
@@ -219,13 +215,8 @@ def _compile_seconds() -> tuple[float, float]:
     found = []
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(2):
-            result = subprocess.run(
-                [sys.executable, "-c", _COMPILE],
-                env=os.environ | {"NUMBA_CACHE_DIR": folder},
-                capture_output=True,
-                text=True,
-                check=True,
-            )
+            result = run_python("-c", _COMPILE, environment={"NUMBA_CACHE_DIR": folder})
+            result.check_returncode()
             _, assembly, solve = map(float, result.stdout.split())
             found.append(assembly + solve)
     return found[0], found[1]

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from fe_drivetrain.cases.performance import (
     choices,
 )
+from fe_drivetrain.common import run_python
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS
 
@@ -72,11 +73,10 @@ def grown(size: float, turn: int, method: str = "auto") -> Grown | None:
     Grown
         None where the process failed or took too long: no time is made up for it.
     """
-    command = [sys.executable, "-m", __name__, str(size), str(turn), method]
+    command = ["-m", __name__, str(size), str(turn), method]
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=MOST_SECONDS, check=True
-        )
+        done = run_python(*command, timeout=MOST_SECONDS)
+        done.check_returncode()
     except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
         return None
     return Grown(**json.loads(done.stdout.splitlines()[-1]))

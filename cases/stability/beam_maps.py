@@ -4,8 +4,6 @@ Every shaft here is held at its front end; a flexibility is the motion of the re
 or moment there, so that entry 0 is along x, 2 along z, 3 about x and 4 about y.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -67,9 +65,22 @@ def by_beam(shaft: Shaft, shear: bool = True) -> Floats:
 
 
 def least_safe(x: Floats, error: Floats, level: float) -> float | None:
-    """Least x from which on |error| is below a level, to the end of the sweep; None if nowhere.
+    """Least x from which on an error is below a level, to the end of the sweep.
 
-    Between points by straight lines in logarithms. The first x where it is below everywhere.
+    Parameters
+    ----------
+    x : (n,) array
+        Ascending.
+    error : (n,) array
+        With its sign, which does not count.
+    level : float
+        In the unit of the error.
+
+    Returns
+    -------
+    least : float or None
+        Between points by straight lines in logarithms; the first x where the error is below the
+        level everywhere, None where it is not even at the last.
     """
     size = np.abs(error)
     above = np.flatnonzero(size >= level)
@@ -82,17 +93,36 @@ def least_safe(x: Floats, error: Floats, level: float) -> float | None:
     return float(np.exp(np.log(x[k]) + share * np.log(x[k + 1] / x[k])))
 
 
+def curve(
+    name: str,
+    x: Floats,
+    percent: Floats,
+    dash: str = "solid",
+    width: float = 2.0,
+    signed: bool = False,
+) -> Any:
+    """Black curve of an error [%], without its sign unless that is asked for."""
+    line = {"color": "black", "dash": dash, "width": width}
+    shown = percent if signed else np.abs(percent)
+    return trace(name, x, shown, mode="lines+markers", line=line)
+
+
 def map_traces(x: Floats, y: Floats, percent: Floats, falls_as: float = 1.0) -> list[Any]:
     """Lines of equal error over x (logarithmic) and y, and dots where it was computed.
 
     Parameters
     ----------
-    x, y
-        (n,) and (m,), ascending.
-    percent
-        (m, n) error [%], with its sign.
-    falls_as
+    x, y : (n,) and (m,) array
+        Ascending.
+    percent : (m, n) array
+        Error [%], with its sign.
+    falls_as : float
         The power of x with which it falls: times x to this power it is interpolated by splines.
+
+    Returns
+    -------
+    traces : list
+        For a chart.
     """
     fine_x, fine_y = np.geomspace(x[0], x[-1], 41), np.linspace(y[0], y[-1], 31)
     spline = RectBivariateSpline(

@@ -1,9 +1,18 @@
 """Beam theory on a stepped shaft: what the corner of a step costs, sharp and with a fillet."""
 
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability import beam_maps as maps
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.mesh import SAME_LENGTH
+from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
+from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
 #: Large over small diameter.
 RATIOS = (1.05, 1.1, 1.2, 1.35, 1.5, 2.0, 2.5, 3.0)
@@ -19,348 +28,68 @@ QUICK_RADII = (1.0,)
 #: Length over the small diameter where the step's own flexibility is measured.
 MEASURED = 6.0
 
-OF = {"torsion": 3, "bending": 4, "tension": 0}
+OF = {"torsion": maps.TORSION, "bending": maps.ROTATION, "tension": maps.AXIAL}
+DASHES = {"torsion": "solid", "bending": "dash", "tension": "dot"}
 
 
-def run(run: Run) -> Any:
-    """Map the errors of sharp steps, then of fillets; correct the beam; check both."""
-    import numpy as np
+@dataclass(frozen=True)
+class Map:
+    """Errors of the beam over step and length.
 
-    from fe_drivetrain.cases.stability import (
-        beam_maps as maps,
-    )
-    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.validation.torsion_meridian import (
-        torsion_bounds,
-    )
+    Attributes
+    ----------
+    lengths, ratios : (n,) and (m,) array
+        Over the small diameter.
+    error, corrected : dict of (m, n) arrays
+        Without and with the step's extra length [%].
+    extra : dict of (m,) arrays
+        That length, of the small section, over its diameter.
+    """
 
-    lengths = np.append(np.geomspace(0.5, 30.0, 4 if run.quick else 7), AT)
-    lengths.sort()
-    ratios = np.array(QUICK_RATIOS if run.quick else RATIOS)
-    ends = _ends()
-    error = {name: np.empty((len(ratios), len(lengths))) for name in OF}
-    corrected = {name: np.empty((len(ratios), len(lengths))) for name in OF}
-    extra = {name: np.empty(len(ratios)) for name in OF}
-    for i, ratio in enumerate(ratios):
-        run.report(f"step {ratio:g}")
-        with run.step("sharp steps"):
-            measured = _without_ends(MEASURED, ratio, ends)
-            found = [_without_ends(length, ratio, ends) for length in lengths]
-        for name, k in OF.items():
-            thin = maps.by_beam(maps.uniform(1.0))[k, k]
-            extra[name][i] = (measured[k] - _beam(MEASURED, ratio)[k]) / thin
-            beam = np.array([_beam(length, ratio)[k] for length in lengths])
-            exact = np.array([one[k] for one in found])
-            error[name][i] = 100 * (beam / exact - 1)
-            corrected[name][i] = 100 * ((beam + extra[name][i] * thin) / exact - 1)
+    lengths: Floats
+    ratios: Floats
+    error: dict[str, Floats]
+    corrected: dict[str, Floats]
+    extra: dict[str, Floats]
 
-    with run.step("finer, and fillets"):
-        rough = _without_ends(AT, FILLETED, ends)
-        fine = _without_ends(AT, FILLETED, ends, finer=True)
-        band = float(np.abs(rough / fine - 1)[list(OF.values())].max())
-        radii = QUICK_RADII if run.quick else RADII
-        fillet_ratios = (FILLETED,) if run.quick else FILLET_RATIOS
-        rounded = {
-            ratio: [_without_ends(AT, ratio, ends, radius * (ratio - 1) / 2) for radius in radii]
-            for ratio in fillet_ratios
-        }
-    beam = _beam(AT, FILLETED)
-    with_radius = {
-        name: 100 * (beam[k] / np.array([rough[k], *(one[k] for one in rounded[FILLETED])]) - 1)
-        for name, k in OF.items()
-    }
-
-    bent = np.array(
-        [
-            [100 * (_beam(AT, ratio)[4] / one[4] - 1) for one in found]
-            for ratio, found in rounded.items()
-        ]
-    )
-
-    verdicts = []
-    for ratio in (1.5,) if run.quick else (1.2, 2.0):
-        with run.step("bounds in torsion"):
-            shaft = _shaft(2.0, ratio)
-            bounds = torsion_bounds(shaft, maps.STEEL.shear_modulus, 0.12, 1 if run.quick else 4)
-        k = 1 / maps.by_elements(shaft, ratio / 3)[3, 3]
-        verdicts.append(
-            judge(
-                f"sharp step {ratio:g}, L = 2 d: torsional stiffness",
-                float(k),
-                bounds.middle,
-                tolerance=bounds.half_width / bounds.middle + band,
-                unit="N m/rad",
-                source="middle of two bounds by complementary energies (Michell 1899)",
-                reason="the truth lies between the bounds, and elements are too stiff by "
-                f"{band:.1g}",
-                measure="stiffness",
-                band=band * k,
-            )
-        )
-    with run.step("Saint-Venant's ends"):
-        direct = _bent_by_tractions(AT, FILLETED)
-    verdicts.append(
-        judge(
-            f"sharp step {FILLETED:g}, L = {AT:g} d: rotation by a moment, ends taken out by "
-            "those of uniform shafts",
-            float(rough[4]),
-            direct,
-            tolerance=2e-4,
-            unit="rad/(N m)",
-            source="the same shaft with linear tractions on both ends, which disturb nothing",
-            reason="what an end and the step feel of each other across the shorter half, "
-            "1 diameter of it: e^-5 (cylinder's slowest mode of bending) of an end's 1 %",
-            measure="rotation",
-            band=band * direct,
-        )
-    )
-    usable = lengths >= 2 * ratios[:, None]
-    for name in OF:
-        verdicts.append(
-            judge(
-                f"{name}: beam with the step's extra length, worst error of all steps where both "
-                "halves are as long as they are wide",
-                float(np.abs(corrected[name][usable]).max()),
-                0.0,
-                tolerance=1.0,
-                relative=False,
-                unit="%",
-                source="Fourier harmonics in the meridian",
-                reason="1 % is what a map's first line promises; Saint-Venant's principle keeps "
-                "the step's field apart from the ends' a diameter away",
-                measure="rotation" if name != "tension" else "deflection",
-                band=100 * band,
-            )
-        )
-    # a rigid disc on a half-space is stiffer than a shaft of any softness grown on to it
-    disc = 3 * np.pi / 64
-    verdicts.append(
-        judge(
-            "torsion: extra length of the largest step is that of a rigid disc on a half-space "
-            "or more",
-            float(extra["torsion"][-1] >= disc * (1 - ratios[-1] ** -3)),
-            1.0,
-            tolerance=0.0,
-            relative=False,
-            source="Reissner and Sagoci 1944, J. Appl. Phys. 15, 652-654: M = 16/3 G a^3 phi, so "
-            "G J / M phi is 3 pi / 64 d; less what the half-space has beyond the larger shaft, "
-            "which goes as 1 / r^3",
-            reason="yes or no: rigid is stiffer",
-            measure="identity",
-        )
-    )
-
-    shown = int(np.argmin(np.abs(ratios - 1.5)))
-    rows = []
-    for i, ratio in enumerate(ratios):
-        row: list[Any] = [float(ratio)]
-        for name in OF:
-            row.append(extra[name][i])
-            row += [maps.least_safe(lengths, error[name][i], level) for level in (1.0, 5.0)]
-        worst = np.max([np.abs(values[i]) for values in corrected.values()], axis=0)
-        rows.append([*row, maps.least_safe(lengths, worst, 1.0)])
-    columns = ["D over d"]
-    for name in OF:
-        columns += [f"{name}: extra length over d", f"{name}: 1 %", f"{name}: 5 %"]
-    columns.append("all three with their extra lengths: 1 %")
-    safe = maps.least_safe(lengths, error["bending"][shown], 5.0)
-    kept = maps.least_safe(lengths, corrected["bending"][shown], 5.0)
-    curves = []
-    for name, style in zip(OF, ("solid", "dash", "dot"), strict=True):
-        for values, what, width in (
-            (error[name], "", 2.5),
-            (corrected[name], " with extra length", 1.0),
-        ):
-            curves.append(
-                trace(
-                    name + what,
-                    lengths,
-                    np.abs(values[shown]),
-                    mode="lines+markers",
-                    line={"color": "black", "dash": style, "width": width},
-                )
-            )
-    axes = ("length of both halves over small diameter", "large over small diameter")
-    softest = {name: float(values.min()) for name, values in error.items()}
-    limits = [
-        Limit(
-            method="beam of sections, sharp step in the middle",
-            parameter=f"length over small diameter, step {ratios[shown]:g}, {name}",
-            low=maps.least_safe(lengths, error[name][shown], 5.0),
-            high=None,
-            criterion="flexibility within 5 %",
-            beyond=f"too stiff, up to {-softest[name]:.0f} % over all steps: the corner of the "
-            "large section carries nothing",
-            program="none; the harmonics of a whole shaft take tens of milliseconds (axisymmetric)",
-            remedy=f"{extra[name][shown]:.3f} d more of the small section: within 5 % from "
-            f"{maps.least_safe(lengths, corrected[name][shown], 5.0) or float('nan'):.2g} d",
-        )
-        for name in OF
-    ]
-    return CASE.results(
-        run,
-        summary=[
-            f"A sharp step from {ratios[shown]:g} d to d adds what {extra['torsion'][shown]:.3f} d "
-            f"of the small section would in torsion, {extra['bending'][shown]:.3f} d in bending "
-            f"and {extra['tension'][shown]:.3f} d in tension. Without it the beam is within 5 % in "
-            f"bending from L = {safe or float('nan'):.2g} d, with it from "
-            f"{kept or float('nan'):.2g} d.",
-            f"A fillet takes much of that away: at L = {AT:g} d the beam without one errs in "
-            f"bending by {with_radius['bending'][0]:+.1f} % where the step is sharp and by "
-            f"{with_radius['bending'][-1]:+.1f} % where the radius is the step's height.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="How ends are held",
-                items=[
-                    Text(
-                        text="Solid shafts, half of the length before the step and half behind it. "
-                        "The ends are rigid in the finite elements, and what they take away (see "
-                        "the case of uniform shafts) is taken out again, so that the error is the "
-                        "step's alone; in one point that was checked against tractions that need "
-                        "no such correction. In torsion rigid ends disturb nothing."
-                    ),
-                ],
-            ),
-            Section(
-                title="Sharp steps",
-                items=[
-                    chart(
-                        f"Error of the beam's flexibility, step {ratios[shown]:g}; shaded is where "
-                        "bending is within 5 %",
-                        curves,
-                        axes[0],
-                        "error without its sign [%]",
-                        ("x", "y"),
-                        safe=(safe, None),
-                    ),
-                    *(
-                        chart(
-                            f"{name.capitalize()} of a shaft with a sharp step: lines of 1, 5 and "
-                            "10 % error of the beam (too stiff)",
-                            maps.map_traces(lengths, ratios, error[name]),
-                            *axes,
-                            ("x",),
-                        )
-                        for name in OF
-                    ),
-                    Table(
-                        caption="Extra length of the small section that stands for the step, and "
-                        "least length over small diameter without it for errors within 1 % and "
-                        f"5 %; at {lengths[0]:g} the sweep begins, and an empty cell is beyond "
-                        f"{lengths[-1]:g}",
-                        columns=columns,
-                        rows=rows,
-                    ),
-                ],
-            ),
-            Section(
-                title="Fillets",
-                items=[
-                    chart(
-                        f"Error of the beam that knows no fillet, step {FILLETED:g}, "
-                        f"L = {AT:g} d, against the fillet's radius: below zero it is too stiff",
-                        [
-                            trace(
-                                name,
-                                [0.0, *radii],
-                                with_radius[name],
-                                mode="lines+markers",
-                                line={"color": "black", "dash": style},
-                            )
-                            for name, style in zip(OF, ("solid", "dash", "dot"), strict=True)
-                        ],
-                        "fillet radius over height of the step",
-                        "error [%]",
-                    ),
-                    *(
-                        []
-                        if run.quick
-                        else [
-                            chart(
-                                f"Bending of a shaft of L = {AT:g} d with a fillet that the beam "
-                                "does not know: lines of 1, 5 and 10 % error",
-                                maps.map_traces(
-                                    np.array(radii), np.array(fillet_ratios), bent, 0.0
-                                ),
-                                "fillet radius over height of the step",
-                                axes[1],
-                                ("x",),
-                            )
-                        ]
-                    ),
-                ],
-            ),
-        ],
-        limits=limits,
-        figures={
-            "length_over_diameter": lengths.tolist(),
-            "step_ratio": ratios.tolist(),
-            "extra_length": {name: values.tolist() for name, values in extra.items()},
-            "band": band,
-        },
-    )
+    def least(self, percent: Floats, level: float) -> float | None:
+        """Least length from which on errors are below a level [%]."""
+        return maps.least_safe(self.lengths, percent, level)
 
 
-def _shaft(length: float, ratio: float, fillet: float = 0.0) -> Any:
-    from fe_drivetrain.cases.stability import (
-        beam_maps as maps,
-    )
-
+def stepped(length: float, ratio: float, fillet: float = 0.0) -> Shaft:
+    """Half of the length before the step and half behind it."""
     return maps.stepped((length / 2, length / 2), (ratio, 1.0), fillet)
 
 
-def _beam(length: float, ratio: float) -> Any:
-    """Flexibilities (6,)."""
-    from fe_drivetrain.cases.stability import (
-        beam_maps as maps,
-    )
-
-    return maps.by_beam(_shaft(length, ratio)).diagonal()
+def beam(length: float, ratio: float) -> Floats:
+    """Flexibilities (6,) of the beam."""
+    return np.asarray(maps.by_beam(stepped(length, ratio)).diagonal())
 
 
-def _ends() -> Any:
+def of_ends() -> Floats:
     """What two rigid ends take off the flexibilities (6,) of a solid shaft of 1 m diameter."""
-    from fe_drivetrain.cases.stability import (
-        beam_maps as maps,
-    )
-
     shaft = maps.uniform(3.0)
-    return (maps.by_elements(shaft, 0.3) - maps.by_beam(shaft)).diagonal()
+    return np.asarray((maps.by_elements(shaft, 0.3) - maps.by_beam(shaft)).diagonal())
 
 
-def _without_ends(
-    length: float, ratio: float, ends: Any, fillet: float = 0.0, finer: bool = False
-) -> Any:
+def without_ends(
+    length: float, ratio: float, ends: Floats, fillet: float = 0.0, finer: bool = False
+) -> Floats:
     """Flexibilities (6,) of the elements, less the ends'; of rotations and along x alone."""
-    import numpy as np
-
-    from fe_drivetrain.cases.stability import (
-        beam_maps as maps,
-    )
-
-    shaft = _shaft(length, ratio, fillet)
+    shaft = stepped(length, ratio, fillet)
     size = ratio / 3
     found = maps.by_elements(shaft, size * 0.7, 8, 5) if finer else maps.by_elements(shaft, size)
     # along x as 1 / D, of rotations as 1 / D^3
-    power = np.array([1, 1, 1, 3, 3, 3])
-    return found.diagonal() - 0.5 * ends * (1 + ratio ** -power.astype(float))
+    power = np.array([1.0, 1.0, 1.0, 3.0, 3.0, 3.0])
+    return np.asarray(found.diagonal() - 0.5 * ends * (1 + ratio**-power))
 
 
-def _bent_by_tractions(length: float, ratio: float) -> float:
+def bent_by_tractions(length: float, ratio: float) -> float:
     """Rotation by a moment [rad/(N m)]: twice the energy of unit moments by linear tractions."""
-    import numpy as np
+    mesh = meridian(stepped(length, ratio), ratio / 3)
 
-    from fe_drivetrain.cases.stability import (
-        beam_maps as maps,
-    )
-    from fe_drivetrain.mesh import SAME_LENGTH
-    from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
-
-    mesh = meridian(_shaft(length, ratio), ratio / 3)
-
-    def traction(at: Any, normal: Any) -> Any:
+    def traction(at: Floats, normal: Floats) -> Floats:
         outer = np.where(at[:, 0] < length / 2, ratio, 1.0)
         return np.column_stack([64 / np.pi / outer**4 * at[:, 1] * normal[:, 0], 0 * at])
 
@@ -371,15 +100,219 @@ def _bent_by_tractions(length: float, ratio: float) -> float:
     return 2 * float(harmonic_response(mesh, maps.STEEL, 1, loads, held).energy[0])
 
 
-CASE = Case(
-    name="stability/beam_theory_steps",
-    title="Beam theory against elasticity: stepped shafts, by length, step and fillet",
+def mapped(run: Run, lengths: Floats, ratios: Floats, ends: Floats) -> Map:
+    """Errors of the beam on sharp steps."""
+    error, corrected = ({name: np.empty((len(ratios), len(lengths))) for name in OF} for _ in "ab")
+    extra = {name: np.empty(len(ratios)) for name in OF}
+    for i, ratio in enumerate(ratios):
+        run.report(f"step {ratio:g}")
+        with run.step("sharp steps"):
+            measured = without_ends(MEASURED, ratio, ends)
+            found = np.array([without_ends(length, ratio, ends) for length in lengths])
+        of_beam = np.array([beam(length, ratio) for length in lengths])
+        for name, k in OF.items():
+            thin = maps.by_beam(maps.uniform(1.0))[k, k]
+            extra[name][i] = (measured[k] - beam(MEASURED, ratio)[k]) / thin
+            error[name][i] = 100 * (of_beam[:, k] / found[:, k] - 1)
+            corrected[name][i] = 100 * ((of_beam[:, k] + extra[name][i] * thin) / found[:, k] - 1)
+    return Map(lengths, ratios, error, corrected, extra)
+
+
+@case(
+    "Beam theory against elasticity: stepped shafts, by length, step and fillet",
     source="Michell 1899, Proc. London Math. Soc. 31, 130-146; Reissner and Sagoci 1944, J. Appl. "
     "Phys. 15, 652-654",
-    run=run,
 )
+def run(run: Run, page: Page) -> None:
+    """Map the errors of sharp steps, then of fillets; correct the beam; check both."""
+    lengths = np.append(np.geomspace(0.5, 30.0, 4 if run.quick else 7), AT)
+    lengths.sort()
+    ends = of_ends()
+    found = mapped(run, lengths, np.array(QUICK_RATIOS if run.quick else RATIOS), ends)
+    with run.step("finer, and fillets"):
+        sharp = without_ends(AT, FILLETED, ends)
+        fine = without_ends(AT, FILLETED, ends, finer=True)
+        band = float(np.abs(sharp / fine - 1)[list(OF.values())].max())
+        radii = QUICK_RADII if run.quick else RADII
+        filleted = {
+            ratio: np.array(
+                [without_ends(AT, ratio, ends, radius * (ratio - 1) / 2) for radius in radii]
+            )
+            for ratio in ((FILLETED,) if run.quick else FILLET_RATIOS)
+        }
+    check(run, page, found, sharp, band)
+    with_radius = np.vstack([sharp, filleted[FILLETED]])
+    error = 100 * (beam(AT, FILLETED) / with_radius - 1)
+    show_steps(page, found)
+    page.answer(
+        f"A fillet takes much of that away: at L = {AT:g} d the beam without one errs in bending "
+        f"by {error[0, OF['bending']]:+.1f} % where the step is sharp and by "
+        f"{error[-1, OF['bending']]:+.1f} % where the radius is the step's height."
+    )
+    page.section("Fillets")
+    page.chart(
+        f"Error of the beam, which has no fillet, step {FILLETED:g}, L = {AT:g} d, against the "
+        "fillet's radius: below zero it is too stiff",
+        [
+            maps.curve(name, np.array([0.0, *radii]), error[:, k], DASHES[name], signed=True)
+            for name, k in OF.items()
+        ],
+        "fillet radius over height of the step",
+        "error [%]",
+    )
+    if not run.quick:
+        show_fillets(page, radii, filleted)
+    page.data("length_over_diameter", lengths)
+    page.data("step_ratio", found.ratios)
+    page.data("extra_length", found.extra)
+    page.data("band", band)
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
+    """Bounds in torsion, ends as Saint-Venant has them, the corrected beam, the largest step."""
+    for ratio in (1.5,) if run.quick else (1.2, 2.0):
+        with run.step("bounds in torsion"):
+            shaft = stepped(2.0, ratio)
+            bounds = torsion_bounds(shaft, maps.STEEL.shear_modulus, 0.12, 1 if run.quick else 4)
+        k = 1 / maps.by_elements(shaft, ratio / 3)[3, 3]
+        page.equals(
+            f"sharp step {ratio:g}, L = 2 d: torsional stiffness",
+            k,
+            bounds.middle,
+            within=bounds.half_width / bounds.middle + band,
+            unit="N m/rad",
+            why=f"the truth lies between the bounds, and elements are too stiff by {band:.1g}",
+            source="middle of two bounds by complementary energies (Michell 1899)",
+            measure="stiffness",
+            band=band * k,
+        )
+    with run.step("Saint-Venant's ends"):
+        direct = bent_by_tractions(AT, FILLETED)
+    page.equals(
+        f"sharp step {FILLETED:g}, L = {AT:g} d: rotation by a moment, ends taken out by those of "
+        "uniform shafts",
+        sharp[OF["bending"]],
+        direct,
+        within=2e-4,
+        unit="rad/(N m)",
+        why="what an end and the step feel of each other across the shorter half, 1 diameter of "
+        "it: e^-5 (cylinder's slowest mode of bending) of an end's 1 %",
+        source="the same shaft with linear tractions on both ends, which disturb nothing",
+        measure="rotation",
+        band=band * direct,
+    )
+    usable = found.lengths >= 2 * found.ratios[:, None]
+    for name, percent in found.corrected.items():
+        page.at_most(
+            f"{name}: beam with the step's extra length, worst error of all steps where both "
+            "halves are as long as they are wide",
+            np.abs(percent[usable]).max(),
+            1.0,
+            unit="%",
+            why="1 % is the first line of a map; Saint-Venant's principle keeps the step's field "
+            "apart from the ends' a diameter away",
+            source="Fourier harmonics in the meridian",
+            measure="rotation" if name != "tension" else "deflection",
+            band=100 * band,
+        )
+    page.at_least(
+        "torsion: extra length of the largest step, against that of a rigid disc on a half-space",
+        found.extra["torsion"][-1],
+        3 * np.pi / 64 * (1 - found.ratios[-1] ** -3),
+        unit="d",
+        why="a rigid disc on a half-space is stiffer than a shaft of any softness grown on to it",
+        source="Reissner and Sagoci 1944, J. Appl. Phys. 15, 652-654: M = 16/3 G a^3 phi, so G J / "
+        "M phi is 3 pi / 64 d; less what the half-space has beyond the larger shaft, which goes as "
+        "1 / r^3",
+        band=band * found.extra["torsion"][-1],
+    )
+
+
+def show_steps(page: Page, found: Map) -> None:
+    """Answer, charts, table and limits of sharp steps."""
+    shown = int(np.argmin(np.abs(found.ratios - 1.5)))
+    step, lengths = found.ratios[shown], found.lengths
+    extra = {name: values[shown] for name, values in found.extra.items()}
+    safe = found.least(found.error["bending"][shown], 5.0)
+    kept = found.least(found.corrected["bending"][shown], 5.0)
+    page.answer(
+        f"A sharp step from {step:g} d to d adds what {extra['torsion']:.3f} d of the small "
+        f"section would in torsion, {extra['bending']:.3f} d in bending and "
+        f"{extra['tension']:.3f} d in tension. Without it the beam is within 5 % in bending from "
+        f"L = {safe or np.nan:.2g} d, with it from {kept or np.nan:.2g} d."
+    )
+    for name in OF:
+        corrected = found.least(found.corrected[name][shown], 5.0)
+        page.limit(
+            "beam of sections, sharp step in the middle",
+            f"length over small diameter, step {step:g}, {name}",
+            low=found.least(found.error[name][shown], 5.0),
+            criterion="flexibility within 5 %",
+            beyond=f"too stiff, up to {-found.error[name].min():.0f} % over all steps: the corner "
+            "of the large section carries nothing",
+            program="none; the harmonics of a whole shaft take tens of milliseconds (axisymmetric)",
+            remedy=f"{extra[name]:.3f} d more of the small section: within 5 % from "
+            f"{corrected or np.nan:.2g} d",
+        )
+    page.section("How ends are held")
+    page.text(
+        "Solid shafts, half of the length before the step and half behind it. The ends are rigid "
+        "in the finite elements, and what they take away (see the case of uniform shafts) is taken "
+        "out again, so that the error is the step's alone; in one point that was checked against "
+        "tractions that need no such correction. In torsion rigid ends disturb nothing."
+    )
+    page.section("Sharp steps")
+    along = "length of both halves over small diameter"
+    page.chart(
+        f"Error of the beam's flexibility, step {step:g}; shaded is where bending is within 5 %",
+        [
+            maps.curve(name + words, lengths, percent[name][shown], DASHES[name], width)
+            for name in OF
+            for percent, words, width in (
+                (found.error, "", 2.5),
+                (found.corrected, " with extra length", 1.0),
+            )
+        ],
+        along,
+        "error without its sign [%]",
+        "xy",
+        (safe, None),
+    )
+    for name in OF:
+        page.chart(
+            f"{name.capitalize()} of a shaft with a sharp step: lines of 1, 5 and 10 % error of "
+            "the beam (too stiff)",
+            maps.map_traces(lengths, found.ratios, found.error[name]),
+            along,
+            "large over small diameter",
+            "x",
+        )
+    rows = []
+    for i, ratio in enumerate(found.ratios):
+        row: dict[str, float | None] = {"D over d": ratio}
+        for name in OF:
+            row[f"{name}: extra length over d"] = found.extra[name][i]
+            row[f"{name}: 1 %"] = found.least(found.error[name][i], 1.0)
+            row[f"{name}: 5 %"] = found.least(found.error[name][i], 5.0)
+        worst = np.max([np.abs(percent[i]) for percent in found.corrected.values()], axis=0)
+        rows.append(row | {"all three with their extra lengths: 1 %": found.least(worst, 1.0)})
+    page.table(
+        "Extra length of the small section that replaces the step, and least length over small "
+        f"diameter without it for errors within 1 % and 5 %; at {lengths[0]:g} the sweep begins, "
+        f"and an empty cell is beyond {lengths[-1]:g}",
+        rows,
+    )
+
+
+def show_fillets(page: Page, radii: Sequence[float], filleted: dict[float, Floats]) -> None:
+    """Map of the beam's error in bending over fillets of several steps."""
+    k = OF["bending"]
+    bent = [100 * (beam(AT, ratio)[k] / one[:, k] - 1) for ratio, one in filleted.items()]
+    page.chart(
+        f"Bending of a shaft of L = {AT:g} d with a fillet, which the beam has not: lines of 1, 5 "
+        "and 10 % error",
+        maps.map_traces(np.array(radii), np.array(list(filleted)), np.array(bent), 0.0),
+        "fillet radius over height of the step",
+        "large over small diameter",
+        "x",
+    )

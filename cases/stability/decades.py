@@ -1,7 +1,5 @@
 """Sweeps over decades: the range that is safe, and the slope of an error on logarithmic axes."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -16,7 +14,19 @@ FOUR_DIGITS = 1e-4
 
 
 def decades(low: float, high: float, per_decade: float) -> Floats:
-    """Values from 10^low to 10^high, so many a decade."""
+    """Values from 10^low to 10^high, evenly spaced in logarithms.
+
+    Parameters
+    ----------
+    low, high : float
+        Exponents of the first and the last value.
+    per_decade : float
+        Number of values to a decade.
+
+    Returns
+    -------
+    values : (n,) array
+    """
     return np.asarray(10.0 ** np.linspace(low, high, round((high - low) * per_decade) + 1))
 
 
@@ -27,16 +37,16 @@ def safe_range(
 
     Parameters
     ----------
-    x
-        (n,) ascending.
-    error
-        (n,) not a number where there is no answer: that is not safe.
-    criterion
+    x : (n,) array
+        Ascending.
+    error : (n,) array
+        Not a number where there is no answer: that is not safe.
+    criterion : float
         Largest error that is safe.
 
     Returns
     -------
-    low, high
+    low, high : float or None
         Ends of the run of safe points that holds the least error; None where the run reaches the
         end of the sweep.
 
@@ -56,16 +66,63 @@ def safe_range(
     return low, high
 
 
-def slope(x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)) -> float:
-    """Exponent b of y = a x^b that fits best in logarithms, of the points with y within bounds.
+def last_within(x: ArrayLike, error: ArrayLike, criterion: float) -> float | None:
+    """The last point of a sweep up to which all errors stay within a criterion.
 
-    NaN from fewer than two points.
+    Parameters
+    ----------
+    x : (n,) array
+        In the order of the sweep.
+    error : (n,) array
+        With or without signs; not a number where there is no answer, which is not within.
+    criterion : float
+        Largest size of an error that is accepted.
+
+    Returns
+    -------
+    last : float or None
+        None where not even the first error is within.
+    """
+    within = np.abs(np.asarray(error, dtype=float)) <= criterion
+    count = len(within) if within.all() else int(np.argmin(within))
+    return float(np.asarray(x, dtype=float)[count - 1]) if count else None
+
+
+def slope(x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)) -> float:
+    """The exponent of `fitted_exponent` alone."""
+    return fitted_exponent(x, y, within)[0]
+
+
+def fitted_exponent(
+    x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)
+) -> tuple[float, float | None]:
+    """Exponent b of y = a x^b that fits best in logarithms, and how well the points determine it.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+        Positive x; y that is not a number is left out.
+    within : tuple of float
+        Only points with y between these are fitted.
+
+    Returns
+    -------
+    exponent : float
+        NaN from fewer than two points.
+    band : float or None
+        Twice its standard error, from the scatter of the points about the line; None from fewer
+        than three points.
     """
     at, value = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     good = np.isfinite(value) & (value > within[0]) & (value < within[1])
     if good.sum() < 2:
-        return float("nan")
-    return float(np.polyfit(np.log10(at[good]), np.log10(value[good]), 1)[0])
+        return math.nan, None
+    log_x, log_y = np.log10(at[good]), np.log10(value[good])
+    b, a = np.polyfit(log_x, log_y, 1)
+    if good.sum() < 3:
+        return float(b), None
+    variance = ((log_y - a - b * log_x) ** 2).sum() / (good.sum() - 2)
+    return float(b), float(2.0 * np.sqrt(variance / ((log_x - log_x.mean()) ** 2).sum()))
 
 
 def shown(value: float | None) -> str:

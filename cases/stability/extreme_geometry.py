@@ -1,248 +1,234 @@
 """Dimensions driven to their limits and beyond: refused in one sentence, or meshed right."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
 
-#: By name: what it is, its values, and for a quick run.
-SWEEPS: dict[str, tuple[str, tuple[float, ...], tuple[float, ...]]] = {
-    "bored": (
+from fe_drivetrain.cases import case
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation import extreme_parts
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """One dimension.
+
+    Attributes
+    ----------
+    make : callable
+        Makes the part of a value.
+    parameter : str
+        What is varied.
+    values, quick : tuple of float
+        Its values, and those of a quick run.
+    program, remedy : str
+        What the program does beyond the limits, and what the user can do.
+    finer, quick_finer : tuple of float
+        Values that a finer mesh makes possible.
+    """
+
+    make: Callable[..., Any]
+    parameter: str
+    values: tuple[float, ...]
+    quick: tuple[float, ...]
+    program: str
+    remedy: str
+    finer: tuple[float, ...] = ()
+    quick_finer: tuple[float, ...] = ()
+
+
+SWEEPS = (
+    Sweep(
+        extreme_parts.bored,
         "bore over outer diameter of a shaft of 0.4 m",
         (0.5, 0.6, 0.7, 0.8, 0.9, 0.98, 0.99, 0.999, 0.99999, 1.0),
         (0.5, 0.9, 0.99999, 1.0),
+        "refuses with the largest mesh size that the wall allows",
+        "mesh size of two walls",
+        (0.8, 0.9, 0.98, 0.99),
+        (0.9,),
     ),
-    "pierced": (
+    Sweep(
+        extreme_parts.pierced,
         "thin bore over outer diameter of a shaft of 0.4 m",
         (1e-6, 1e-5, 1e-4, 0.1, 0.2, 0.4),
         (1e-5, 1e-4, 0.2),
+        "refuses a radius below 1e-5 m, and more than a million elements, foreseen",
+        "leave the bore out: solid",
     ),
-    "filleted": (
+    Sweep(
+        extreme_parts.filleted,
         "fillet radius over height of the step of 0.05 m",
         (1e-5, 0.05, 0.1, 0.3, 0.6, 0.9, 0.999, 1 - 1e-7, 1.0, 1.01, 2.0),
         (1e-5, 0.3, 1 - 1e-7, 1.0, 1.01, 2.0),
+        "refuses with the largest fillet that the step allows, or the detail left over",
+        "fillet as large as the step, or one that leaves a flat of 1e-5 m",
     ),
-    "collared": (
+    Sweep(
+        extreme_parts.collared,
         "length of a collar of 0.5 m on a shaft of 0.4 m [m]",
         (0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1),
         (0.0, 1e-7, 1e-3, 0.1),
+        "refuses a length of 0 and details below 1e-5 m; refines where elements fold",
+        "leave the collar out",
     ),
-    "seated": (
+    Sweep(
+        extreme_parts.seated,
         "width of the bearing over that of its seat of 0.4 m",
         (0.25, 0.5, 0.9, 0.99, 0.995, 1 - 1e-5, 1.0, 1 + 1e-5, 1.2),
         (0.5, 1 - 1e-5, 1.0, 1.2),
+        "refuses with the lengths on which a seat can lie, or the detail left over",
+        "bearing as wide as the seat, or with a rim of 1e-5 m beside it",
     ),
-    "walled": (
+    Sweep(
+        extreme_parts.walled,
         "wall of the housing over the mesh size of 0.15 m",
         (0.05, 0.1, 0.2, 0.3, 0.34, 0.5, 1.0, 2.0),
         (0.05, 0.2, 0.5),
+        "refuses with the largest mesh size that the wall allows",
+        "mesh size of two walls",
+        (0.2, 0.3),
+        (0.3,),
     ),
-}
-#: Where a finer mesh mends a refusal: parameter values of the second curve.
-FINE = {"bored": (0.8, 0.9, 0.98, 0.99), "walled": (0.2, 0.3)}
-QUICK_FINE = {"bored": (0.9,), "walled": (0.3,)}
-
-REMEDIES = {
-    "bored": "mesh size of two walls",
-    "pierced": "leave the bore out: solid",
-    "filleted": "fillet as large as the step, or one that leaves a flat of 1e-5 m",
-    "collared": "leave the collar out",
-    "seated": "bearing as wide as the seat, or with a rim of 1e-5 m beside it",
-    "walled": "mesh size of two walls",
-}
-PROGRAM = {
-    "bored": "refuses with the largest mesh size that the wall allows",
-    "pierced": "refuses a radius below 1e-5 m, and more than a million elements, foreseen",
-    "filleted": "refuses with the largest fillet that the step allows, or the detail left over",
-    "collared": "refuses a length of 0 and details below 1e-5 m; refines where elements fold",
-    "seated": "refuses with the lengths on which a seat can lie, or the detail left over",
-    "walled": "refuses with the largest mesh size that the wall allows",
-}
-
-
-def run(run: Run) -> Any:
-    """Mesh each value that is not refused, and compare with the exact shape."""
-    from functools import partial
-
-    import numpy as np
-
-    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.validation import (
-        extreme_parts,
-    )
-
-    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
-    verdicts, sections, limits, bounds = [], [], [], []
-    number = refused_in_all = 0
-    for name, (parameter, values, quick_values) in SWEEPS.items():
-        make = getattr(extreme_parts, name)
-        found = []
-        for value in quick_values if run.quick else values:
-            run.report(f"{parameter}: {value:g}")
-            with run.step(name):
-                found.append(extreme_parts.outcome(value, make))
-        fine = []
-        for value in (QUICK_FINE if run.quick else FINE).get(name, ()):
-            with run.step(f"{name}, finer mesh"):
-                fine.append(extreme_parts.outcome(value, partial(make, fine=True)))
-        every = [*found, *fine]
-        number += len(every)
-        sound = [o for o in every if not o.sentence]
-        refused = [o for o in found if o.sentence]
-        refused_in_all += len(refused)
-        inside = extreme_parts.meshed(found)
-        both = extreme_parts.meshed(every)
-        verdicts += [
-            judge(
-                f"{parameter}: error of volumes and named areas over what parabolas round a circle "
-                "allow, worst of what was meshed",
-                max(o.allowed for o in sound),
-                0.0,
-                tolerance=1.0,
-                relative=False,
-                source="exact volumes and areas (cylinders, spheres, Pappus)",
-                reason="circles of parabolas, three quarters of the elements a turn asked for",
-            ),
-            judge(
-                f"{parameter}: folded elements and other faults in what was meshed",
-                float(sum(o.folded + o.faults for o in sound)),
-                0.0,
-                tolerance=0.0,
-                relative=False,
-                source="fe_drivetrain.mesh.checks",
-                reason="what is meshed is sound",
-                measure="identity",
-            ),
-            judge(
-                f"{parameter}: refusals that lack the allowed range or the mend, or are gmsh's",
-                float(sum(not o.clear for o in every)),
-                0.0,
-                tolerance=0.0,
-                relative=False,
-                source="one sentence: object, value, allowed range, mend",
-                reason="each one",
-                measure="identity",
-            ),
-            judge(
-                f"{parameter}: some are refused and some are meshed, with the remedy all of its "
-                "values",
-                float(bool(refused) and len(inside) > 0 and not any(o.sentence for o in fine)),
-                1.0,
-                tolerance=0.0,
-                relative=False,
-                source="this sweep",
-                reason="a sweep that fails nowhere is not driven far enough",
-                measure="identity",
-            ),
-        ]
-        traces = [
-            trace(
-                "meshed",
-                [o.value for o in found if not o.sentence],
-                [max(o.error, 1e-16) for o in found if not o.sentence],
-                mode="lines+markers",
-            ),
-            trace("refused", [o.value for o in refused], [1.0] * len(refused), True, marker=cross),
-        ]
-        if fine:
-            traces.append(
-                trace(
-                    f"{REMEDIES[name]}: meshed",
-                    [o.value for o in fine],
-                    [max(o.error, 1e-16) for o in fine],
-                    mode="lines+markers",
-                )
-            )
-        low, high = float(inside[0]), float(inside[-1])
-        below = any(o.value < low for o in refused)
-        above = any(o.value > high for o in refused)
-        safe = (low if below else None, high if above else None)
-        positive = [o.value for o in every if o.value > 0]
-        spread = max(positive) / min(positive) > 100
-        sections.append(
-            Section(
-                title=parameter[0].upper() + parameter[1:],
-                items=[
-                    chart(
-                        "Largest relative error of a volume or a named area; refused values are "
-                        "crosses (0 is in the table alone)",
-                        traces,
-                        parameter,
-                        "relative error",
-                        ("x", "y") if spread else ("y",),
-                        safe=safe,
-                    ),
-                    Table(
-                        caption="Every value",
-                        columns=[parameter, "outcome", "largest error", "elements"],
-                        rows=[
-                            [
-                                o.value,
-                                o.sentence or "meshed, sound",
-                                None if np.isnan(o.error) else o.error,
-                                o.elements or None,
-                            ]
-                            for o in every
-                        ],
-                    ),
-                ],
-            )
-        )
-        gaps = [o.value for o in refused if low < o.value < high]
-        limits.append(
-            Limit(
-                method="building and meshing a part",
-                parameter=parameter + (f" (gaps: {', '.join(map(_short, gaps))})" if gaps else ""),
-                low=safe[0],
-                high=safe[1],
-                criterion="volume and areas exact but for parabolas round circles; no fault",
-                beyond="refused in one sentence; nothing is meshed wrong",
-                program=PROGRAM[name],
-                remedy=REMEDIES[name]
-                + (f": meshed from {both[0]:g} to {both[-1]:g}" if fine else ""),
-            )
-        )
-        bounds.append(f"{parameter} {_short(low)} to {_short(high)}")
-    sections.append(
-        Section(
-            title="Why details are refused",
-            items=[
-                Text(
-                    text="The CAD kernel takes points nearer than 1e-7 m for one, and before "
-                    "that a detail needs elements of its own size all round the shaft. Steps, rims "
-                    "and bores below 1e-5 m, less than the tolerance of any turned part of this "
-                    "size, are refused; so is what would make more than a million elements, "
-                    "which is foreseen from area, length and size of each face before gmsh begins."
-                )
-            ],
-        )
-    )
-    return CASE.results(
-        run,
-        summary=[
-            f"Of {number} shapes at and beyond their limits {refused_in_all} are refused in one "
-            "sentence with the allowed range, and all others are meshed without a fault, with "
-            "volumes and named areas exact but for the parabolas that make the circles.",
-            "Meshed as asked: " + "; ".join(bounds) + ".",
-        ],
-        verdicts=verdicts,
-        sections=sections,
-        limits=limits,
-    )
-
-
-def _short(value: float) -> str:
-    return f"1 - {1 - value:.0e}" if 0 < 1 - value < 1e-3 else f"{value:g}"
-
-
-CASE = Case(
-    name="stability/extreme_geometry",
-    title="Extreme dimensions: bores, fillets, collars, seats and walls, refused or meshed right",
-    source="exact volumes and areas of cylinders, spheres and fillets (Pappus)",
-    run=run,
 )
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+@case(
+    "Extreme dimensions: bores, fillets, collars, seats and walls, refused or meshed right",
+    source="exact volumes and areas of cylinders, spheres and fillets (Pappus)",
+)
+def run(run: Run, page: Page) -> None:
+    """Mesh each value that is not refused, and compare with the exact shape."""
+    number = refused = 0
+    bounds = []
+    for sweep in SWEEPS:
+        found, fine = outcomes(run, sweep)
+        number += len(found) + len(fine)
+        refused += sum(bool(o.sentence) for o in found)
+        bounds.append(show(page, sweep, found, fine))
+    page.section("Why details are refused")
+    page.text(
+        "The CAD kernel takes points nearer than 1e-7 m for one, and before that a detail needs "
+        "elements of its own size all round the shaft. Steps, rims and bores below 1e-5 m, less "
+        "than the tolerance of any turned part of this size, are refused; so is what would make "
+        "more than a million elements, which is foreseen from area, length and size of each face "
+        "before gmsh begins."
+    )
+    page.answer(
+        f"Of {number} shapes at and beyond their limits {refused} are refused in one sentence with "
+        "the allowed range, and all others are meshed without a fault, with volumes and named "
+        "areas exact but for the parabolas that make the circles.",
+        f"Meshed as asked: {'; '.join(bounds)}.",
+    )
+
+
+Outcomes = list[extreme_parts.Outcome]
+
+
+def outcomes(run: Run, sweep: Sweep) -> tuple[Outcomes, Outcomes]:
+    """What comes of each value, and of some in a finer mesh."""
+    name, found, fine = sweep.make.__name__, [], []
+    for value in sweep.quick if run.quick else sweep.values:
+        run.report(f"{sweep.parameter}: {value:g}")
+        with run.step(name):
+            found.append(extreme_parts.outcome(value, sweep.make))
+    for value in sweep.quick_finer if run.quick else sweep.finer:
+        with run.step(f"{name}, finer mesh"):
+            fine.append(extreme_parts.outcome(value, partial(sweep.make, fine=True)))
+    return found, fine
+
+
+def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
+    """Checks, chart, table and limit of one dimension; its range in words."""
+    parameter, every = sweep.parameter, [*found, *fine]
+    sound = [o for o in found if not o.sentence]
+    refused = [o for o in found if o.sentence]
+    inside, both = extreme_parts.meshed(found), extreme_parts.meshed(every)
+    page.at_most(
+        f"{parameter}: error of volumes and named areas over what parabolas round a circle allow, "
+        "worst of what was meshed",
+        max(o.allowed for o in every if not o.sentence),
+        1.0,
+        why="circles of parabolas, three quarters of the elements a turn asked for",
+        source="exact volumes and areas (cylinders, spheres, Pappus)",
+    )
+    page.vanishes(
+        f"{parameter}: folded elements and other faults in what was meshed",
+        sum(o.folded + o.faults for o in every if not o.sentence),
+        within=0.0,
+        why="a mesh that the program accepts is solved without further checks",
+        source="fe_drivetrain.mesh.checks",
+    )
+    page.vanishes(
+        f"{parameter}: refusals without the allowed range or the fix, or in gmsh's words",
+        sum(not o.clear for o in every),
+        within=0.0,
+        why="every refusal has to enable the user to correct the value",
+        source="one sentence: object, value, allowed range, fix",
+    )
+    page.holds(
+        f"{parameter}: some are refused and some are meshed, with the remedy all of its values",
+        bool(refused) and len(inside) > 0 and not any(o.sentence for o in fine),
+        why="a sweep that fails nowhere is not driven far enough",
+        source="this sweep",
+    )
+    low, high = float(inside[0]), float(inside[-1])
+    safe = (
+        low if any(o.value < low for o in refused) else None,
+        high if any(o.value > high for o in refused) else None,
+    )
+    gaps = [o.value for o in refused if low < o.value < high]
+    page.limit(
+        "building and meshing a part",
+        parameter + (f" (gaps: {', '.join(map(short, gaps))})" if gaps else ""),
+        low=safe[0],
+        high=safe[1],
+        criterion="volume and areas exact but for parabolas round circles; no fault",
+        beyond="refused in one sentence; nothing is meshed wrong",
+        program=sweep.program,
+        remedy=sweep.remedy + (f": meshed from {both[0]:g} to {both[-1]:g}" if fine else ""),
+    )
+    page.section(parameter[0].upper() + parameter[1:])
+    traces = [curve("meshed", sound)]
+    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
+    values = [o.value for o in refused]
+    traces.append(trace("refused", values, [1.0] * len(refused), True, marker=cross))
+    if fine:
+        traces.append(curve(f"{sweep.remedy}: meshed", fine))
+    positive = [o.value for o in every if o.value > 0]
+    page.chart(
+        "Largest relative error of a volume or a named area; refused values are crosses (0 is in "
+        "the table alone)",
+        traces,
+        parameter,
+        "relative error",
+        "xy" if max(positive) / min(positive) > 100 else "y",
+        safe,
+    )
+    rows = [
+        {
+            parameter: o.value,
+            "outcome": o.sentence or "meshed, sound",
+            "largest error": None if np.isnan(o.error) else o.error,
+            "elements": o.elements or None,
+        }
+        for o in every
+    ]
+    page.table("Every value", rows)
+    page.data(parameter, rows)
+    return f"{parameter} {short(low)} to {short(high)}"
+
+
+def curve(name: str, meshed: Outcomes) -> Any:
+    """Errors of what was meshed."""
+    errors = [max(o.error, 1e-16) for o in meshed]
+    return trace(name, [o.value for o in meshed], errors, mode="lines+markers")
+
+
+def short(value: float) -> str:
+    """A number in few digits, also where it is close to one."""
+    return f"1 - {1 - value:.0e}" if 0 < 1 - value < 1e-3 else f"{value:g}"

@@ -1,9 +1,7 @@
 """A small case that is killed, starved and run twice at once; a program of its own.
 
-It is started afresh, so that it may fork: its children are what faults happen to.
+It is a process of its own, so that it may fork: the faults happen to its children.
 """
-
-from __future__ import annotations
 
 import json
 import os
@@ -31,11 +29,11 @@ from fe_drivetrain.interfaces import freedoms
 from fe_drivetrain.mesh import cached_mesh, write
 from fe_drivetrain.mesh.cached import _content
 from fe_drivetrain.operator import rigid_motions, sparsity
-from fe_drivetrain.report import Environment, Results, page, read_results
+from fe_drivetrain.report import Environment, Results, read_results
+from fe_drivetrain.report.page import render
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run, run_case, run_cases, run_into
+from fe_drivetrain.suite import Case, Page, Run, run_case, run_cases, run_into
 
 OLD, NEW, BROKEN = "old", "new", "broken"
 FILES = ("report.html", "results.json", "shaft.vtu")
@@ -43,8 +41,8 @@ SHAFT = Shaft(front=0.0, sections=(ShaftSection(length=0.6, outer_diameter=0.4),
 SIZES = MeshSizes(shaft=0.4, elements_per_turn=6)
 
 
-def small(run: Run) -> Results:
-    """Torsional stiffness of a short shaft: mesh, solve, write."""
+def small(run: Run, page: Page) -> None:
+    """Torsional stiffness of a short shaft: mesh, solve, write. Its answer is the run's mark."""
     with run.step("mesh"):
         mesh = cached_mesh(SHAFT, [], {}, SIZES, frozenset())
     with run.step("solve"):
@@ -60,21 +58,8 @@ def small(run: Run) -> Results:
     with run.step("write"):
         mark = str(run.settings["mark"])
         write(mesh, run.folder / "shaft.vtu", {mark: found.u.reshape(-1, 3)})
-    return results(mark, stiffness)
-
-
-def results(mark: str, stiffness: float) -> Results:
-    """Whose they are, and the one figure."""
-    return Results(
-        case="faults/small",
-        title="Small case",
-        source="Saint-Venant",
-        summary=[mark],
-        verdicts=[],
-        sections=[],
-        figures={"stiffness": stiffness},
-        environment=Environment(date="", python="", platform="", versions={}, settings={}),
-    )
+    page.answer(mark)
+    page.data("stiffness", stiffness)
 
 
 MESH_CONTENT = _content(SHAFT, [], {}, SIZES, frozenset())
@@ -87,13 +72,13 @@ class Killed:
 
     Attributes
     ----------
-    moment
+    moment : float
         Of the kill [s] after the start.
-    step
+    step : str
         During which step of the run.
-    found
+    found : str
         Whose results are there: `OLD`, `NEW`, or `BROKEN`.
-    hidden
+    hidden : int
         Unfinished files and folders beside the results.
     """
 
@@ -105,10 +90,10 @@ class Killed:
 
 @dataclass(frozen=True)
 class Fault:
-    """Another fault: what it is, what the program said and returned, and what was left."""
+    """Another fault: what it is, the program's message and exit status, and what was left."""
 
     fault: str
-    said: str
+    message: str
     status: int
     found: str
     hidden: int
@@ -120,17 +105,17 @@ class Found:
 
     Attributes
     ----------
-    seconds
-        One run, unharmed [s].
-    stiffness
-        What it computes [N m/rad].
-    killed, killed_in_place
+    seconds : float
+        One run without faults [s].
+    stiffness : float
+        Its result [N m/rad].
+    killed, killed_in_place : list of Killed
         As the program writes, and writing straight into the result folder.
-    left
+    left : int
         Hidden files and folders after one more run.
-    faults
+    faults : list of Fault
         The others.
-    damaged
+    damaged : tuple of int
         Damages of the cache tried, and for how many of them the stiffness was another.
     """
 
@@ -161,7 +146,7 @@ def hidden(*folders: Path) -> int:
 
 
 def child(work: Callable[[], int]) -> tuple[int, int]:
-    """Start it in a child process: its number, and a pipe that tells what it says."""
+    """Start it in a child process: its number, and a pipe from its error output."""
     read, write_end = os.pipe()
     pid = os.fork()
     if pid == 0:
@@ -177,12 +162,12 @@ def child(work: Callable[[], int]) -> tuple[int, int]:
 
 
 def ended(pid: int, read: int) -> tuple[int, str]:
-    """Wait for a child: its status, and what it said."""
-    said = b""
+    """Wait for a child: its status, and what it wrote."""
+    written = b""
     while part := os.read(read, 65536):
-        said += part
+        written += part
     os.close(read)
-    return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), said.decode(errors="replace")
+    return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), written.decode(errors="replace")
 
 
 def run_new(out: Path) -> int:
@@ -191,7 +176,7 @@ def run_new(out: Path) -> int:
 
 
 def run_in_place(out: Path) -> int:
-    """As a program does it that knows no better: it empties the folder and writes into it."""
+    """As a program without protection does it: it empties the folder and writes into it."""
     shutil.rmtree(out)
     out.mkdir()
     with show_steps() as report:
@@ -204,7 +189,7 @@ def experiment(folder: Path, moments: int) -> Found:
     caches, out = folder / "cache", folder / "reports" / "small"
     os.environ[CACHE_VARIABLE] = str(caches)
 
-    def afresh() -> None:
+    def reset() -> None:
         """Old results, and no mesh in the cache."""
         for path in out.parent.glob("*"):
             shutil.rmtree(path)
@@ -216,7 +201,7 @@ def experiment(folder: Path, moments: int) -> Found:
     ended(pid, read)
     stiffness = float(read_results(kept / "results.json").figures["stiffness"])
     out.parent.mkdir()
-    afresh()
+    reset()
     start = time.perf_counter()
     ended(*child(lambda: run_new(out)))
     seconds = time.perf_counter() - start
@@ -227,14 +212,14 @@ def experiment(folder: Path, moments: int) -> Found:
         step = seconds / moments
         at = 0.5 * step
         while len(found) < 4 * moments:
-            afresh()
+            reset()
             start = time.perf_counter()
             pid, read = child(lambda: work(out))
             time.sleep(at)
             moment = time.perf_counter() - start
             os.kill(pid, signal.SIGKILL)
-            status, said = ended(pid, read)
-            steps = [line.split(" ...")[0] for line in said.splitlines() if " ..." in line]
+            status, written = ended(pid, read)
+            steps = [line.split(" ...")[0] for line in written.splitlines() if " ..." in line]
             during = "over" if status == 0 else steps[-1] if steps else "start"
             found.append(Killed(moment, during, state(out), hidden(out.parent, caches)))
             at += step
@@ -252,22 +237,22 @@ def experiment(folder: Path, moments: int) -> Found:
     Cache(caches).keep("meshes", {}, {"a": np.zeros(1)})
     left = hidden(out.parent, caches)
 
-    def told(name: str, work: Callable[[], int], at: Path = out) -> Fault:
-        status, said = ended(*child(work))
-        (line,) = said.strip().splitlines()[-1:] or [""]
+    def suffered(name: str, work: Callable[[], int], at: Path = out) -> Fault:
+        status, written = ended(*child(work))
+        (line,) = written.strip().splitlines()[-1:] or [""]
         return Fault(name, line, status, state(at), hidden(out.parent, caches))
 
     faults = []
     for sent in (signal.SIGINT, signal.SIGTERM):
-        afresh()
-        faults.append(told(f"{sent.name} while it solves", partial(_signalled, sent, out)))
-    afresh()
-    faults.append(told("disk full from 5 kB a file on", lambda: _starved(5000, out)))
-    afresh()
+        reset()
+        faults.append(suffered(f"{sent.name} while it solves", partial(_signalled, sent, out)))
+    reset()
+    faults.append(suffered("disk full from 5 kB a file on", lambda: _starved(5000, out)))
+    reset()
     blocked = folder / "file"
     blocked.write_text("in the way")
-    faults.append(told("cache that cannot be written", lambda: _without_cache(blocked, out)))
-    afresh()
+    faults.append(suffered("cache that cannot be written", lambda: _without_cache(blocked, out)))
+    reset()
     pids = [child(lambda: run_new(out)) for _ in range(2)]
     both = [ended(*p) for p in pids]
     faults.append(
@@ -279,11 +264,11 @@ def experiment(folder: Path, moments: int) -> Found:
             hidden(out.parent),
         )
     )
-    afresh()
+    reset()
     many = folder / "many"
     shutil.copytree(kept, many / "faults" / "fails")
     faults.append(
-        told(
+        suffered(
             "gmsh fails in one case of three",
             lambda: _one_of_three(many),
             many / "faults" / "fails",
@@ -323,14 +308,14 @@ def _without_cache(file: Path, out: Path) -> int:
 
 
 def _one_of_three(out: Path) -> int:
-    def failing(run: Run) -> Results:
+    def failing(run: Run, page: Page) -> None:
         def refuse(dimension: int) -> None:
             raise Exception("PLC Error: A segment and a facet intersect at point")
 
         shutil.rmtree(os.environ[CACHE_VARIABLE], ignore_errors=True)
         generate, gmsh.model.mesh.generate = gmsh.model.mesh.generate, refuse
         try:
-            return small(run)
+            small(run, page)
         finally:
             gmsh.model.mesh.generate = generate
 
@@ -380,11 +365,21 @@ def _mesh_arrays(file: Path) -> dict[str, Any]:
 
 
 def main() -> None:
-    """The experiment in the folder and with as many moments as the command line says, as JSON."""
+    """The experiment, in the folder and with the number of moments of the command line, as JSON."""
     # what a run loads first, once for all children: a compiled kernel (one that starts no threads,
     # for these do not survive a fork) and the template of the page
     sparsity(np.arange(8).reshape(1, 8), 8)
-    page.render(results(OLD, 0.0), Path())
+    nothing = Environment(date="", python="", platform="", versions={}, settings={})
+    empty = Results(
+        case="faults/small",
+        title="Small case",
+        source="Saint-Venant",
+        summary=[OLD],
+        verdicts=[],
+        sections=[],
+        environment=nothing,
+    )
+    render(empty, Path())
     found = experiment(Path(sys.argv[1]), int(sys.argv[2]))
     print(json.dumps(asdict(found)))
 

@@ -1,264 +1,230 @@
 """Kills, full disks, two runs at once, broken caches and a failing mesher: what is left on disk."""
 
+import json
+import os
+import tempfile
 from typing import Any
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import CORES_VARIABLE, MissingToolError, run_python
+from fe_drivetrain.report import chart, trace
+from fe_drivetrain.suite import Page, Record, Run, column
 
-#: Kills over the duration of a run that nothing disturbs.
+#: Kills over the duration of a run without faults.
 MOMENTS, QUICK_MOMENTS = 40, 10
 
 CRITERION = "every file on disk is of one run, old or new"
 
+#: Exit status of each fault, and whose results it leaves.
+EXPECTED = {
+    "SIGINT while it solves": (130, "old"),
+    "SIGTERM while it solves": (143, "old"),
+    "disk full from 5 kB a file on": (2, "old"),
+    "cache that cannot be written": (0, "new"),
+    "two runs into one folder": (0, "new"),
+    "gmsh fails in one case of three": (2, "old"),
+}
 
-def run(run: Run) -> Any:
-    """Let each fault happen to a small case, in processes of their own, and see what is left."""
-    import json
-    import os
-    import subprocess
-    import sys
-    import tempfile
+MARKED = 'counted; "old" and "new" are distinguished by a mark in every file'
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
-    from fe_drivetrain.common import CORES_VARIABLE, MissingToolError
-    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
 
+def experiment(moments: int) -> Any:
+    """What `fault_moments.Found` holds, measured in a process of its own."""
     if not hasattr(os, "fork"):
         raise MissingToolError(
             "this system cannot fork processes, to which the faults happen: run it on Linux"
         )
-    moments = QUICK_MOMENTS if run.quick else MOMENTS
-    threads = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-    with (
-        run.step("kills and other faults"),
-        tempfile.TemporaryDirectory() as folder,
-    ):
-        program = "fe_drivetrain.cases.stability.fault_moments"
-        done = subprocess.run(
-            [sys.executable, "-P", "-m", program, folder, str(moments)],
-            env={**os.environ, **dict.fromkeys(threads, "1"), CORES_VARIABLE: "1"},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
+    with tempfile.TemporaryDirectory() as folder:
+        done = run_python(
+            *("-m", "fe_drivetrain.cases.stability.fault_moments", folder, str(moments)),
+            environment={**dict.fromkeys(THREADS, "1"), CORES_VARIABLE: "1"},
             timeout=600,
-            check=False,
         )
     if done.returncode != 0:
         raise RuntimeError(f"the experiment ended with status {done.returncode}: {done.stderr}")
-    found = json.loads(done.stdout)
+    return json.loads(done.stdout)
 
-    seconds = found["seconds"]
-    killed, in_place = found["killed"], found["killed_in_place"]
-    for kills in (killed, in_place):
-        kills.sort(key=lambda kill: kill["moment"])
-    broken = [kill["found"] == "broken" for kill in killed]
-    broken_in_place = [kill["found"] == "broken" for kill in in_place]
-    shares = [kill["moment"] / seconds for kill in in_place]
-    last_broken = max((k for k, is_broken in enumerate(broken_in_place) if is_broken), default=-1)
-    safe_from = shares[last_broken + 1] if last_broken + 1 < len(shares) else None
 
+@case(
+    "Kills, full disks, two runs at once, broken caches: what is on disk is old or new",
+    source="renameat2(2) and flock(2), Linux man-pages 6; IEEE Std 1003.1-2017, rename",
+)
+def run(run: Run, page: Page) -> None:
+    """Let each fault happen to a small case, in processes of their own, and see what is left."""
+    with run.step("kills and other faults"):
+        found = experiment(QUICK_MOMENTS if run.quick else MOMENTS)
+    killed, in_place = kills_of(found, "killed"), kills_of(found, "killed_in_place")
+    check_kills(page, killed, in_place, found["left"])
+    for fault in found["faults"]:
+        status, whose = EXPECTED[fault["fault"]]
+        page.holds(
+            f"{fault['fault']}: ends with status {status}, leaves the {whose} results, and nothing "
+            "else",
+            (fault["status"], fault["found"], fault["hidden"]) == (status, whose, 0),
+            why="a half-written result could be taken for one",
+            source=MARKED,
+        )
     tries, wrong = found["damaged"]
-    exact = 'counted; "old" and "new" are told by a mark that stands in every file'
-    whole = "an identity: one half-written result is one too many"
+    page.vanishes(
+        f"{tries} damages of a kept mesh: read back with other numbers",
+        wrong,
+        within=0.0,
+        why="a mesh with other numbers would be solved without a sign",
+        source="counted; what is read is compared with what was kept, byte by byte",
+    )
+    show(page, killed, in_place, found)
+    page.data("killed", killed)
+    page.data("killed in place", in_place)
+    page.data("duration [s]", found["seconds"])
 
-    def identity(quantity: str, computed: float, reference: float) -> Any:
-        return judge(
-            quantity,
-            computed,
-            reference,
-            tolerance=0.0,
-            relative=False,
-            source=exact,
-            reason=whole,
-            measure="identity",
-            band=0.0,
-        )
 
-    expected = {
-        "SIGINT while it solves": (130, "old"),
-        "SIGTERM while it solves": (143, "old"),
-        "disk full from 5 kB a file on": (2, "old"),
-        "cache that cannot be written": (0, "new"),
-        "two runs into one folder": (0, "new"),
-        "gmsh fails in one case of three": (2, "old"),
-    }
-    verdicts = [
-        identity(
-            f"{len(killed)} kills over the run: results that are neither old nor new",
-            sum(broken),
-            0,
-        ),
-        identity(
-            "without the protection, written straight into the folder: a kill left half a result",
-            float(any(broken_in_place)),
-            1,
-        ),
-        identity(
-            "kills began before the end and went on beyond it: old and new results were left",
-            float({"old", "new"} <= {kill["found"] for kill in killed}),
-            1,
-        ),
-        identity("hidden files and folders after the next run", found["left"], 0),
-        *(
-            identity(
-                f"{fault['fault']}: ends with status {expected[fault['fault']][0]}, leaves the "
-                f"{expected[fault['fault']][1]} results, and nothing else",
-                float(
-                    (fault["status"], fault["found"], fault["hidden"])
-                    == (*expected[fault["fault"]], 0)
-                ),
-                1,
-            )
-            for fault in found["faults"]
-        ),
-        identity(f"{tries} damages of a kept mesh: read back with other numbers", wrong, 0),
+def kills_of(found: Any, way: str) -> list[Record]:
+    """Kills in the order of their moments."""
+    return [
+        {
+            "moment [s]": kill["moment"],
+            "share of a run [-]": kill["moment"] / found["seconds"],
+            "during the step": kill["step"],
+            "results on disk": kill["found"],
+            "hidden beside them, until the next run": kill["hidden"],
+        }
+        for kill in sorted(found[way], key=lambda kill: kill["moment"])
     ]
 
+
+def broken(kills: list[Record]) -> list[bool]:
+    """Which kills left half of a result."""
+    return [kill["results on disk"] == "broken" for kill in kills]
+
+
+def check_kills(page: Page, killed: list[Record], in_place: list[Record], left: int) -> None:
+    """Results are whole wherever a run is killed, and not if they are written in place."""
+    page.vanishes(
+        f"{len(killed)} kills over the run: results that are neither old nor new",
+        sum(broken(killed)),
+        within=0.0,
+        why="one half-written result is one too many",
+        source=MARKED,
+    )
+    page.holds(
+        "without the protection, written straight into the folder: a kill left half a result",
+        any(broken(in_place)),
+        why="otherwise the kills would not test the protection",
+        source=MARKED,
+    )
+    page.holds(
+        "kills began before the end and went on beyond it: old and new results were left",
+        {"old", "new"} <= set(column(killed, "results on disk")),
+        why="otherwise the kills would not have covered the whole run",
+        source=MARKED,
+    )
+    page.vanishes(
+        "hidden files and folders after the next run",
+        left,
+        within=0.0,
+        why="what kills leave would otherwise fill the disk in time",
+        source="counted",
+    )
+
+
+def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -> None:
+    """Answer, limits, charts, tables."""
+    half, shares = broken(in_place), column(in_place, "share of a run [-]")
+    last = max((k for k, is_broken in enumerate(half) if is_broken), default=-1)
+    safe_from = shares[last + 1] if last + 1 < len(shares) else None
+    tries, wrong = found["damaged"]
+    hidden = sum(kill["hidden beside them, until the next run"] > 0 for kill in killed)
+    page.answer(
+        f"Of {len(killed)} kills over the run of a small case none left anything but the whole "
+        f"of the old or the new results; written straight into the folder, {sum(half)} of "
+        f"{len(in_place)} left half of them.",
+        f"{hidden} kills left unfinished files or folders under hidden names; {found['left']} are "
+        "left after the next run.",
+        f"{tries} damages of a kept mesh gave other numbers {wrong} times; a full disk, "
+        "signals, two runs at once and a mesher that fails each leave whole results.",
+    )
+    page.limit(
+        "results written straight into their folder",
+        "moment of a kill, share of the run [-]",
+        low=safe_from,
+        criterion=CRITERION,
+        beyond=f"{sum(half)} of {len(in_place)} kills left half a result, and the old one lost",
+        program="writes beside them under a hidden name, exchanges the two in one operation, and "
+        "removes what a kill left at the next run",
+        remedy=f"{len(killed) - sum(broken(killed))} of {len(killed)} kills left the whole of the "
+        "old or the new results",
+    )
+    page.limit(
+        "kept meshes read back from the cache",
+        "damages of the file at random places [-]",
+        criterion="no other number than was written",
+        beyond=f"{wrong} of {tries} damages were read back as other numbers",
+        program="checks every byte by its checksum; what does not match is made again",
+        remedy="the mesh made again gives the same stiffness to the last digit",
+    )
     heights = {"broken": 0, "old": 1, "new": 2}
-    curves = [
-        trace(
-            name,
-            [kill["moment"] / seconds for kill in kills],
-            [heights[kill["found"]] for kill in kills],
-            mode="markers",
-            marker={"symbol": symbol, "size": 11},
-            text=[kill["step"] for kill in kills],
-        )
-        for name, kills, symbol in (
-            ("as the program writes", killed, "circle"),
-            ("written straight into the folder", in_place, "x"),
-        )
-    ]
-    latest = max(kill["moment"] for kill in killed + in_place) / seconds
     picture = chart(
         "What a kill leaves in the result folder, against its moment: as the program writes, "
         "always the whole of the old or of the new results; written in place, half of them until "
         "the end (safe range of writing in place shaded)",
-        curves,
+        [
+            trace(
+                name,
+                column(kills, "share of a run [-]"),
+                [heights[kill["results on disk"]] for kill in kills],
+                True,
+                marker={"symbol": symbol, "size": 11},
+                text=column(kills, "during the step"),
+            )
+            for name, kills, symbol in (
+                ("as the program writes", killed, "circle"),
+                ("written straight into the folder", in_place, "x"),
+            )
+        ],
         "moment of the kill over the duration of a run [-]",
         "results on disk",
-        safe=None if safe_from is None else (safe_from, 1.05 * latest),
+        safe=None
+        if safe_from is None
+        else (safe_from, 1.05 * max(column([*killed, *in_place], "share of a run [-]"))),
     )
     picture.figure["layout"]["yaxis"] |= {
         "tickvals": list(heights.values()),
         "ticktext": list(heights),
         "range": [-0.4, 2.4],
     }
-    left_by_kills = sum(kill["hidden"] > 0 for kill in killed)
-    return CASE.results(
-        run,
-        summary=[
-            f"Of {len(killed)} kills over the run of a small case none left anything but the whole "
-            f"of the old or the new results; written straight into the folder, "
-            f"{sum(broken_in_place)} of {len(in_place)} left half of them.",
-            f"{left_by_kills} kills left unfinished files or folders under hidden names; "
-            f"{found['left']} are left after the next run.",
-            f"{tries} damages of a kept mesh gave other numbers {wrong} times; a full disk, "
-            "signals, two runs at once and a mesher that fails each leave whole results.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Killed",
-                items=[
-                    picture,
-                    Table(
-                        caption="Kills, in order of their moments, as the program writes",
-                        columns=[
-                            "moment [s]",
-                            "during the step",
-                            "results on disk",
-                            "hidden beside them, until the next run",
-                        ],
-                        rows=[
-                            [round(k["moment"], 3), k["step"], k["found"], k["hidden"]]
-                            for k in killed
-                        ],
-                    ),
-                ],
-            ),
-            Section(
-                title="Other faults",
-                items=[
-                    Table(
-                        caption="What the program says, returns and leaves",
-                        columns=[
-                            "fault",
-                            "its last words",
-                            "exit status",
-                            "results on disk",
-                            "hidden beside them",
-                        ],
-                        rows=[
-                            [
-                                f["fault"],
-                                f["said"] if f["status"] else "none: it ends as usual",
-                                f["status"],
-                                f["found"],
-                                f["hidden"],
-                            ]
-                            for f in found["faults"]
-                        ],
-                    ),
-                    Text(
-                        text=f"A kept mesh was damaged {tries} times, at random places: a bit "
-                        "turned, the rest cut off, 256 bytes of zeros. What is damaged is made "
-                        "anew. Of three cases of which one fails in gmsh, the other two finish; "
-                        "the failed one keeps its old results and is marked."
-                    ),
-                ],
-            ),
-            Section(
-                title="How results are protected",
-                items=[
-                    Text(
-                        text="A run fills a hidden folder beside the result folder, and exchanges "
-                        "the two in one operation of the file system when all is written (where "
-                        "the system has no such operation, in two, and the next run puts back what "
-                        "a kill between them took away). While it runs it holds a lock on the "
-                        "hidden folder, of which the system lets go when the process ends, however "
-                        "it ends: a hidden folder that nobody holds was left by a kill, and the "
-                        "next run into the same place removes it. Files are written the same way."
-                    )
-                ],
-            ),
-        ],
-        limits=[
-            Limit(
-                method="results written straight into their folder",
-                parameter="moment of a kill, share of the run [-]",
-                low=safe_from,
-                high=None,
-                criterion=CRITERION,
-                beyond=f"{sum(broken_in_place)} of {len(in_place)} kills left half a result, and "
-                "the old one lost",
-                program="writes beside them under a hidden name, exchanges the two in one "
-                "operation, and removes what a kill left at the next run",
-                remedy=f"{len(killed) - sum(broken)} of {len(killed)} kills left the whole of the "
-                "old or the new results",
-            ),
-            Limit(
-                method="kept meshes read back from the cache",
-                parameter="damages of the file at random places [-]",
-                low=None,
-                high=None,
-                criterion="no other number than was written",
-                beyond=f"{wrong} of {tries} damages were read back as other numbers",
-                program="checks every byte by its checksum; what does not fit is made anew",
-                remedy="the mesh made anew gives the same stiffness to the last digit",
-            ),
-        ],
-        figures={"killed": killed, "killed in place": in_place, "duration [s]": seconds},
+    page.section("Killed")
+    page.add(picture)
+    page.table(
+        "Kills, in order of their moments, as the program writes",
+        [{**kill, "moment [s]": round(kill["moment [s]"], 3)} for kill in killed],
+        [name for name in killed[0] if name != "share of a run [-]"],
     )
-
-
-CASE = Case(
-    name="stability/faults",
-    title="Kills, full disks, two runs at once, broken caches: what is on disk is old or new",
-    source="renameat2(2) and flock(2), Linux man-pages 6; IEEE Std 1003.1-2017, rename",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+    page.section("Other faults")
+    page.table(
+        "What the program reports, returns and leaves",
+        [
+            {
+                "fault": f["fault"],
+                "its last message": f["message"] if f["status"] else "none: it ends as usual",
+                "exit status": f["status"],
+                "results on disk": f["found"],
+                "hidden beside them": f["hidden"],
+            }
+            for f in found["faults"]
+        ],
+    )
+    page.text(
+        f"A kept mesh was damaged {tries} times, at random places: a bit turned, the rest cut off, "
+        "256 bytes of zeros. What is damaged is made again. Of three cases of which one fails in "
+        "gmsh, the other two finish; the failed one keeps its old results and is marked."
+    )
+    page.section("How results are protected")
+    page.text(
+        "A run fills a hidden folder beside the result folder, and exchanges the two in one "
+        "operation of the file system when all is written (where the system has no such operation, "
+        "in two, and the next run puts back what a kill between them took away). While it runs it "
+        "holds a lock on the hidden folder, which the system releases when the process ends, "
+        "however it ends: a hidden folder that nobody holds was left by a kill, and the next run "
+        "into the same place removes it. Files are written the same way."
+    )

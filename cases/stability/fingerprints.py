@@ -7,16 +7,23 @@ that the environment gives.
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-Arrays = Mapping[str, NDArray[np.float64]]
+from fe_drivetrain.common import Floats, InputError, run_python
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.interfaces import eliminate, fixed
+from fe_drivetrain.mesh import shaft_hexahedra
+from fe_drivetrain.operator import assemble
+from fe_drivetrain.response import build_model, mesh_scene
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.solve import direct_solvers, factorise, reduce
+from fe_drivetrain.validation.soft_springs import scene_of
+
+Arrays = Mapping[str, Floats]
 
 _THREADS = (
     "OMP_NUM_THREADS",
@@ -31,46 +38,31 @@ _THREADS = (
 STIFFNESS = "stiffness"
 
 
-def scene_arrays() -> dict[str, NDArray[np.float64]]:
-    """ "mesh" and "operator" of a main bearing, made anew where the cache is off."""
-    from fe_drivetrain.cases.stability import (
-        soft_springs,
-    )
-    from fe_drivetrain.response import build_model, mesh_scene
-
-    scene = soft_springs.scene_of("bonded")
+def scene_arrays() -> dict[str, Floats]:
+    """ "mesh" and "operator" of a main bearing, made again where the cache is off."""
+    scene = scene_of("bonded")
     mesh = mesh_scene(scene)
     return {"mesh": mesh.points, "operator": build_model(scene, mesh).stiffness.data}
 
 
-def tube_answers(
-    slenderness: Iterable[float], backwards: bool = False
-) -> dict[str, NDArray[np.float64]]:
+def tube_answers(slenderness: Iterable[float], backwards: bool = False) -> dict[str, Floats]:
     """Displacements of tubes under a force across their end, and their bending stiffness.
 
     Parameters
     ----------
-    slenderness
+    slenderness : iterable of float
         Lengths over the diameter.
-    backwards
+    backwards : bool
         Nodes are numbered from the last to the first.
 
     Returns
     -------
-    arrays
+    arrays : dict
         "METHOD at L/D" (n,) in the order of the numbers, and "stiffness, METHOD at L/D" (1,); NaN
-        where the method refuses, or leaves it to another one.
+        where the method refuses, or hands over to another one.
     """
-    from fe_drivetrain.common import InputError
-    from fe_drivetrain.geometry import Section, Shaft
-    from fe_drivetrain.interfaces import eliminate, fixed
-    from fe_drivetrain.mesh import shaft_hexahedra
-    from fe_drivetrain.operator import assemble
-    from fe_drivetrain.scene import MATERIALS
-    from fe_drivetrain.solve import factorise, reduce
-
     lame = MATERIALS["steel"].lame
-    found: dict[str, NDArray[np.float64]] = {}
+    found: dict[str, Floats] = {}
     for value in slenderness:
         length = 0.6 * value
         tube = Shaft(
@@ -102,19 +94,15 @@ def tube_answers(
 
 def methods() -> list[str]:
     """Solvers that are installed."""
-    from fe_drivetrain.solve import direct_solvers
-
     return [m for m in direct_solvers.PACKAGES if direct_solvers.is_installed(m)] + ["multigrid"]
 
 
-def elsewhere(
-    file: Path, slenderness: Iterable[float], threads: int
-) -> dict[str, NDArray[np.float64]]:
-    """Both of the above in a process of its own, with so many threads and no cache."""
-    environment = {**os.environ, **dict.fromkeys(_THREADS, str(threads))}
-    environment["FE_DRIVETRAIN_CACHE"] = "off"
-    command = [sys.executable, "-m", __spec__.name, str(file), json.dumps(list(slenderness))]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+def elsewhere(file: Path, slenderness: Iterable[float], threads: int) -> dict[str, Floats]:
+    """`scene_arrays` and `tube_answers` in a process of its own, with so many threads, no cache."""
+    done = run_python(
+        *("-m", __spec__.name, str(file), json.dumps(list(slenderness))),
+        environment={**dict.fromkeys(_THREADS, str(threads)), "FE_DRIVETRAIN_CACHE": "off"},
+    )
     if done.returncode:
         raise RuntimeError(f"a process that should repeat a run failed: {done.stderr[-2000:]}")
     with np.load(file) as archive:

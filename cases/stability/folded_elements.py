@@ -1,9 +1,23 @@
-"""Curved elements folded on a coarse fillet: how many, what they do, and what mends them."""
+"""Curved elements folded on a coarse fillet: how many, their effect, and what repairs them."""
 
+from collections.abc import Mapping
 from typing import Any
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.geometry import MeshSizes
+from fe_drivetrain.mesh import (
+    Mesh,
+    find_faults,
+    generate,
+    inverted_cells,
+    relax_flat_cells,
+    volume,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.validation import fillet_factors, folded_meshes, rigid_ended_shafts
 
 #: Elements to a full turn of the fillet's radius; a fillet is a quarter of a turn.
 PER_TURN = (6.0, 5.0, 4.0, 3.5, 3.0, 2.5, 2.0, 1.5, 1.0)
@@ -19,248 +33,195 @@ REPAIRS = {
 #: An engineer's accuracy of a stiffness from a coarse mesh, the outer contour of the atlas.
 COARSE = 0.05
 
-
-def run(run: Run) -> Any:
-    """Mesh the fillet ever coarser, count, solve and mend."""
-    import numpy as np
-
-    from fe_drivetrain.geometry import MeshSizes
-    from fe_drivetrain.mesh import find_faults, generate, inverted_cells, relax_flat_cells, volume
-    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.validation import (
-        fillet_factors,
-        folded_meshes,
-        rigid_ended_shafts,
-    )
-
-    sweep = QUICK_PER_TURN if run.quick else PER_TURN
-    with run.step("reference"):
-        exact = rigid_ended_shafts.exact(folded_meshes.SHAFT, 0.1, 10)
-        thin = folded_meshes.SHAFT.sections[-1].outer_diameter
-        wide = folded_meshes.SHAFT.sections[0].outer_diameter
-        factor = fillet_factors.peak("torsion", wide / thin, folded_meshes.RADIUS / thin, 8).factor
-    exact_volume = folded_meshes.exact_volume()
-    counts: dict[str, list[int]] = {name: [] for name in REPAIRS}
-    errors: dict[str, list[float]] = {name: [] for name in REPAIRS}
-    peaks: dict[str, list[float]] = {name: [] for name in REPAIRS}
-    rows: list[list[Any]] = []
-    missed = needless = hidden = 0
-    sentence = ""
-    for per_turn in sweep:
-        run.report(f"{per_turn:g} elements to a turn of the fillet")
-        size = 2 * np.pi * folded_meshes.RADIUS / per_turn
-        with run.step("meshes"):
-            raw = folded_meshes.curved(per_turn)
-            meshes = {
-                "as curved": raw,
-                "relaxed": relax_flat_cells(raw),
-                "HighOrder": folded_meshes.curved(per_turn, "HighOrder"),
-                "HighOrderElastic": folded_meshes.curved(per_turn, "HighOrderElastic"),
-                "refined": generate(
-                    folded_meshes.SHAFT, sizes=MeshSizes(shaft=size, elements_per_turn=6)
-                ),
-            }
-        with run.step("check and solve"):
-            for name, mesh in meshes.items():
-                found = inverted_cells(mesh)
-                sampled = folded_meshes.folded_by_sampling(mesh)
-                missed += len(np.setdiff1d(sampled, found))
-                faults = [f for f in find_faults(mesh) if f.kind == "inverted"]
-                missed += int((faults[0].count if faults else 0) != len(found))
-                needless += int(bool(faults) and len(found) == 0)
-                answer = folded_meshes.solved(mesh)
-                stiffness = answer.stiffness["torsion"] / exact["torsion"] - 1.0
-                peak = answer.peak / factor - 1.0
-                counts[name].append(len(found))
-                errors[name].append(stiffness)
-                peaks[name].append(peak)
-                if name == "as curved":
-                    hidden += len(found) - folded_meshes.folded_at_nodes(mesh)
-                    sentence = faults[0].sentence if faults else sentence
-                rows.append(
-                    [
-                        per_turn,
-                        name,
-                        len(mesh.cells),
-                        len(found),
-                        folded_meshes.folded_at_nodes(mesh),
-                        volume(mesh) / exact_volume - 1.0,
-                        None if np.isnan(stiffness) else stiffness,
-                        None if np.isnan(peak) else peak,
-                        answer.failure or "solved",
-                    ]
-                )
-    x = np.array(sweep)
-    raw_counts = np.array(counts["as curved"])
-    folded = raw_counts > 0
-    safe = float(x[: int(folded.argmax())].min()) if folded.any() and not folded[0] else None
-    no_answer = [k for k, e in enumerate(errors["as curved"]) if np.isnan(e)]
-    silent = int(folded.sum()) - len(no_answer)
-    refined = np.array(errors["refined"])
-    worst_peak = float(np.nanmax(np.abs(np.array(peaks["as curved"])[folded])))
-    mended_peak = float(np.abs(np.array(peaks["refined"])[folded]).max())
-    verdicts = [
-        judge(
-            "the sweep goes on until elements fold: folded ones of the coarsest mesh, at least one",
-            float(raw_counts[-1] > 0),
-            1.0,
-            tolerance=0.0,
-            relative=False,
-            source="this sweep",
-            reason="yes or no",
-            measure="identity",
-        ),
-        judge(
-            "elements with a negative Jacobian at one of 455 points inside that the bounds or "
-            "the check of the mesh miss",
-            float(missed),
-            0.0,
-            tolerance=0.0,
-            relative=False,
-            source="dense sampling, which proves a fold wherever it finds one",
-            reason="none may get through",
-            measure="identity",
-        ),
-        judge(
-            "elements folded after what the program does, relaxed and refined, over the sweep",
-            float(sum(counts["refined"])),
-            0.0,
-            tolerance=0.0,
-            relative=False,
-            source="Johnen, Remacle and Geuzaine 2013, J. Comp. Phys. 233, 359-372",
-            reason="every element valid everywhere inside",
-            measure="identity",
-        ),
-        judge(
-            "torsional stiffness after that, from the coarsest size asked for",
-            float((1 + refined[-1]) * exact["torsion"]),
-            exact["torsion"],
-            tolerance=COARSE,
-            unit="N m/rad",
-            source="the meridian of the shaft in fourth-order elements",
-            reason="5 %, the outer contour of the atlas, of the coarsest mesh that is sound",
-            measure="stiffness",
-            band=float(abs(refined[-1] - refined[0]) * exact["torsion"]),
-        ),
-    ]
-    label = "elements to a full turn of the fillet's radius"
-    style: dict[str, Any] = {"mode": "lines+markers"}
-    number_traces = [trace(n, x, [c + 0.1 for c in counts[n]], **style) for n in REPAIRS]
-    error_traces = [trace(n, x, np.abs(errors[n]), **style) for n in REPAIRS]
-    peak_traces = [trace(n, x, np.abs(peaks[n]), **style) for n in REPAIRS]
-    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
-    gone = trace("no answer as curved", x[no_answer], [1.0] * len(no_answer), True, marker=cross)
-    if no_answer:
-        error_traces.append(gone)
-        peak_traces.append(gone)
-    for traces in (error_traces, peak_traces):
-        for t in traces:
-            t["y"] = [None if np.isnan(y) else y for y in t["y"]]
-    totals = {name: sum(c) for name, c in counts.items()}
-    return CASE.results(
-        run,
-        summary=[
-            f"Curving folds elements on the fillet below {safe:g} elements to a turn."
-            if safe is not None
-            else "Curving folds elements in every mesh of the sweep.",
-            f"{totals['as curved']} elements fold over the sweep, {hidden} of them where none of "
-            f"their ten nodes shows it. Relaxing leaves {totals['relaxed']}, gmsh's HighOrder "
-            f"{totals['HighOrder']}, its HighOrderElastic {totals['HighOrderElastic']}, and "
-            f"relaxing with local refinement, as the program does, {totals['refined']}.",
-            f"Left in, they mostly give no sign: {silent} of {int(folded.sum())} such meshes are "
-            f"solved as if nothing were, with the peak stress of torsion wrong by up to "
-            f"{100 * worst_peak:.0f} %, where the program's meshes are within "
-            f"{100 * mended_peak:.0f} %; the others end as 'singular', which names the wrong "
-            "cause. The check names them before.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="How many fold",
-                items=[
-                    chart(
-                        "Folded elements, plus 0.1 so that none can be drawn",
-                        number_traces,
-                        label,
-                        "folded elements + 0.1",
-                        ("x", "y"),
-                        safe=(safe, None),
-                    ),
-                    Table(
-                        caption="Repairs",
-                        columns=["name", "what it does", "folded elements left in the sweep"],
-                        rows=[[n, text, totals[n]] for n, text in REPAIRS.items()],
-                    ),
-                    Text(text=f"What the check says of the coarsest mesh: {sentence}."),
-                ],
-            ),
-            Section(
-                title="What they do to the answer",
-                items=[
-                    chart(
-                        "Error of the torsional stiffness. Folded elements hide in the error of "
-                        "the coarse mesh, until there is no answer at all",
-                        error_traces,
-                        label,
-                        "relative error of the stiffness",
-                        ("x", "y"),
-                        safe=(safe, None),
-                    ),
-                    chart(
-                        "Error of the peak stress in torsion: here folded elements show",
-                        peak_traces,
-                        label,
-                        "relative error of the peak stress",
-                        ("x", "y"),
-                        safe=(safe, None),
-                    ),
-                    Table(
-                        caption="Every mesh",
-                        columns=[
-                            "elements a turn",
-                            "repair",
-                            "elements",
-                            "folded",
-                            "folded at a node",
-                            "error of the volume",
-                            "error of torsion",
-                            "error of the peak stress",
-                            "outcome",
-                        ],
-                        rows=rows,
-                    ),
-                ],
-            ),
-        ],
-        limits=[
-            Limit(
-                method="curved tetrahedra on a fillet, as gmsh's setOrder(2) makes them",
-                parameter="elements to a full turn of the fillet's radius [-]",
-                low=safe,
-                high=None,
-                criterion="no element folded anywhere inside",
-                beyond=f"elements fold, {hidden} of {totals['as curved']} only between their "
-                f"nodes; peak stress wrong by up to {100 * worst_peak:.0f} %, or 'singular'",
-                program="relaxes, then refines the part up to three times; refuses what is left "
-                "with element and place",
-                remedy="relaxing and local refinement: none folded, stiffness of torsion within "
-                f"{100 * float(np.abs(refined).max()):.1f} %, peak stress within "
-                f"{100 * mended_peak:.0f} %",
-            )
-        ],
-        figures={"per_turn": list(sweep), "folded": counts},
-    )
+TURN = "elements a turn"
+FOLDED, AT_NODE = "folded", "folded at a node"
+TORSION, PEAK = "error of torsion", "error of the peak stress"
 
 
-CASE = Case(
-    name="stability/folded_elements",
-    title="Curved elements folded on a coarse fillet, before and after repair",
+def meshes(per_turn: float) -> dict[str, Mesh]:
+    """The fillet in elements of one size, by repair."""
+    raw = folded_meshes.curved(per_turn)
+    size = 2 * np.pi * folded_meshes.RADIUS / per_turn
+    return {
+        "as curved": raw,
+        "relaxed": relax_flat_cells(raw),
+        "HighOrder": folded_meshes.curved(per_turn, "HighOrder"),
+        "HighOrderElastic": folded_meshes.curved(per_turn, "HighOrderElastic"),
+        "refined": generate(folded_meshes.SHAFT, sizes=MeshSizes(shaft=size, elements_per_turn=6)),
+    }
+
+
+def examine(per_turn: float, repair: str, mesh: Mesh, exact: float, factor: float) -> Record:
+    """Folded elements of a mesh, what the check reports of them, and errors of its answers."""
+    found = inverted_cells(mesh)
+    faults = [f for f in find_faults(mesh) if f.kind == "inverted"]
+    missed = len(np.setdiff1d(folded_meshes.folded_by_sampling(mesh), found))
+    missed += int((faults[0].count if faults else 0) != len(found))
+    answer = folded_meshes.solved(mesh)
+    return {
+        TURN: per_turn,
+        "repair": repair,
+        "elements": len(mesh.cells),
+        FOLDED: len(found),
+        AT_NODE: folded_meshes.folded_at_nodes(mesh),
+        "error of the volume": volume(mesh) / folded_meshes.exact_volume() - 1.0,
+        TORSION: answer.stiffness["torsion"] / exact - 1.0,
+        PEAK: answer.peak / factor - 1.0,
+        "outcome": answer.failure or "solved",
+        "missed": missed,
+        "sentence": faults[0].sentence if faults else "",
+    }
+
+
+@case(
+    "Curved elements folded on a coarse fillet, before and after repair",
     source="Johnen, Remacle and Geuzaine 2013, Geometrical validity of curvilinear finite "
     "elements, J. Comp. Phys. 233, 359-372",
-    run=run,
 )
+def run(run: Run, page: Page) -> None:
+    """Mesh the fillet ever coarser, count, solve and repair."""
+    shaft = folded_meshes.SHAFT
+    with run.step("reference"):
+        exact = rigid_ended_shafts.exact(shaft, 0.1, 10)["torsion"]
+        wide, thin = (shaft.sections[k].outer_diameter for k in (0, -1))
+        factor = fillet_factors.peak("torsion", wide / thin, folded_meshes.RADIUS / thin, 8).factor
+    rows: list[Record] = []
+    for per_turn in QUICK_PER_TURN if run.quick else PER_TURN:
+        run.report(f"{per_turn:g} elements to a turn of the fillet")
+        with run.step("meshes"):
+            repaired = meshes(per_turn)
+        with run.step("check and solve"):
+            rows += [examine(per_turn, name, m, exact, factor) for name, m in repaired.items()]
+    of = dict(grouped(rows, "repair"))
+    check(page, rows, of, exact)
+    show(page, rows, of)
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def check(page: Page, rows: list[Record], of: Mapping[str, list[Record]], exact: float) -> None:
+    """The sweep folds elements; the check sees each; the program leaves none."""
+    page.at_least(
+        "the sweep goes on until elements fold: folded ones of the coarsest mesh, at least one",
+        of["as curved"][-1][FOLDED],
+        1,
+        why="otherwise there would be nothing to repair",
+        source="this sweep",
+        measure="identity",
+    )
+    page.vanishes(
+        "elements with a negative Jacobian at one of 455 points inside that the bounds or the "
+        "check of the mesh miss",
+        sum(column(rows, "missed")),
+        within=0.0,
+        why="a folded element that gets through changes the answer without a sign",
+        source="dense sampling, which proves a fold wherever it finds one",
+    )
+    page.vanishes(
+        "elements folded after what the program does, relaxed and refined, over the sweep",
+        sum(column(of["refined"], FOLDED)),
+        within=0.0,
+        why="every element valid everywhere inside",
+        source="Johnen, Remacle and Geuzaine 2013, J. Comp. Phys. 233, 359-372",
+    )
+    errors = column(of["refined"], TORSION)
+    page.equals(
+        "torsional stiffness after that, from the coarsest size asked for",
+        (1 + errors[-1]) * exact,
+        exact,
+        within=COARSE,
+        unit="N m/rad",
+        why="5 %, the outer contour of the atlas, of the coarsest mesh that is sound",
+        source="the meridian of the shaft in fourth-order elements",
+        measure="stiffness",
+        band=abs(errors[-1] - errors[0]) * exact,
+    )
+
+
+def show(page: Page, rows: list[Record], of: Mapping[str, list[Record]]) -> None:
+    """Answer, charts, tables and the limit."""
+    raw, x = of["as curved"], np.array(column(of["as curved"], TURN))
+    folded = np.array(column(raw, FOLDED)) > 0
+    safe = float(x[: int(folded.argmax())].min()) if folded.any() and not folded[0] else None
+    no_answer = np.isnan(column(raw, TORSION))
+    silent, hidden = folded.sum() - no_answer.sum(), sum(r[FOLDED] - r[AT_NODE] for r in raw)
+    worst_peak = np.nanmax(np.abs(np.array(column(raw, PEAK))[folded]))
+    repaired_peak = np.abs(np.array(column(of["refined"], PEAK))[folded]).max()
+    worst_torsion = np.abs(column(of["refined"], TORSION)).max()
+    totals = {name: sum(column(series, FOLDED)) for name, series in of.items()}
+    page.answer(
+        f"Curving folds elements on the fillet below {safe:g} elements to a turn."
+        if safe is not None
+        else "Curving folds elements in every mesh of the sweep.",
+        f"{totals['as curved']} elements fold over the sweep, {hidden} of them where none of "
+        f"their ten nodes shows it. Relaxing leaves {totals['relaxed']}, gmsh's HighOrder "
+        f"{totals['HighOrder']}, its HighOrderElastic {totals['HighOrderElastic']}, and "
+        f"relaxing with local refinement, as the program does, {totals['refined']}.",
+        f"Left in, they mostly give no sign: {silent} of {folded.sum()} such meshes are solved as "
+        "if nothing were wrong, with the peak stress of torsion in error by up to "
+        f"{100 * worst_peak:.0f} %, where the program's meshes are within "
+        f"{100 * repaired_peak:.0f} %; the others end as 'singular', which names the wrong cause. "
+        "The check names them before.",
+    )
+    page.limit(
+        "curved tetrahedra on a fillet, as gmsh's setOrder(2) makes them",
+        "elements to a full turn of the fillet's radius [-]",
+        low=safe,
+        criterion="no element folded anywhere inside",
+        beyond=f"elements fold, {hidden} of {totals['as curved']} only between their nodes; peak "
+        f"stress wrong by up to {100 * worst_peak:.0f} %, or 'singular'",
+        program="relaxes, then refines the part up to three times; refuses what is left with "
+        "element and place",
+        remedy="relaxing and local refinement: none folded, stiffness of torsion within "
+        f"{100 * worst_torsion:.1f} %, peak stress within {100 * repaired_peak:.0f} %",
+    )
+    cross = {"symbol": "x", "size": 11, "color": "#c62828"}
+    gone = trace("no answer as curved", x[no_answer], [1.0] * no_answer.sum(), True, marker=cross)
+
+    def chart(caption: str, y: str, quantity: str, shift: float, extra: list[Any]) -> None:
+        traces = []
+        for name, series in of.items():
+            answered = [row for row in series if np.isfinite(row[quantity])]
+            values = np.abs(column(answered, quantity)) + shift
+            traces.append(trace(name, column(answered, TURN), values, mode="lines+markers"))
+        label = "elements to a full turn of the fillet's radius"
+        page.chart(caption, [*traces, *extra], label, y, "xy", (safe, None))
+
+    page.section("How many fold")
+    chart(
+        "Folded elements, plus 0.1 so that none can be drawn",
+        "folded elements + 0.1",
+        FOLDED,
+        0.1,
+        [],
+    )
+    page.table(
+        "Repairs",
+        [
+            {"name": n, "what it does": text, "folded elements left in the sweep": totals[n]}
+            for n, text in REPAIRS.items()
+        ],
+    )
+    sentences = [row["sentence"] for row in raw if row["sentence"]]
+    page.text(f"What the check reports of the coarsest mesh: {' '.join(sentences[-1:])}.")
+    page.section("What they do to the answer")
+    lost = [gone] if no_answer.any() else []
+    chart(
+        "Error of the torsional stiffness. Folded elements hide in the error of the coarse mesh, "
+        "until there is no answer at all",
+        "relative error of the stiffness",
+        TORSION,
+        0.0,
+        lost,
+    )
+    chart(
+        "Error of the peak stress in torsion: here folded elements show",
+        "relative error of the peak stress",
+        PEAK,
+        0.0,
+        lost,
+    )
+    shown = [name for name in rows[0] if name not in ("missed", "sentence")]
+    every = [
+        {name: None if row[name] != row[name] else row[name] for name in shown} for row in rows
+    ]
+    page.table("Every mesh", every)
+    page.data("every mesh", every)

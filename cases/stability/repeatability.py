@@ -1,269 +1,209 @@
 """Two runs, bit for bit: with one thread, with two, and with the nodes in another order."""
 
-from typing import Any
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, fitted_exponent, safe_range, shown
+from fe_drivetrain.cases.stability.fingerprints import (
+    STIFFNESS,
+    Arrays,
+    different,
+    elsewhere,
+    methods,
+    tube_answers,
+)
+from fe_drivetrain.common import Floats
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
 LENGTHS = (5.0, 200.0)
 QUICK_LENGTHS = (5.0,)
 
+#: Lengths over diameters of the tubes whose nodes are numbered in two ways.
+SLENDERNESS = (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)
+QUICK_SLENDERNESS = (2.0, 20.0, 200.0, 2000.0)
 
-def run(run: Run) -> Any:
+
+def shift(a: Arrays, b: Arrays, name: str) -> float:
+    """Relative difference of a stiffness in two runs; NaN where there is none."""
+    stiffness = f"{STIFFNESS}, {name}"
+    return abs(float((a[stiffness] / b[stiffness])[0]) - 1.0)
+
+
+def compare(runs: Mapping[str, Arrays], a: str, b: str, part: str) -> Record:
+    """What differs of one part between two runs: mesh, operator, or a solver's answers."""
+    names = [n for n in runs[a] if n == part or n.startswith(f"{part} at")]
+    solved = [n for n in names if not np.isnan(runs[a][n]).any()]
+    changed = different({n: runs[a][n] for n in solved}, {n: runs[b][n] for n in solved})
+    shifts = {
+        float(n.rpartition(" ")[2]): shift(runs[a], runs[b], n)
+        for n in changed
+        if f"{STIFFNESS}, {n}" in runs[a]
+    }
+    return {
+        "part": part,
+        "runs": f"{a} / {b}",
+        "arrays": len(names),
+        "answered": len(solved),
+        "differ in any bit": len(changed),
+        "stiffness by, at most": max(shifts.values(), default=0.0),
+        "shifts": shifts,
+    }
+
+
+def renumbered(slenderness: tuple[float, ...]) -> dict[str, Floats]:
+    """Differences of the stiffness by each solver, the nodes in two orders."""
+    one, other = tube_answers(slenderness), tube_answers(slenderness, backwards=True)
+    return {
+        method: np.array([shift(one, other, f"{method} at {x:g}") for x in slenderness])
+        for method in methods()
+    }
+
+
+@case(
+    "Repeatability: two runs bit for bit, with one thread and with two",
+    source="IEEE 754: sums depend on their order; Higham 2002, ch. 4",
+)
+def run(run: Run, page: Page) -> None:
     """Start processes that do the same, and compare what they wrote."""
-    import tempfile
-    from pathlib import Path
-
-    import numpy as np
-
-    from fe_drivetrain.cases.stability import (
-        fingerprints,
-    )
-    from fe_drivetrain.cases.stability.decades import (
-        FOUR_DIGITS,
-        safe_range,
-        shown,
-        slope,
-    )
-    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
-
     lengths = QUICK_LENGTHS if run.quick else LENGTHS
-    runs: dict[str, Any] = {}
     planned = {"one thread": 1, "one thread, again": 1}
+    pairs = [("one thread", "one thread, again")]
     if not run.quick:
         planned |= {"two threads": 2, "two threads, again": 2}
+        pairs += [("two threads", "two threads, again"), ("one thread", "two threads")]
+    runs: dict[str, Arrays] = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, threads in planned.items():
             with run.step(f"a process with {name}"):
-                file = Path(folder) / f"{len(runs)}.npz"
-                runs[name] = fingerprints.elsewhere(file, lengths, threads)
-    pairs = [("one thread", "one thread, again")]
-    if not run.quick:
-        pairs += [("two threads", "two threads, again"), ("one thread", "two threads")]
-
-    slenderness = (
-        [2.0, 20.0, 200.0, 2000.0] if run.quick else [2.0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000]
-    )
+                runs[name] = elsewhere(Path(folder) / f"{len(runs)}.npz", lengths, threads)
+    slenderness = QUICK_SLENDERNESS if run.quick else SLENDERNESS
     with run.step("nodes in another order"):
-        one = fingerprints.tube_answers(slenderness)
-        other = fingerprints.tube_answers(slenderness, backwards=True)
-    methods = fingerprints.methods()
-    reordered = {
-        method: np.array(
-            [
-                abs(float((one[key] / other[key])[0]) - 1.0)
-                for key in (f"{fingerprints.STIFFNESS}, {method} at {x:g}" for x in slenderness)
-            ]
-        )
-        for method in methods
-    }
-    direct = [m for m in methods if m != "multigrid"]
-    logs = np.array([np.log10(np.maximum(reordered[m], 1e-17)) for m in direct])
-    typical = 10.0 ** logs.mean(axis=0)
-    worst = np.max([reordered[m] for m in direct], axis=0)
-    _, high = safe_range(slenderness, worst, FOUR_DIGITS)
+        reordered = renumbered(slenderness)
+    direct = [values for method, values in reordered.items() if method != "multigrid"]
+    typical = 10.0 ** np.log10(np.maximum(direct, 1e-17)).mean(axis=0)
+    _, high = safe_range(slenderness, np.max(direct, axis=0), FOUR_DIGITS)
 
-    # of each part: which pairs of runs differ, and by how much of the stiffness
-    parts = ["mesh", "operator", *methods]
-    rows: list[list[Any]] = []
-    largest: dict[tuple[str, str, str], float] = {}
-    counts: dict[tuple[str, str, str], int] = {}
-    for part in parts:
-        row: list[Any] = [part]
-        for a, b in pairs:
-            names = [n for n in runs[a] if n == part or n.startswith(f"{part} at")]
-            solved = [n for n in names if not np.isnan(runs[a][n]).any()]
-            changed = fingerprints.different(
-                {n: runs[a][n] for n in solved}, {n: runs[b][n] for n in solved}
-            )
-            shifts = [
-                abs(float((runs[a][k] / runs[b][k])[0]) - 1.0)
-                for k in (f"{fingerprints.STIFFNESS}, {n}" for n in changed)
-                if k in runs[a]
-            ]
-            largest[part, a, b] = max(shifts, default=0.0)
-            counts[part, a, b] = len(changed)
-            if not changed:
-                row.append(f"same bits ({len(solved)} of {len(names)} answered)")
-            else:
-                row.append(
-                    f"{len(changed)} of {len(solved)} differ"
-                    + (f", stiffness by {max(shifts):.0e}" if any(shifts) else "")
-                )
-        rows.append(row)
-    one_thread = fingerprints.different(runs["one thread"], runs["one thread, again"])
-    verdicts = [
-        judge(
-            f"two runs with one thread, {len(runs['one thread'])} arrays from mesh to stiffness: "
-            "how many differ in any bit",
-            float(len(one_thread)),
-            0.0,
-            tolerance=0.0,
-            relative=False,
-            source="the same operations in the same order",
-            reason="bit for bit",
-            measure="identity",
-        ),
-        judge(
-            "nodes in another order: difference of the stiffness against L/D, exponent",
-            slope(slenderness, typical, (1e-15, 0.1)),
-            4.0,
-            tolerance=0.3 if run.quick else 0.15,
-            source="round-off over the energy of bending, as in stability/precision",
-            reason="round-off scatters by about a decade over the decades of the fit",
-            measure="order",
-            band=0.3,
-        ),
-    ]
+    parts = ["mesh", "operator", *reordered]
+    rows = [compare(runs, a, b, part) for part in parts for a, b in pairs]
+    one_thread = different(runs["one thread"], runs["one thread, again"])
+    page.vanishes(
+        f"two runs with one thread, {len(runs['one thread'])} arrays from mesh to stiffness: how "
+        "many differ in any bit",
+        len(one_thread),
+        within=0.0,
+        why="the same operations in the same order round in the same way: bit for bit",
+        source="IEEE 754",
+    )
+    exponent, band = fitted_exponent(slenderness, typical, (1e-15, 0.1))
+    page.equals(
+        "nodes in another order: difference of the stiffness against L/D, exponent",
+        exponent,
+        4.0,
+        within=0.3 if run.quick else 0.15,
+        why="round-off scatters by about a decade from point to point: by as much at either end of "
+        "the two and a half decades of the fit it changes a slope by 0.8, a fifth of it; 15 % of "
+        "the mean of several solvers, and twice that of the three points of a quick run",
+        source="round-off over the energy of bending, as in stability/precision",
+        measure="order",
+        band=band,
+    )
     if not run.quick:
-        verdicts += [
-            judge(
-                "one thread against two: largest difference of a stiffness",
-                max(largest[part, "one thread", "two threads"] for part in methods),
-                0.0,
-                tolerance=FOUR_DIGITS,
-                relative=False,
-                source="the same operations in another order",
-                reason="four digits of stiffness, at lengths where another order of the nodes "
-                "leaves as many",
-                measure="identity",
+        between = {r["part"]: r for r in rows if r["runs"] == "one thread / two threads"}
+        page.at_most(
+            "one thread against two: largest difference of a stiffness",
+            max(between[part]["stiffness by, at most"] for part in reordered),
+            FOUR_DIGITS,
+            why="four digits of stiffness, at lengths where another order of the nodes leaves as "
+            "many",
+            source="the same operations in another order",
+            measure="identity",
+        )
+        for part in ("mesh", "operator"):
+            page.vanishes(
+                f"{part}: one thread against two, arrays with differing bits",
+                between[part]["differ in any bit"],
+                within=0.0,
+                why="no sum is divided among threads: the order of its terms is the same",
+                source="each sum is one thread's, in one order",
+            )
+    page.limit(
+        "the last bits of a stiffness: any change of order (threads, node numbers)",
+        "L/D of a tube",
+        high=high,
+        criterion="two orders of the same operations agree to 1e-4",
+        beyond="round-off in another order is another answer; it grows as (L/D)^4",
+        program="with one thread repeats every bit; refuses a residual above 1e-2",
+        remedy="one thread (FE_DRIVETRAIN_CORES=1) for the bits; beam or meridian for the digits",
+    )
+    first = f"{pairs[0][0]} / {pairs[0][1]}"
+    changing = dict.fromkeys(
+        r["part"] for r in rows if r["runs"] != first and r["differ in any bit"]
+    )
+    page.answer(
+        f"Two runs with one thread agree in every bit of {len(runs['one thread'])} arrays, from "
+        f"mesh to stiffness: {len(one_thread)} differ.",
+        "Two threads are not tried in a quick run."
+        if run.quick
+        else f"With two threads these change in their last bits: {', '.join(changing) or 'none'}; "
+        f"these do not: {', '.join(part for part in parts if part not in changing)}.",
+        "What another order of the operations changes grows as the fourth power of L/D: "
+        f"stiffnesses agree to four digits up to L/D = {shown(high)}.",
+    )
+    page.section("Runs")
+    page.table(
+        "What differs between two processes: mesh and stiffness matrix of a main bearing, and "
+        f"displacements of tubes of L/D = {', '.join(f'{x:g}' for x in lengths)}",
+        rows,
+        [name for name in rows[0] if name != "shifts"],
+    )
+    page.text(
+        "Each process meshes, assembles and solves again, without the cache. An answer that a "
+        "solver does not give (multigrid on slender tubes) is not compared."
+    )
+    at = np.array(slenderness)
+    repeated = max(r["stiffness by, at most"] for r in rows if r["runs"] == first)
+    page.section("Nodes in another order")
+    page.chart(
+        "Difference of the bending stiffness of a tube between nodes numbered from the front and "
+        "from the rear, and between one thread and two. Shaded: four digits. Curves end where a "
+        "solver refuses",
+        [
+            *(
+                trace(
+                    f"renumbered, {method}",
+                    at[np.isfinite(values)],
+                    np.maximum(values[np.isfinite(values)], 1e-17),
+                    mode="lines+markers",
+                )
+                for method, values in reordered.items()
             ),
             *(
-                judge(
-                    f"{part}: one thread against two, arrays with differing bits",
-                    float(counts[part, "one thread", "two threads"]),
-                    0.0,
-                    tolerance=0.0,
-                    relative=False,
-                    source="each sum is one thread's, in one order",
-                    reason="bit for bit",
-                    measure="identity",
+                trace(
+                    f"one thread against two threads, {r['part']}",
+                    [x for x, change in r["shifts"].items() if change > 0.0],
+                    [change for change in r["shifts"].values() if change > 0.0],
+                    True,
                 )
-                for part in ("mesh", "operator")
+                for r in rows
+                if r["runs"] == "one thread / two threads" and r["stiffness by, at most"] > 0.0
             ),
-        ]
-    changing = [part for part in parts for a, b in pairs[1:] if counts.get((part, a, b), 0) > 0]
-    told = ", ".join(dict.fromkeys(changing)) or "none"
-    same = ", ".join(part for part in parts if part not in changing)
-    limits = [
-        Limit(
-            method="the last bits of a stiffness: any change of order (threads, node numbers)",
-            parameter="L/D of a tube",
-            high=high,
-            criterion="two orders of the same operations agree to 1e-4",
-            beyond="round-off in another order is another answer; it grows as (L/D)^4",
-            program="with one thread repeats every bit; refuses a residual above 1e-2",
-            remedy="one thread (FE_DRIVETRAIN_CORES=1) for the bits; beam or meridian for the "
-            "digits",
-        )
-    ]
-    at = np.array(slenderness)
-    repeated = max(largest[part, *pairs[0]] for part in methods)
-    return CASE.results(
-        run,
-        summary=[
-            f"Two runs with one thread agree in every bit of {len(runs['one thread'])} arrays, "
-            f"from mesh to stiffness: {len(one_thread)} differ.",
-            (
-                f"With two threads these change in their last bits: {told}; these do not: {same}."
-                if not run.quick
-                else "Two threads are not tried in a quick run."
-            ),
-            "What another order of the operations changes grows as the fourth power of L/D: "
-            f"stiffnesses agree to four digits up to L/D = {shown(high)}.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Runs",
-                items=[
-                    Table(
-                        caption="What differs between two processes: mesh and stiffness matrix of "
-                        "a main bearing, and displacements of tubes of L/D = "
-                        + ", ".join(f"{x:g}" for x in lengths),
-                        columns=["part", *(f"{a} / {b}" for a, b in pairs)],
-                        rows=rows,
-                    ),
-                    Text(
-                        text="Each process meshes, assembles and solves anew, without the cache. "
-                        "An answer that a solver does not give (multigrid on slender tubes) is not "
-                        "compared."
-                    ),
-                ],
-            ),
-            Section(
-                title="Another order",
-                items=[
-                    chart(
-                        "Difference of the bending stiffness of a tube between nodes numbered from "
-                        "the front and from the rear, and between one thread and two. Shaded: four "
-                        "digits. Curves end where a solver refuses",
-                        [
-                            *(
-                                trace(
-                                    f"renumbered, {method}",
-                                    at[np.isfinite(values)],
-                                    np.maximum(values[np.isfinite(values)], 1e-17),
-                                    mode="lines+markers",
-                                )
-                                for method, values in reordered.items()
-                            ),
-                            *(
-                                trace(
-                                    f"{a} against {b}, {method}",
-                                    *_changes(runs, a, b, method, lengths),
-                                    True,
-                                )
-                                for a, b in pairs[2:]
-                                for method in methods
-                                if largest[method, a, b] > 0.0
-                            ),
-                            trace(
-                                "two runs, one thread",
-                                at,
-                                np.full(len(at), max(repeated, 1e-17)),
-                                line={"dash": "dash"},
-                            ),
-                        ],
-                        "L/D",
-                        "relative difference",
-                        ("x", "y"),
-                        (None, high),
-                    )
-                ],
+            trace(
+                "two runs, one thread",
+                at,
+                np.full(len(at), max(repeated, 1e-17)),
+                line={"dash": "dash"},
             ),
         ],
-        limits=limits,
-        figures={
-            "slenderness": slenderness,
-            "renumbered": {
-                m: [float(v) if np.isfinite(v) else None for v in values]
-                for m, values in reordered.items()
-            },
-        },
+        "L/D",
+        "relative difference",
+        "xy",
+        (None, high),
     )
-
-
-def _changes(runs: Any, a: str, b: str, method: str, lengths: Any) -> tuple[Any, Any]:
-    """L/D and difference of the stiffness, where there is one."""
-    found = []
-    for x in lengths:
-        key = f"stiffness, {method} at {x:g}"
-        change = abs(float((runs[a][key] / runs[b][key])[0]) - 1.0)
-        if change > 0.0:
-            found.append((x, change))
-    return [x for x, _ in found], [change for _, change in found]
-
-
-CASE = Case(
-    name="stability/repeatability",
-    title="Repeatability: two runs bit for bit, with one thread and with two",
-    source="IEEE 754: sums depend on their order; Higham 2002, ch. 4",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+    page.data("slenderness", slenderness)
+    page.data("renumbered", reordered)

@@ -7,9 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.stability import (
-    soft_springs,
-)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
@@ -18,6 +15,7 @@ from fe_drivetrain.operator import assemble
 from fe_drivetrain.response import LOADS, VERTICAL, mesh_scene, without_gearbox
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import TOLERANCE, System, factorise, multigrid, reduce
+from fe_drivetrain.validation import soft_springs
 
 OPTIONS = multigrid.Options(coarsest=50)
 """Few nodes are left to the dense factor, so that small meshes have the levels of large ones."""

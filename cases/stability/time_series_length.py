@@ -278,21 +278,12 @@ def _first_beyond(x: Any, error: Any, allowed: float) -> float | None:
 def _measured(samples: int, way: str) -> Any:
     """What a comparison took in a process of its own."""
     import json
-    import subprocess
-    import sys
 
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "fe_drivetrain.cases.stability.streamed_series",
-            str(samples),
-            way,
-        ],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    from fe_drivetrain.common import run_python
+
+    program = "fe_drivetrain.cases.stability.streamed_series"
+    done = run_python("-m", program, str(samples), way)
+    done.check_returncode()
     return json.loads(done.stdout)
 
 

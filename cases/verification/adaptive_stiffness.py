@@ -2,10 +2,14 @@
 ones.
 """
 
-from typing import Any
+import numpy as np
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.rigid_balance import check_balance
+from fe_drivetrain.mesh import marked, refined_sizes
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.validation import rigid_ended_shafts
 
 SHAFT = "stepped, sharp"
 LOAD = "bending"
@@ -21,171 +25,123 @@ STEPS, QUICK_STEPS = 4, 1
 MOST = 60_000
 
 
-def run(run: Run) -> Any:
+def record(kind: str, solved: rigid_ended_shafts.Solved, exact: float, marks: int) -> Record:
+    """One mesh: its stiffness, its true error and the estimated one."""
+    k, estimate = solved.stiffness[LOAD], solved.estimate[LOAD]
+    return {
+        "meshes": kind,
+        "elements": len(solved.mesh.cells),
+        "marked": marks,
+        "unknowns": solved.unknowns,
+        "stiffness [MN m/rad]": k / 1e6,
+        "± stiffness [MN m/rad]": estimate.band(k) / 1e6,
+        "true error [%]": 100 * (k / exact - 1.0),
+        "estimated error [%]": 100 * estimate.relative,
+        "error with the estimate taken out [%]": 100 * (estimate.improved(k) / exact - 1.0),
+    }
+
+
+@case(
+    "Adaptive against uniform meshes: bending stiffness of a shaft with a sharp step",
+    source="Doerfler 1996, SIAM J. Numer. Anal. 33, 1106-1124; Zienkiewicz and Zhu 1992, Int. J. "
+    "Numer. Meth. Eng. 33, 1331-1364; reference from the shaft's meridian",
+)
+def run(run: Run, page: Page) -> None:
     """Refine step by step, and compare with uniform meshes."""
-    import numpy as np
-
-    from fe_drivetrain.cases.verification import rigid_balance
-    from fe_drivetrain.mesh import marked, refined_sizes
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.validation import (
-        rigid_ended_shafts,
-    )
-
     shaft = rigid_ended_shafts.SHAFTS[SHAFT]
     with run.step("reference"):
         exact = rigid_ended_shafts.exact(shaft, 0.1, 10)[LOAD]
         rough = rigid_ended_shafts.exact(shaft, 0.1, 5)[LOAD]
 
-    rows: list[list[Any]] = []
-    imbalances: list[float] = []
-
-    def add(kind: str, found: Any, marks: int) -> tuple[int, float]:
-        k, estimate = found.stiffness[LOAD], found.estimate[LOAD]
-        error = k / exact - 1.0
-        imbalances.append(found.imbalance)
-        rows.append(
-            [
-                kind,
-                len(found.mesh.cells),
-                marks,
-                found.unknowns,
-                k / 1e6,
-                estimate.band(k) / 1e6,
-                100 * error,
-                100 * estimate.relative,
-                100 * (estimate.improved(k) / exact - 1.0),
-            ]
-        )
-        return found.unknowns, error
-
-    uniform = []
+    rows: list[Record] = []
+    imbalances = []
     for size, turn in QUICK_UNIFORM if run.quick else UNIFORM:
-        with run.step("uniform meshes"):
-            mesh = rigid_ended_shafts.meshed(shaft, size, turn)
+        mesh = run.timed("uniform meshes", rigid_ended_shafts.meshed, shaft, size, turn)
         with run.step("uniform: solve and estimate"):
-            found = rigid_ended_shafts.solved(mesh, shaft, (LOAD,))
-        uniform.append(add("uniform", found, 0))
-
-    adaptive = []
+            solved = rigid_ended_shafts.solved(mesh, shaft, (LOAD,))
+        rows.append(record("uniform", solved, exact, 0))
+        imbalances.append(solved.imbalance)
     local = None
     for _ in range(1 + (QUICK_STEPS if run.quick else STEPS)):
-        with run.step("adaptive meshes"):
-            mesh = rigid_ended_shafts.meshed(shaft, *START, local)
+        mesh = run.timed("adaptive meshes", rigid_ended_shafts.meshed, shaft, *START, local)
         with run.step("adaptive: solve and estimate"):
-            found = rigid_ended_shafts.solved(mesh, shaft, (LOAD,))
-            cells = marked(found.estimate[LOAD].indicators)
+            solved = rigid_ended_shafts.solved(mesh, shaft, (LOAD,))
+            cells = marked(solved.estimate[LOAD].indicators)
             local = refined_sizes(mesh, cells)
-        adaptive.append(add("adaptive", found, len(cells)))
-        run.report(f"adaptive: {found.unknowns:,} unknowns, error {adaptive[-1][1]:.2g}")
-        if found.unknowns > MOST:
+        rows.append(record("adaptive", solved, exact, len(cells)))
+        imbalances.append(solved.imbalance)
+        error = rows[-1]["true error [%]"] / 100
+        run.report(f"adaptive: {solved.unknowns:,} unknowns, error {error:.2g}")
+        if solved.unknowns > MOST:
             break
 
-    unknowns, errors = np.array(adaptive).T
-    of_uniform = np.array(uniform)
-    last = int(np.flatnonzero(unknowns <= of_uniform[-1, 0]).max())
-    same = float(np.exp(np.interp(np.log(unknowns[last]), *np.log(of_uniform.T))))
-    k, estimate = found.stiffness[LOAD], found.estimate[LOAD]
-    slope = [
-        float(np.polyfit(np.log(n), np.log(e), 1)[0]) for n, e in (of_uniform.T, (unknowns, errors))
-    ]
-    verdicts = [
-        rigid_balance.balance_verdict(imbalances),
-        judge(
-            f"error of the adaptive mesh of {int(unknowns[last]):,} unknowns over that of a "
-            "uniform one of as many",
-            float(errors[last] / same),
-            0.0,
-            tolerance=1.0,
-            relative=False,
-            source="uniform meshes of this case, between two of them on logarithmic scales",
-            reason="refinement that does not beat uniform meshes is not worth its solves",
-        ),
-        judge(
-            "bending stiffness on the last adaptive mesh",
-            k,
-            exact,
-            tolerance=estimate.band(k) / exact,
-            unit="N m/rad",
-            source="the shaft's meridian in fourth-order elements, graded to its corners; "
-            f"uncertain by {abs(rough / exact - 1):.1g}",
-            reason="the band, three times the error estimated on that one mesh",
-            measure="stiffness",
-            band=estimate.band(k),
-        ),
-    ]
-    return CASE.results(
-        run,
-        summary=[
-            f"At {int(unknowns[last]):,} unknowns the adaptive mesh is off by "
-            f"{100 * errors[last]:.2g} %, a uniform one of as many by {100 * same:.2g} %.",
-            f"Error falls with unknowns to the power {slope[1]:.2f} on adaptive meshes, "
-            f"{slope[0]:.2f} on uniform ones: the sharp step holds these back.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Error against unknowns",
-                items=[
-                    chart(
-                        "Error of the bending stiffness, true and as estimated on each mesh",
-                        [
-                            trace("uniform", *of_uniform.T, mode="lines+markers"),
-                            trace("adaptive", unknowns, errors, mode="lines+markers"),
-                            *(
-                                trace(
-                                    f"{kind}, estimated",
-                                    [r[3] for r in rows if r[0] == kind],
-                                    [r[7] / 100 for r in rows if r[0] == kind],
-                                    mode="lines+markers",
-                                    line={"dash": "dot"},
-                                )
-                                for kind in ("uniform", "adaptive")
-                            ),
-                        ],
-                        "unknowns",
-                        "relative error",
-                        ("x", "y"),
-                    ),
-                    Table(
-                        caption="Meshes of curved tetrahedra; marked cells hold half of the "
-                        "estimated error and are halved in size on the next mesh",
-                        columns=[
-                            "meshes",
-                            "elements",
-                            "marked",
-                            "unknowns",
-                            "stiffness [MN m/rad]",
-                            "± stiffness [MN m/rad]",
-                            "true error [%]",
-                            "estimated error [%]",
-                            "error with the estimate taken out [%]",
-                        ],
-                        rows=rows,
-                    ),
-                    Text(
-                        text="Each mesh is made anew from the shape, with sizes from the one "
-                        "before, so that its curved surfaces are as exact as it is fine."
-                    ),
-                ],
-            )
-        ],
-        figures={
-            "uniform": {"unknowns": of_uniform[:, 0].tolist(), "error": of_uniform[:, 1].tolist()},
-            "adaptive": {"unknowns": unknowns.tolist(), "error": errors.tolist()},
-        },
+    curves = {
+        kind: np.array([column(series, "unknowns"), column(series, "true error [%]")])
+        for kind, series in grouped(rows, "meshes")
+    }
+    uniform, adaptive = curves["uniform"], curves["adaptive"]
+    last = int(np.flatnonzero(adaptive[0] <= uniform[0, -1]).max())
+    unknowns, error = int(adaptive[0, last]), adaptive[1, last]
+    same = float(np.exp(np.interp(np.log(unknowns), *np.log(uniform))))
+    slope = {
+        kind: np.polyfit(np.log(curve[0]), np.log(curve[1]), 1)[0] for kind, curve in curves.items()
+    }
+
+    check_balance(page, imbalances)
+    page.at_most(
+        f"error of the adaptive mesh of {unknowns:,} unknowns over that of a uniform one of as "
+        "many",
+        float(error / same),
+        1.0,
+        why="refinement that does not beat uniform meshes is not worth its solves",
+        source="uniform meshes of this case, between two of them on logarithmic scales",
     )
-
-
-CASE = Case(
-    name="verification/adaptive_stiffness",
-    title="Adaptive against uniform meshes: bending stiffness of a shaft with a sharp step",
-    source="Doerfler 1996, SIAM J. Numer. Anal. 33, 1106-1124; Zienkiewicz and Zhu 1992, Int. J. "
-    "Numer. Meth. Eng. 33, 1331-1364; reference from the shaft's meridian",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+    k, estimate = solved.stiffness[LOAD], solved.estimate[LOAD]
+    page.equals(
+        "bending stiffness on the last adaptive mesh",
+        k,
+        exact,
+        within=estimate.band(k) / exact,
+        why="the band, three times the error estimated on that one mesh: the check is of the "
+        "estimate, which must cover the true error",
+        source="the shaft's meridian in fourth-order elements, graded to its corners; "
+        f"uncertain by {abs(rough / exact - 1):.1g}",
+        unit="N m/rad",
+        measure="stiffness",
+        basis="self-consistency",
+        band=estimate.band(k),
+    )
+    page.answer(
+        f"At {unknowns:,} unknowns the error of the adaptive mesh is {error:.2g} %, that of a "
+        f"uniform one of as many {same:.2g} %.",
+        f"Error falls with unknowns to the power {slope['adaptive']:.2f} on adaptive meshes, "
+        f"{slope['uniform']:.2f} on uniform ones: the sharp step holds these back.",
+    )
+    page.section("Error against unknowns")
+    page.chart(
+        "Error of the bending stiffness, true and as estimated on each mesh",
+        [trace(kind, *curve, mode="lines+markers") for kind, curve in curves.items()]
+        + [
+            trace(
+                f"{kind}, estimated",
+                column(series, "unknowns"),
+                column(series, "estimated error [%]"),
+                mode="lines+markers",
+                line={"dash": "dot"},
+            )
+            for kind, series in grouped(rows, "meshes")
+        ],
+        "unknowns",
+        "error [%]",
+        ("x", "y"),
+    )
+    page.table(
+        "Meshes of curved tetrahedra; marked cells hold half of the estimated error and are "
+        "halved in size on the next mesh",
+        rows,
+    )
+    page.text(
+        "Each mesh is generated again from the shape, with sizes from the one before, so that its "
+        "curved surfaces are as exact as it is fine."
+    )
+    page.data("meshes", rows)

@@ -1,28 +1,32 @@
 """Energy in equals energy stored, part by part and spring by spring, gravity included."""
 
-from typing import Any
+import numpy as np
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification import scenes
+from fe_drivetrain.common import Floats
+from fe_drivetrain.report import Chart
+from fe_drivetrain.response import GRAVITY, LOADS
+from fe_drivetrain.suite import Page, Run
 
 #: A typical mean load: hub forces [N] and moments [N m] (Fx 200 kN, Fz -370 kN, My 660 kN m), then
 #: accelerations, and the weight of the gearbox.
 HUB = (200e3, 0.0, -370e3, 0.0, 660e3, 0.0)
+LABELS = [*LOADS, "working load"]
 
 
-def run(run: Run) -> Any:
+@case("Energy in equals energy stored", source="exact: Clapeyron's theorem")
+def run(run: Run, page: Page) -> None:
     """Clapeyron's theorem for ten unit loads and for a working load with gravity, both scenes."""
-    import numpy as np
-
-    from fe_drivetrain.cases.verification import (
-        scenes,
+    page.section("Energy")
+    page.text(
+        "Work: the nodal loads on the nodal displacements. Stored: strain energy of each part by "
+        "its own stiffness, and of the springs at the gearbox by their motion. Joint, couplings "
+        f"and supports do no work. The working load is Fx {HUB[0] / 1e3:g} kN, Fz "
+        f"{HUB[2] / 1e3:g} kN, My {HUB[4] / 1e3:g} kN m at the hub with self-weight and the "
+        "gearbox's weight, applied from the unstressed state."
     )
-    from fe_drivetrain.report import Chart, Section, Table, Text, judge
-    from fe_drivetrain.response import GRAVITY, LOADS
-
-    verdicts, charts = [], []
-    rows: list[list[Any]] = []
-    worst = {}
+    rows, worst = [], {}
     for kind in scenes.KINDS:
         model, response = scenes.solved(run, kind)
         work = scenes.work(model, response)
@@ -32,104 +36,67 @@ def run(run: Run) -> Any:
             stored[f"springs of the {point.name}"] = motion.T @ k @ motion
         total = np.sum(list(stored.values()), axis=0)
         own = work.diagonal()
-        imbalance = np.abs(total.diagonal() - own) / own
+        imbalance = float((np.abs(total.diagonal() - own) / own).max())
         working = np.array([*HUB, 0.0, 0.0, -GRAVITY, model.scene.gearbox.weight])
-        put_in, kept = 0.5 * working @ work @ working, 0.5 * working @ total @ working
-        worst[kind] = float(max(imbalance.max(), abs(kept / put_in - 1.0)))
-        common: dict[str, Any] = {
-            "tolerance": 1e-9,
-            "source": "Clapeyron: half the work of the loads is stored",
-            "reason": "the energy error at which the solver stops",
-        }
-        verdicts += [
-            judge(
-                f"{kind}: work less energy stored, largest of ten unit loads, relative",
-                float(imbalance.max()),
-                0.0,
-                relative=False,
-                measure="identity",
-                band=response.energy_error,
-                **common,
-            ),
-            judge(
-                f"{kind}: energy stored under a working load, gravity and gearbox weight",
-                float(kept),
-                float(put_in),
-                unit="J",
-                measure="energy",
-                band=response.energy_error * float(put_in),
-                **common,
-            ),
-        ]
-        loads = np.vstack([np.eye(10), working])
-        labels = [*LOADS, "working load"]
-        energies = {
-            part: 0.5 * np.einsum("li,ij,lj->l", loads, e, loads) for part, e in stored.items()
-        }
-        done = 0.5 * np.einsum("li,ij,lj->l", loads, work, loads)
-        for j, label in enumerate(labels):
-            in_all = sum(float(e[j]) for e in energies.values())
-            rows.append([kind, label, float(done[j]), in_all, in_all / float(done[j]) - 1.0])
-        charts.append(
-            Chart(
-                caption=f"{kind}: where the work of each load is stored",
-                figure={
-                    "data": [
-                        {
-                            "type": "bar",
-                            "name": part,
-                            "x": labels,
-                            "y": [round(100.0 * float(v), 4) for v in e / done],
-                        }
-                        for part, e in energies.items()
-                    ],
-                    "layout": {
-                        "barmode": "stack",
-                        "yaxis": {"title": {"text": "share of the work [%]"}},
-                    },
-                },
-            )
+        done, kept = (0.5 * working @ energy @ working for energy in (work, total))
+        page.vanishes(
+            f"{kind}: work less energy stored, largest of ten unit loads, relative",
+            imbalance,
+            within=1e-9,
+            why="the energy error at which the solver stops",
+            source="Clapeyron: half the work of the loads is stored",
+            band=response.energy_error,
         )
-    return CASE.results(
-        run,
-        summary=[
-            "Half the work of the loads is found again in parts and springs to "
-            f"{worst['spherical']:.0e} in the spherical and {worst['bonded']:.0e} in the bonded "
-            "scene, gravity included.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Energy",
-                items=[
-                    Text(
-                        text="Work: the nodal loads on the nodal displacements. Stored: strain "
-                        "energy of each part by its own stiffness, and of the springs at the "
-                        "gearbox by their motion. Joint, couplings and supports do no work. The "
-                        f"working load is Fx {HUB[0] / 1e3:g} kN, Fz {HUB[2] / 1e3:g} kN, My "
-                        f"{HUB[4] / 1e3:g} kN m at the hub with self-weight and the gearbox's "
-                        "weight, applied from the unstressed state."
-                    ),
-                    *charts,
-                    Table(
-                        caption="Work of each load and energy stored",
-                        columns=["scene", "load", "work / 2 [J]", "stored [J]", "difference [-]"],
-                        rows=rows,
-                    ),
-                ],
+        page.equals(
+            f"{kind}: energy stored under a working load, gravity and gearbox weight",
+            float(kept),
+            float(done),
+            within=1e-9,
+            why="the energy error at which the solver stops",
+            source="Clapeyron: half the work of the loads is stored",
+            unit="J",
+            measure="energy",
+            band=response.energy_error * float(done),
+        )
+        worst[kind] = max(imbalance, abs(float(kept / done) - 1.0))
+
+        loads = np.vstack([np.eye(10), working])
+        energies = {part: _of_each(loads, e) for part, e in stored.items()}
+        works = _of_each(loads, work)
+        for j, label in enumerate(LABELS):
+            in_all = sum(float(e[j]) for e in energies.values())
+            rows.append(
+                {
+                    "scene": kind,
+                    "load": label,
+                    "work / 2 [J]": float(works[j]),
+                    "stored [J]": in_all,
+                    "difference [-]": in_all / float(works[j]) - 1.0,
+                }
             )
-        ],
+        shares = {part: 100.0 * e / works for part, e in energies.items()}
+        page.add(_stacked(f"{kind}: where the work of each load is stored", shares))
+    page.table("Work of each load and energy stored", rows)
+    page.answer(
+        "Half the work of the loads is found again in parts and springs to "
+        f"{worst['spherical']:.0e} in the spherical and {worst['bonded']:.0e} in the bonded scene, "
+        "gravity included."
     )
+    page.data("energies", rows)
 
 
-CASE = Case(
-    name="verification/energy_balance",
-    title="Energy in equals energy stored",
-    source="exact: Clapeyron's theorem",
-    run=run,
-)
+def _of_each(loads: Floats, energy: Floats) -> Floats:
+    """(m,) half of the quadratic form of each load."""
+    return np.asarray(0.5 * np.einsum("li,ij,lj->l", loads, energy, loads))
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def _stacked(caption: str, shares: dict[str, Floats]) -> Chart:
+    """Shares [%] of each part, as bars on one another."""
+    bars = [
+        {"type": "bar", "name": part, "x": LABELS, "y": [round(float(v), 4) for v in values]}
+        for part, values in shares.items()
+    ]
+    axis = {"title": {"text": "share of the work [%]"}}
+    return Chart(
+        caption=caption, figure={"data": bars, "layout": {"barmode": "stack", "yaxis": axis}}
+    )

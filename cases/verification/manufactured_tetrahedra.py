@@ -1,20 +1,19 @@
 """Orders of convergence of tetrahedra for a manufactured solution, on a bar and a curved body."""
 
-from typing import Any
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.orders import add_manufactured
+from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation import manufactured as m
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
 
-
-def run(run: Run) -> Any:
+@case(
+    "Manufactured solution: order of convergence of P1 and P2 tetrahedra",
+    source="exact: manufactured displacement; orders k + 1 in L2 and k in the energy norm, Ciarlet "
+    "1978, The Finite Element Method for Elliptic Problems (recalled, not re-read); isoparametric "
+    "on curved domains Lenoir 1986, SIAM J. Numer. Anal. 23, 562-580 (recalled, not re-read)",
+)
+def run(run: Run, page: Page) -> None:
     """Errors of P1, of straight P2 on a bar, and of curved P2, on ever finer meshes."""
-    from fe_drivetrain.cases.verification import (
-        orders,
-    )
-    from fe_drivetrain.validation import (
-        manufactured as m,
-    )
-
     p1 = (4, 6, 9) if run.quick else (4, 8, 12, 16)
     p2 = (2, 3, 4) if run.quick else (2, 4, 6, 8)
     series = []
@@ -26,22 +25,9 @@ def run(run: Run) -> Any:
         with run.step(label):
             mesh = m.regular(nodes, shape)
             # assembled with degree 2 and 4
-            one = m.convergence(label, divisions, mesh, domain, m.three_waves(), theory, degree=6)
-            series.append(one)
-    return orders.results(CASE, run, series, ["Straight P2 on a curved body: straight_on_curved."])
-
-
-CASE = Case(
-    name="verification/manufactured_tetrahedra",
-    title="Manufactured solution: order of convergence of P1 and P2 tetrahedra",
-    source="exact: manufactured displacement; orders k + 1 in L2 and k in the energy norm, Ciarlet "
-    "1978, The Finite Element Method for Elliptic Problems (recalled, not re-read); "
-    "isoparametric on curved domains "
-    "Lenoir 1986, SIAM J. Numer. Anal. 23, 562-580 (recalled, not re-read)",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+            series.append(
+                m.convergence(label, divisions, mesh, domain, m.three_waves(), theory, degree=6)
+            )
+    add_manufactured(
+        run, page, series, "Straight P2 on a curved body: see the case straight_on_curved."
+    )

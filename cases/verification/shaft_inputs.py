@@ -2,6 +2,12 @@
 
 from fe_drivetrain.report import Table
 from fe_drivetrain.scene import Material
+from fe_drivetrain.suite import Page
+
+
+def show_inputs(page: Page, *rows: tuple[str, float | str, str, str]) -> None:
+    """Add the table of a case's inputs: name, value, unit, source."""
+    page.table("Inputs", rows, ["input", "value", "unit", "source"])
 
 
 def inputs(*rows: tuple[str, float | str, str, str]) -> Table:
@@ -14,7 +20,7 @@ def inputs(*rows: tuple[str, float | str, str, str]) -> Table:
 
 
 def steel_rows(material: Material) -> list[tuple[str, float | str, str, str]]:
-    """E, nu and what follows, for `inputs`."""
+    """E, nu and what follows, for `show_inputs`."""
     return [
         ("E", material.youngs_modulus / 1e9, "GPa", "steel, assumed"),
         ("nu", material.poisson_ratio, "-", "steel, assumed"),

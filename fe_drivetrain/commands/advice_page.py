@@ -31,17 +31,17 @@ def ladder(advice: Advice) -> Section:
     Section
     """
     rows: list[list[Cell]] = []
-    for number, rung in enumerate(advice.results):
-        model = rung.model
+    for number, result in enumerate(advice.results):
+        model = result.model
         rows.append(
             [
                 f"{model.level} {model.title}",
-                _value(rung),
-                _percent(rung.error),
+                _value(result),
+                _percent(result.error),
                 _percent(advice.step(number)),
-                _percent(rung.estimate),
-                rung.seconds,
-                advice.top.seconds / rung.seconds,
+                _percent(result.estimate),
+                result.seconds,
+                advice.top.seconds / result.seconds,
                 "chosen" if number == advice.chosen else "",
                 "; ".join(model.neglects) or "nothing in this scene",
             ]
@@ -131,18 +131,18 @@ _EACH_LOAD = (
 
 
 def _against_time(advice: Advice) -> Chart:
-    known = [rung for rung in advice.results if np.isfinite(rung.error)]
+    known = [result for result in advice.results if np.isfinite(result.error)]
     traces: list[Any] = [
         trace(
-            f"level {rung.model.level}, {rung.model.title}",
-            [rung.seconds],
-            [max(100 * (rung.error if rung is not advice.top else rung.estimate), _LEAST)],
+            f"level {result.model.level}, {result.model.title}",
+            [result.seconds],
+            [max(100 * (result.error if result is not advice.top else result.estimate), _LEAST)],
             points=True,
-            marker={"size": 14 if rung is _chosen(advice) else 9},
+            marker={"size": 14 if result is _chosen(advice) else 9},
         )
-        for rung in known
+        for result in known
     ]
-    times = [rung.seconds for rung in known]
+    times = [result.seconds for result in known]
     limit = 100 * advice.tolerance
     traces.append(
         trace("tolerance", [min(times), max(times)], [limit, limit], line={"dash": "dash"})
@@ -161,8 +161,10 @@ def _chosen(advice: Advice) -> LevelResult | None:
     return None if advice.chosen is None else advice.results[advice.chosen]
 
 
-def _value(rung: LevelResult) -> Cell:
-    value = float(rung.values[0]) if len(rung.values) == 1 else float(np.linalg.norm(rung.values))
+def _value(result: LevelResult) -> Cell:
+    value = (
+        float(result.values[0]) if len(result.values) == 1 else float(np.linalg.norm(result.values))
+    )
     return value if np.isfinite(value) else None
 
 
@@ -221,13 +223,13 @@ def advised(
         "rungs",
         [
             {
-                "level": rung.model.level,
-                "title": rung.model.title,
-                "values": rung.values,
-                "seconds": rung.seconds,
-                "estimate": None if np.isnan(rung.estimate) else rung.estimate,
-                "error": None if np.isnan(rung.error) else rung.error,
+                "level": result.model.level,
+                "title": result.model.title,
+                "values": result.values,
+                "seconds": result.seconds,
+                "estimate": None if np.isnan(result.estimate) else result.estimate,
+                "error": None if np.isnan(result.error) else result.error,
             }
-            for rung in advice.results
+            for result in advice.results
         ],
     )

@@ -15,7 +15,7 @@ from fe_drivetrain.commands.scenes import named_scene_or_component
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.processes import hold_threads
+from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
     from fe_drivetrain.export.superelement import Superelement

@@ -21,7 +21,7 @@ from fe_drivetrain.commands.terminal import write
 if TYPE_CHECKING:
     from rich.progress import TaskID
 
-    from fe_drivetrain.common.processes import Report
+    from fe_drivetrain.common.progress import Progress
 
 
 class _Step(NamedTuple):
@@ -48,20 +48,21 @@ class _Stream(io.TextIOBase):
 
 
 @contextmanager
-def show_steps() -> Iterator[Report]:
+def show_steps() -> Iterator[Progress]:
     """Show steps, each from its report until the next one of its lane.
 
     Yields
     ------
-    Report
+    Progress
         Called with a step and its lane: 0 for this process, 1 and on for those in parallel to it.
         An empty step ends the last one. A step that counts, as in "loads (12 of 144)", is one step.
     """
     from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Display
+    from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
 
     console = Console(file=cast(IO[str], _Stream()), highlight=False)
-    display = Progress(
+    display = Display(
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),
         TimeElapsedColumn(),

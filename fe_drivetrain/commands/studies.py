@@ -21,7 +21,7 @@ from fe_drivetrain.commands.settings import (
     parse_tolerance,
 )
 from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
-from fe_drivetrain.common.processes import hold_threads
+from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
     from fe_drivetrain.suite.case import Run

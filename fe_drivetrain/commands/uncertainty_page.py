@@ -203,15 +203,15 @@ def ladder(found: Study) -> Section:
     """
     rows: list[list[Cell]] = []
     for advice in found.advices:
-        for rung in advice.results:
+        for result in advice.results:
             rows.append(
                 [
                     advice.quantity.name,
-                    f"{rung.model.level} {rung.model.title}",
-                    _percent(rung.error),
-                    _percent(rung.estimate),
-                    rung.seconds,
-                    "sampled" if rung is result_at(advice, found.level) else "",
+                    f"{result.model.level} {result.model.title}",
+                    _percent(result.error),
+                    _percent(result.estimate),
+                    result.seconds,
+                    "sampled" if result is result_at(advice, found.level) else "",
                 ]
             )
     table = Table(

@@ -6,7 +6,9 @@ from .cache import Cache as Cache
 from .cache import user_cache as user_cache
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
-from .processes import CORES_VARIABLE as CORES_VARIABLE
-from .processes import Report as Report
-from .processes import cores as cores
-from .processes import silent as silent
+from .interpreter import run_python as run_python
+from .processes import Processes as Processes
+from .progress import Progress as Progress
+from .progress import silent as silent
+from .threads import CORES_VARIABLE as CORES_VARIABLE
+from .threads import cores as cores

@@ -9,6 +9,7 @@ import pkgutil
 import re
 import time
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from functools import partial
@@ -17,7 +18,8 @@ from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import HiddenFolder
-from fe_drivetrain.common.processes import Job, Processes, Report, silent
+from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.progress import Progress, silent
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
@@ -56,7 +58,7 @@ class Run:
     settings: Mapping[str, Any]
     quick: bool
     folder: Path
-    report: Report = silent
+    report: Progress = silent
     times: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
@@ -81,7 +83,7 @@ class Run:
 
     @contextmanager
     def side_by_side(self, jobs: int) -> Iterator[Jobs]:
-        """Do independent work in processes, as many as the cores allow; see `parallel`.
+        """Do independent work in processes, as many as the cores allow; see `Processes`.
 
         Parameters
         ----------
@@ -122,7 +124,7 @@ class Jobs:
 class RunJob(Generic[_T]):
     """One such piece of work."""
 
-    def __init__(self, job: Job[tuple[_T, dict[str, float]]], run: Run, elsewhere: bool) -> None:
+    def __init__(self, job: Future[tuple[_T, dict[str, float]]], run: Run, elsewhere: bool) -> None:
         self._job = job
         self._run = run
         self._elsewhere = elsewhere
@@ -144,7 +146,7 @@ class RunJob(Generic[_T]):
 
 
 def _with_own_run(
-    report: Report,
+    report: Progress,
     function: Callable[..., _T],
     settings: Mapping[str, Any],
     quick: bool,
@@ -353,7 +355,7 @@ def run_case(
     out: Path,
     settings: Mapping[str, Any] | None = None,
     quick: bool = False,
-    report: Report = silent,
+    report: Progress = silent,
 ) -> Results:
     """Run a case and write its result folder: results.json, report.html and what else it makes.
 
@@ -386,7 +388,7 @@ def run_case(
 
 
 def run_into(
-    case: AnyCase, folder: Path, settings: Mapping[str, Any], quick: bool, report: Report
+    case: AnyCase, folder: Path, settings: Mapping[str, Any], quick: bool, report: Progress
 ) -> Results:
     """Run a case and write its results and its page into a folder as it goes; see `run_case`."""
     from fe_drivetrain.common import cache

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.files import HiddenFolder, sentence_about
-from fe_drivetrain.common.processes import Job, Processes, Report, silent
+from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import AnyCase as Case
 from fe_drivetrain.suite.case import new_folder, put_in_place, run_into
@@ -25,7 +27,7 @@ def run_cases(
     out: Path,
     settings: Mapping[str, Any] | None = None,
     quick: bool = False,
-    report: Report = silent,
+    report: Progress = silent,
 ) -> dict[str, Problem]:
     """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
 
@@ -73,7 +75,7 @@ def run_cases(
             folders[case.name] = new_folder(result_folder(out, case))
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), report, each_for_itself=True) as processes:
-            jobs: dict[Job[Problem | None], Case] = {
+            jobs: dict[Future[Problem | None], Case] = {
                 processes.start(
                     _run, case, folders[case.name].path, dict(settings or {}), quick
                 ): case
@@ -96,7 +98,7 @@ def run_cases(
     return problems
 
 
-def _outcome(job: Job[Problem | None]) -> Problem | None:
+def _outcome(job: Future[Problem | None]) -> Problem | None:
     """What a case's process said of it, or how it died."""
     try:
         return job.result()
@@ -105,7 +107,7 @@ def _outcome(job: Job[Problem | None]) -> Problem | None:
 
 
 def _run(
-    report: Report, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool
+    report: Progress, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool
 ) -> Problem | None:
     """Run a case into a folder; why there are no results, if there are none."""
 

@@ -45,7 +45,7 @@ DEFAULT = "hub.stiffness.uz"
 _BOUNDS: tuple[Coupling, Coupling] = ("rigid", "averaged")
 _SOFT = "soft "
 
-_Report = Callable[[str], object]
+_Progress = Callable[[str], object]
 _T = TypeVar("_T")
 
 
@@ -117,7 +117,7 @@ def study(
     count: int = 128,
     seed: int = 0,
     sobol: int = 0,
-    report: _Report = lambda step: None,
+    report: _Progress = lambda step: None,
 ) -> Study:
     """Propagate a scene's uncertain values to what is reported of it.
 
@@ -199,7 +199,7 @@ def study(
     )
 
 
-def _surfaces(scene: Scene, solver: Resolver, seed: int, report: _Report) -> list[UnitSurface]:
+def _surfaces(scene: Scene, solver: Resolver, seed: int, report: _Progress) -> list[UnitSurface]:
     """Of each bearing unit that depends on uncertain values."""
     found = []
     for unit in scene.bearing_units:
@@ -225,7 +225,7 @@ def level_error(advice: Advice, level: int) -> float:
 
 
 def _advised(
-    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, report: _Report
+    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, report: _Progress
 ) -> tuple[list[Advice], int]:
     """The ladder of each quantity that has one, and the cheapest level that is enough for all."""
     names = [name for name in asked if name.startswith("hub.") or name[-2] in "FM"] or [DEFAULT]

@@ -1,5 +1,6 @@
 from . import bar_sections as bar_sections
 from . import bracket_plane as bracket_plane
+from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
 from . import distorted_blocks as distorted_blocks
 from . import exact_blocks as exact_blocks
@@ -14,6 +15,7 @@ from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import manufactured as manufactured
 from . import other_precisions as other_precisions
+from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
 from . import quarter_disc as quarter_disc
@@ -24,6 +26,7 @@ from . import seat_couplings as seat_couplings
 from . import shaft_ends as shaft_ends
 from . import shaft_theory as shaft_theory
 from . import slivers as slivers
+from . import soft_springs as soft_springs
 from . import solid_fillet as solid_fillet
 from . import solid_shafts as solid_shafts
 from . import spherical_shells as spherical_shells

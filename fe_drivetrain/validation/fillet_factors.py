@@ -32,15 +32,8 @@ LOADS = ("tension", "bending", "torsion")
 
 #: Length of shaft on either side of the shoulder, in the larger diameter: what the shoulder adds to
 #: the exact end stresses has died down to 1e-4 or less there (the slowest of the axisymmetric end
-#: effects decays as exp(-2.72 x / R), Little and Childs 1967; recalled, not re-read).
+#: effects decays as exp(-2.72 x / R), from the first root of g^2 (J0^2 + J1^2) = 2 (1 - nu) J1^2).
 REACH = 2.0
-
-#: D/d and r/d of the sweep.
-WIDES = (1.1, 1.5, 2.0, 3.0)
-RADII = (0.03, 0.05, 0.12, 0.2, 0.3)
-#: Those judged one by one: a low, a middle and a high step.
-JUDGED = ((1.1, 0.05), (1.5, 0.12), (2.0, 0.2))
-
 
 PETERSON = (
     "Pilkey and Pilkey 2008, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, "
@@ -48,7 +41,7 @@ PETERSON = (
 )
 TIPTON = (
     "Tipton, Sorem and Rolovic 1996, J. Mech. Des. 118, 321-327, as in Pilkey and Pilkey 2008, "
-    "eqs 3.8 and 3.11 (equation numbers recalled, not re-read)"
+    "chapter 3"
 )
 
 PER_FILLET = 8

@@ -79,8 +79,9 @@ def evenly_loaded_shear(tube: Tube) -> float:
     Cowper's beam is that of Saint-Venant's tractions. Evenly spread shear has no resultant beside
     theirs, but works on the anticlastic part of a bending field, and so (by reciprocity) turns a
     section where the shear force changes: 1 / k'GA is 1 / kGA less `extra_curvature`. Of a solid
-    circle k' is 6 (1 + nu)^2 / (7 + 12 nu + 4 nu^2): Stephen 1980, Hutchinson 2001 (J. Appl. Mech.
-    68, 87-92; recalled, not re-read, and derived again here).
+    circle k' is 6 (1 + nu)^2 / (7 + 12 nu + 4 nu^2): Hutchinson 2001, J. Appl. Mech. 68, 87-92, as
+    quoted by Stephen 2001 (discussion, J. Appl. Mech. 68, 959-960), whose own earlier expression is
+    the same; derived again here.
     """
     return 1.0 / (1.0 / tube.kGA - extra_curvature(tube))
 

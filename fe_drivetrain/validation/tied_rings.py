@@ -63,19 +63,19 @@ class Tie:
         Inner ring, the slave, and outer ring.
     tie
         The constraint; None where it was refused.
-    said
+    messages
         Warnings, or the refusal.
     """
 
     bodies: two_bodies.Bodies
     tie: Constraint | None
-    said: tuple[str, ...]
+    messages: tuple[str, ...]
 
     def settled(self) -> Tie:
         """The same with slave nodes moved to where the tie sees the master."""
         assert self.tie is not None
         points = settled(self.bodies.points, self.tie)
-        return Tie(replace(self.bodies, points=points), self.tie, self.said)
+        return Tie(replace(self.bodies, points=points), self.tie, self.messages)
 
 
 def stiffness() -> float:
@@ -101,7 +101,7 @@ def tied(own: int, other: int, kind: str, nodes: int = 10) -> Tie:
     )
     faces = bodies.faces[0]["x1"], bodies.faces[1]["x0"]
     n = bodies.points.size
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             if kind == "node by node":
@@ -112,7 +112,7 @@ def tied(own: int, other: int, kind: str, nodes: int = 10) -> Tie:
                 )
         except InputError as refusal:
             return Tie(bodies, None, (str(refusal),))
-    return Tie(bodies, tie, tuple(str(w.message) for w in said))
+    return Tie(bodies, tie, tuple(str(w.message) for w in caught))
 
 
 def shared(turn: int, nodes: int = 10) -> Twisted:

@@ -35,7 +35,11 @@ def _refusal(interpreter: str) -> str:
     )
     try:
         tried = subprocess.run(
-            [interpreter, "-c", trial], capture_output=True, text=True, timeout=60, check=False
+            [interpreter, "-P", "-c", trial],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"a trial of off-screen rendering did not end well ({error})"

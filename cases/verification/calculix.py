@@ -1,4 +1,4 @@
-"""A main bearing solved by CalculiX on the project's own deck, beside the project's answer."""
+"""Main bearings solved by CalculiX on the project's own decks, beside the project's answers."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.cases import cases
 from fe_drivetrain.common import Floats
 from fe_drivetrain.export import (
     ROUNDING,
@@ -25,10 +26,17 @@ from fe_drivetrain.export import (
 )
 from fe_drivetrain.interfaces import freedoms
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.report import Chart, Section, Table, Text, Verdict, judge, trace
-from fe_drivetrain.response import LOADS, Model, Response, build_model, unit_load_response
-from fe_drivetrain.scene import Scene, library_scene
-from fe_drivetrain.suite import Run
+from fe_drivetrain.report import trace
+from fe_drivetrain.response import (
+    LOADS,
+    Model,
+    Response,
+    build_model,
+    mesh_scene,
+    unit_load_response,
+)
+from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.suite import Page, Run
 
 TOLERANCE = 1e-6
 
@@ -36,16 +44,19 @@ _NOTHING = (
     1e-6  # of the load's largest reaction or energy: a part that carries less carries nothing
 )
 
+#: Coarsening of the library's mesh in a quick run.
+QUICK_COARSER = 4.0
 QUICK_LOADS = ("hub.Mx", "hub.Fz", "gravity.z")
 
-QUANTITIES = {
-    "displacements of all nodes": "deflection",
-    "motions of hub, gearbox and seat": "deflection",
-    "forces on the nodes of the base": "reaction",
-    "reactions of bearing and gearbox": "reaction",
-    "strain energy of each part": "energy",
-}
-"""What is compared, and what kind of quantity it is."""
+QUANTITIES = (
+    "displacements of all nodes",
+    "motions of hub, gearbox and seat",
+    "forces on the nodes of the base",
+    "reactions of bearing and gearbox",
+    "strain energy of each part",
+)
+
+_COLOURS = ("#0072b2", "#56b4e9", "#d55e00", "#e69f00", "#009e73")
 
 
 @dataclass(frozen=True)
@@ -94,7 +105,7 @@ def scene_of(kind: str, factor: float) -> Scene:
 def compare(run: Run, scene: Scene, label: str, mesh: Mesh) -> Compared:
     """Solve a scene here and with ccx; its deck stays beside the results.
 
-    Ten unit loads, and the three of `QUICK_LOADS` in a quick run: ccx factorises anew for each.
+    Ten unit loads, and the three of `QUICK_LOADS` in a quick run: ccx factorises again for each.
 
     Raises
     ------
@@ -214,133 +225,121 @@ def _relative(ours: Floats, theirs: Floats, least: Floats | None = None) -> Floa
 
 
 def ccx_version() -> str:
-    """As ccx says it."""
-    said = subprocess.run([find_calculix(), "-v"], capture_output=True, text=True, check=False)
-    return said.stdout.strip().removeprefix("This is Version").strip()
+    """As ccx prints it."""
+    printed = subprocess.run([find_calculix(), "-v"], capture_output=True, text=True, check=False)
+    return printed.stdout.strip().removeprefix("This is Version").strip()
 
 
-def verdicts(found: Sequence[Compared]) -> list[Verdict]:
-    """Each quantity of each deck."""
-    return [
-        judge(
-            f"{one.label}: {quantity}, largest difference of all unit loads",
-            float(one.differences[quantity].max()),
-            0.0,
-            tolerance=TOLERANCE,
-            relative=False,
-            source=f"CalculiX {ccx_version()} on the same deck, C3D10 at four points",
-            reason="ccx prints seven digits, an error of up to 5e-7 of the largest number; "
-            "coordinates and coefficients of the deck have fourteen",
-            measure="identity",
-            band=ROUNDING,
-        )
-        for one in found
-        for quantity in QUANTITIES
-    ]
-
-
-def sections(found: Sequence[Compared]) -> list[Section]:
-    """Chart of all differences, sizes and times, and one bearing's reactions side by side."""
-    charts = []
+@cases("calculix.yaml")
+def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
+    """Write a deck for each form of the interface, solve it twice, compare."""
+    find_calculix()
+    scene = scene_of(row["scene"], QUICK_COARSER if run.quick else row["coarser"])
+    mesh = run.timed("mesh", mesh_scene, scene)
+    forms = {
+        form: change_scene(scene, {"bearing_units.0.interface": form}) for form in row["interfaces"]
+    }
+    with run.side_by_side(len(forms)) as jobs:
+        work = [jobs.start(compare, changed, form, mesh) for form, changed in forms.items()]
+        found = [job.result() for job in work]
     for one in found:
-        data = []
-        for number, quantity in enumerate(QUANTITIES):
-            for values, symbol, name in (
-                (one.differences, "circle", quantity),
-                (one.usual, "circle-open", f"{quantity}, usual integration here"),
-            ):
-                marker = {"symbol": symbol, "size": 9, "color": _COLOURS[number]}
-                shown = [float(f"{v:.3g}") for v in values[quantity]]
-                data.append(
-                    trace(name, [], [], points=True, marker=marker)
-                    | {"x": list(one.loads), "y": shown}
-                )
-        data.append(
-            trace("tolerance", [], [], line={"color": "#888888", "dash": "dot"})
-            | {"x": [one.loads[0], one.loads[-1]], "y": [TOLERANCE, TOLERANCE]}
-        )
-        charts.append(
-            Chart(
-                caption=f"{one.label}: largest difference between CalculiX and this project, "
-                "relative to the largest value of the load",
-                figure={
-                    "data": data,
-                    "layout": {
-                        "xaxis": {"title": {"text": "unit load"}},
-                        "yaxis": {
-                            "title": {"text": "relative difference [-]"},
-                            "type": "log",
-                            "exponentformat": "power",
-                        },
-                    },
-                },
+        for quantity, values in one.differences.items():
+            page.vanishes(
+                f"{one.label}: {quantity}, largest difference of all unit loads",
+                float(values.max()),
+                within=TOLERANCE,
+                why="ccx prints seven digits, an error of up to 5e-7 of the largest number; "
+                "coordinates and coefficients of the deck have fourteen",
+                source=f"CalculiX {ccx_version()} on the same deck, C3D10 at four points",
+                band=ROUNDING,
             )
-        )
-    rows: list[list[Any]] = [
-        [
-            one.label,
-            one.elements,
-            one.nodes,
-            one.unknowns,
-            one.bytes / 1e6,
-            one.theirs,
-            one.ours,
-            max(float(v.max()) for v in one.differences.values()),
-            max(float(v.max()) for v in one.usual.values()),
-        ]
-        for one in found
-    ]
-    size = Table(
-        caption="Decks, times and largest differences",
-        columns=[
-            "interface",
-            "elements",
-            "nodes",
-            "unknowns",
-            "deck [MB]",
-            "CalculiX [s]",
-            "here, ten loads in any run [s]",
-            "largest difference [-]",
-            "with the usual integration here [-]",
-        ],
-        rows=rows,
+    worst = ", ".join(f"{one.label} {_worst(one.differences):.1e}" for one in found)
+    usual = ", ".join(f"{one.label} {one.usual[QUANTITIES[0]].max():.1e}" for one in found)
+    page.answer(
+        "CalculiX and this project agree on displacements, reactions and strain energy of the "
+        f"{row['scene']} main bearing under each unit load: largest differences {worst}, the "
+        "digits that CalculiX prints.",
+        "With this project's usual integration of curved elements displacements differ by "
+        f"{usual} on this coarse mesh.",
     )
-    both = [
-        Table(
-            caption=f"{one.label}: load on the main bearing for unit loads, here and by CalculiX",
-            columns=[
-                "load",
-                *(f"{c} {who}" for c in ("Fy", "Fz", "My") for who in ("here", "ccx")),
-            ],
-            rows=[
-                [load, *(float(r[c, k]) for c in (1, 2, 4) for r in one.reactions)]
+    page.section("Differences")
+    for one in found:
+        add_differences(page, one)
+    page.table(
+        "Decks, times and largest differences",
+        [
+            {
+                "interface": one.label,
+                "elements": one.elements,
+                "nodes": one.nodes,
+                "unknowns": one.unknowns,
+                "deck [MB]": one.bytes / 1e6,
+                "CalculiX [s]": one.theirs,
+                "here, ten loads in any run [s]": one.ours,
+                "largest difference [-]": _worst(one.differences),
+                "with the usual integration here [-]": _worst(one.usual),
+            }
+            for one in found
+        ],
+    )
+    page.section("Reactions side by side")
+    for one in found:
+        page.table(
+            f"{one.label}: load on the main bearing for unit loads, here and by CalculiX",
+            [
+                {
+                    "load": load,
+                    **{
+                        f"{component} {who}": float(reaction[row, k])
+                        for component, row in (("Fy", 1), ("Fz", 2), ("My", 4))
+                        for who, reaction in zip(("here", "ccx"), one.reactions, strict=True)
+                    },
+                }
                 for k, load in enumerate(one.loads)
             ],
         )
-        for one in found
-    ]
-    return [
-        Section(title="Differences", items=[*charts, size]),
-        Section(title="Reactions side by side", items=both),
-        Section(
-            title="How it was compared",
-            items=[
-                Text(
-                    text="The deck has all of the model: ten-node tetrahedra, materials, "
-                    "interfaces and couplings as linear equations, supports, springs to ground, "
-                    "and the unit loads, a step each. ccx solves it with its own elements, "
-                    "elimination and direct solver. It stands beside this page (.inp)."
-                ),
-                Text(
-                    text="ccx integrates its ten-node tetrahedra at four points, which is exact "
-                    "for straight edges only; this project takes eleven points in curved elements. "
-                    "To compare the programs and not the integration, the project's stiffness is "
-                    "integrated at four points, too. What the usual integration changes is shown "
-                    "by open symbols."
-                ),
-            ],
-        ),
-    ]
+    page.section("How it was compared")
+    page.text(
+        "The deck has all of the model: ten-node tetrahedra, materials, interfaces and couplings "
+        "as linear equations, supports, springs to ground, and the unit loads, a step each. ccx "
+        "solves it with its own elements, elimination and direct solver. It is beside this page "
+        "(.inp)."
+    )
+    page.text(
+        "ccx integrates its ten-node tetrahedra at four points, which is exact for straight edges "
+        "only; this project takes eleven points in curved elements. To compare the programs and "
+        "not the integration, the project's stiffness is integrated at four points, too. What the "
+        "usual integration changes is shown by open symbols."
+    )
+    for one in found:
+        page.data(one.label, one.differences)
 
 
-_COLOURS = ("#0072b2", "#56b4e9", "#d55e00", "#e69f00", "#009e73")
+def _worst(differences: Mapping[str, Floats]) -> float:
+    return max(float(values.max()) for values in differences.values())
+
+
+def add_differences(page: Page, one: Compared) -> None:
+    """Chart of one deck's differences, by unit load."""
+
+    def line(name: str, loads: Sequence[str], values: Floats, **style: Any) -> Any:
+        return trace(name, [], values, **style) | {"x": list(loads)}
+
+    lines = []
+    for number, quantity in enumerate(QUANTITIES):
+        for values, symbol, name in (
+            (one.differences, "circle", quantity),
+            (one.usual, "circle-open", f"{quantity}, usual integration here"),
+        ):
+            marker = {"symbol": symbol, "size": 9, "color": _COLOURS[number]}
+            lines.append(line(name, one.loads, values[quantity], points=True, marker=marker))
+    ends, bound = (one.loads[0], one.loads[-1]), np.full(2, TOLERANCE)
+    lines.append(line("tolerance", ends, bound, line={"color": "#888888", "dash": "dot"}))
+    page.chart(
+        f"{one.label}: largest difference between CalculiX and this project, relative to the "
+        "largest value of the load",
+        lines,
+        "unit load",
+        "relative difference [-]",
+        "y",
+    )

@@ -22,7 +22,7 @@ from fe_drivetrain.response import LOADS, Model, build_model
 from fe_drivetrain.scene import Scene, change_scene, library_scene
 from fe_drivetrain.solve import reduce, solve
 
-#: A short shaft in a coarse mesh: what is judged holds on any mesh.
+#: A short shaft in a coarse mesh: statics are the same on any mesh.
 CHANGES = {
     "mesh.elements_per_turn": 8,
     "mesh.shaft": 0.4,
@@ -35,17 +35,20 @@ CHANGES = {
 
 
 def scene_of(kind: str, joint: str | None = None, rigid: Sequence[int] = (3,)) -> Scene:
-    """The library's scene, made small, with springs of the gearbox along and about all axes but
-    those that are held rigidly.
+    """The library's scene of a main bearing on a short shaft, with gearbox springs of 1e8.
 
     Parameters
     ----------
-    kind
+    kind : str
         "spherical" or "bonded".
-    joint
+    joint : str, optional
         Form of the spherical joint.
-    rigid
-        Components 0-5.
+    rigid : sequence of int
+        Components 0-5 of the gearbox that are held rigidly instead.
+
+    Returns
+    -------
+    scene : Scene
     """
     stiffness = ["rigid" if c in rigid else 1e8 for c in range(6)]
     changes: dict[str, object] = {**CHANGES, "gearbox.stiffness": stiffness}
@@ -60,11 +63,11 @@ class Motion:
 
     Attributes
     ----------
-    hub, gearbox
-        (6, n_loads).
-    energy_error, residual
+    hub, gearbox : (6, n_loads) array
+        Displacements [m] and rotations [rad].
+    energy_error, residual : float
         Of the solver.
-    method
+    method : str
         That solved in the end.
     """
 
@@ -77,13 +80,13 @@ class Motion:
 
 @dataclass(frozen=True)
 class Sprung:
-    """A model whose gearbox springs can be changed without assembling it anew."""
+    """A model whose gearbox springs can be changed without assembling it again."""
 
     model: Model
 
     @cached_property
     def elimination(self) -> Elimination:
-        """Of all constraints; springs are none."""
+        """Elimination of all constraints; springs are not among them."""
         return eliminate(self.model.constraints, self.model.n_freedoms)
 
     @cached_property
@@ -98,8 +101,21 @@ class Sprung:
         springs = ((self.model.points["gearbox"], k),) if k.any() else ()
         return replace(self.model, springs=springs)
 
-    def said(self, stiffness: Sequence[float]) -> tuple[tuple[str, ...], str]:
-        """What the program says before it solves: warnings, and why it refuses, if it does."""
+    def warnings_and_refusal(self, stiffness: Sequence[float]) -> tuple[tuple[str, ...], str]:
+        """What the program reports before it solves.
+
+        Parameters
+        ----------
+        stiffness : sequence of 6 floats
+            Of the gearbox springs [N/m, N m/rad].
+
+        Returns
+        -------
+        warnings : tuple of str
+            Of motions that are hardly restrained.
+        refusal : str
+            Why it refuses to solve; empty if it does not.
+        """
         model = self.with_springs(stiffness)
         parts = model.mesh, model.constraints, model.springs
         try:
@@ -122,12 +138,16 @@ class Sprung:
 
         Parameters
         ----------
-        stiffness
+        stiffness : sequence of 6 floats
             Of the gearbox springs [N/m, N m/rad].
-        loads
-            Names of `model.LOADS`.
-        method
+        loads : sequence of str
+            Names of `fe_drivetrain.response.LOADS`.
+        method : str
             Solver.
+
+        Returns
+        -------
+        motion : Motion or None
         """
         model = self.with_springs(stiffness)
         F = model.unit_loads()[:, [LOADS.index(load) for load in loads]]

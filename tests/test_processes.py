@@ -1,6 +1,8 @@
 """Jobs in processes: right answers, held threads, and nothing left behind however they end."""
 
+import importlib
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -12,8 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+import fe_drivetrain
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.processes import CORES_VARIABLE, Processes, Report, cores
+from fe_drivetrain.common.interpreter import run_python
+from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.progress import Progress
+from fe_drivetrain.common.threads import CORES_VARIABLE, cores
 from fe_drivetrain.suite.case import Run
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="looks at processes by their number")
@@ -44,18 +50,18 @@ def until(condition: Callable[[], bool]) -> None:
 # --- jobs, as another process imports them -------------------------------------------------------
 
 
-def square(report: Report, x: float) -> tuple[int, float]:
+def square(report: Progress, x: float) -> tuple[int, float]:
     return os.getpid(), x * x
 
 
-def meet(report: Report, folder: Path, name: str, other: str) -> bool:
+def meet(report: Progress, folder: Path, name: str, other: str) -> bool:
     """Ends only if the other job runs at the same time."""
     (folder / name).touch()
     until(lambda: (folder / other).exists())
     return True
 
 
-def threads(report: Report) -> tuple[int, dict[str, str]]:
+def threads(report: Progress) -> tuple[int, dict[str, str]]:
     from threadpoolctl import threadpool_info
 
     np.ones((300, 300)) @ np.ones((300, 300))
@@ -66,13 +72,13 @@ def threads(report: Report) -> tuple[int, dict[str, str]]:
     )
 
 
-def steps(report: Report, name: str) -> int:
+def steps(report: Progress, name: str) -> int:
     report(f"first of {name}")
     report(f"second of {name}")
     return os.getpid()
 
 
-def mistake(report: Report) -> None:
+def mistake(report: Progress) -> None:
     raise InputError("shaft: length is -1 but must be greater than 0: give a length")
 
 
@@ -83,15 +89,15 @@ class OddError(Exception):
         super().__init__(f"{one} and {two}")
 
 
-def odd(report: Report) -> None:
+def odd(report: Progress) -> None:
     raise OddError(1, 2)
 
 
-def fault(report: Report) -> float:
+def fault(report: Progress) -> float:
     return 1 / 0
 
 
-def end(report: Report, number: int) -> None:
+def end(report: Progress, number: int) -> None:
     if number < 0:
         os.kill(os.getpid(), -number)
     sys.stderr.write("last words\n")
@@ -99,12 +105,12 @@ def end(report: Report, number: int) -> None:
     os._exit(number)
 
 
-def sleep_for_ever(report: Report, folder: Path) -> None:
+def sleep_for_ever(report: Progress, folder: Path) -> None:
     (folder / str(os.getpid())).touch()
     time.sleep(600)
 
 
-def talk(report: Report) -> str:
+def talk(report: Progress) -> str:
     print("out")
     os.write(1, b"raw out\n")
     sys.stdin.read()  # nobody types here
@@ -112,19 +118,27 @@ def talk(report: Report) -> str:
     return "done"
 
 
-def nested(report: Report) -> tuple[int, int]:
+def nested(report: Progress) -> tuple[int, int]:
     with Processes(4) as processes:
         return os.getpid(), processes.start(square, 2.0).result()[0]
 
 
-def large(report: Report, array: np.ndarray) -> np.ndarray:
+def large(report: Progress, array: np.ndarray) -> np.ndarray:
     return array[::-1]
 
 
-def random_number(report: Report) -> str:
-    import random
+#: Standard modules that jobs, or a process that starts, may import.
+MODULES = ("random", "signal", "socket", "tempfile", "threading")
 
-    return str(random.__file__)
+
+def places(report: Progress) -> list[str]:
+    return [str(importlib.import_module(name).__file__) for name in MODULES]
+
+
+def leave_a_child(report: Progress, folder: Path) -> None:
+    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    (folder / str(child.pid)).touch()
+    child.wait()
 
 
 # --- results -------------------------------------------------------------------------------------
@@ -202,10 +216,56 @@ def test_a_process_starts_no_others() -> None:
 
 
 def test_the_users_folder_hides_no_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "random.py").write_text("raise SystemExit('mine')")
+    for name in MODULES:
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('mine')")
     monkeypatch.chdir(tmp_path)
     with Processes(2) as processes:
-        assert str(tmp_path) not in processes.start(random_number).result()
+        assert not [at for at in processes.start(places).result() if str(tmp_path) in at]
+
+
+def test_a_script_is_not_run_again_in_other_processes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As users write them: without a guard, and with heavy imports that take all the cores.
+
+    They may even run where modules have the names of standard ones.
+    """
+    (tmp_path / "here").mkdir()
+    for name in MODULES:
+        (tmp_path / "here" / f"{name}.py").write_text("raise SystemExit('mine')")
+    (tmp_path / "jobs_of_script.py").write_text(
+        "import sys\ndef has_numpy(report):\n    return 'numpy' in sys.modules\n"
+    )
+    (tmp_path / "script.py").write_text(
+        "import numpy\n"
+        "import jobs_of_script\n"
+        "from fe_drivetrain.common.processes import Processes\n"
+        "import os; os.chdir(os.environ['FOLDER'])\n"
+        "print('once')\n"
+        "with Processes(2) as processes:\n"
+        "    print(processes.start(jobs_of_script.has_numpy).result())\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    done = run_python(str(tmp_path / "script.py"), environment={"FOLDER": str(tmp_path / "here")})
+    assert (done.stdout.split(), done.stderr) == (["once", "False"], "")
+
+
+# --- child interpreters --------------------------------------------------------------------------
+
+
+def test_a_child_interpreter_imports_what_this_one_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    there.mkdir()
+    (here / "random.py").write_text("raise SystemExit('mine')")
+    (there / "only_there.py").touch()
+    monkeypatch.chdir(here)
+    monkeypatch.syspath_prepend(str(there))
+    program = "import random, only_there, fe_drivetrain; print(fe_drivetrain.__file__)"
+    done = run_python("-c", program)
+    assert done.stdout.strip() == fe_drivetrain.__file__, done.stderr
 
 
 # --- threads -------------------------------------------------------------------------------------
@@ -324,9 +384,10 @@ def test_a_users_mistake_arrives_as_it_was_raised() -> None:
 def test_a_fault_says_where_it_was_raised() -> None:
     with pytest.raises(ZeroDivisionError) as caught, Processes(2) as processes:
         processes.start(fault).result()
-    assert any("in fault" in note for note in caught.value.__notes__)
-    with pytest.raises(RuntimeError, match="1 and 2"), Processes(2) as processes:
+    assert "in fault" in str(caught.value.__cause__)
+    with pytest.raises(RuntimeError, match="1 and 2") as caught, Processes(2) as processes:
         processes.start(odd).result()
+    assert "in odd" in str(caught.value.__cause__)
 
 
 def test_a_failure_ends_all_others_at_once(tmp_path: Path) -> None:
@@ -356,6 +417,24 @@ def test_an_error_in_this_process_ends_all_others(tmp_path: Path) -> None:
     assert not any(is_running(int(file.name)) for file in tmp_path.iterdir())
 
 
+def test_a_process_takes_with_it_what_it_has_started(tmp_path: Path) -> None:
+    def stopped() -> None:
+        with Processes(2) as processes:
+            processes.start(leave_a_child, tmp_path)
+            until(lambda: any(tmp_path.iterdir()))
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    (pid,) = (int(file.name) for file in tmp_path.iterdir())
+    until(lambda: not is_running(pid))
+
+
+def test_what_cannot_be_pickled_is_refused() -> None:
+    with pytest.raises((AttributeError, pickle.PicklingError)), Processes(2) as processes:
+        processes.start(square, lambda: 2.0).result()
+
+
 def test_a_killed_process_is_explained() -> None:
     with pytest.raises(InputError, match=rf"memory.*{CORES_VARIABLE}=1"), Processes(2) as processes:
         processes.start(end, -signal.SIGKILL).result()
@@ -381,8 +460,8 @@ def work(run, name):
         time.sleep(600)
 """
 SCRIPT = """
-from fe_drivetrain.case import Case
-from fe_drivetrain.cli import main_of_case
+from fe_drivetrain.commands import main_of_case
+from fe_drivetrain.suite import OldCase as Case
 import jobs_of_script
 
 def run(run):
@@ -445,7 +524,7 @@ def test_a_mistake_in_a_process_is_one_sentence_on_the_command_line(tmp_path: Pa
 
 
 def test_a_job_of_the_script_itself_is_refused() -> None:
-    def local(report: Report) -> Any:
+    def local(report: Progress) -> Any:
         return None
 
     local.__module__ = "__main__"
