@@ -84,11 +84,11 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         why="round-off of small matrices",
         source="a free body",
     )
-    (rung,) = [rung for rung in page.figures["rungs"] if rung["level"] == LEVEL]
+    (level_two,) = [level for level in page.figures["rungs"] if level["level"] == LEVEL]
     found = _rebuilt(scene, quantity, read[SHAFT], read[SEATS])
     page.vanishes(
         f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",
-        float(np.linalg.norm(found - rung["values"]) / np.linalg.norm(rung["values"])),
+        float(np.linalg.norm(found - level_two["values"]) / np.linalg.norm(level_two["values"])),
         within=_SOLVED_TWICE,
         why="housings solved twice to 1e-9, and the digits that supports on a free body cost",
         source=f"level {LEVEL} of the ladder",
@@ -98,7 +98,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         "Files beside these results, for other programs: the free shaft at its reference "
         "points, with the rings that stand on it, and every bearing with its housing on the "
         "ground. Put together, with the gearbox's springs, they are level 2 of the ladder: "
-        f"{100 * rung['error']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
+        f"{100 * level_two['error']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
         "writes them in further formats, and with fixed-interface modes."
     )
     page.table(

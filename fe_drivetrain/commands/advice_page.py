@@ -223,13 +223,13 @@ def advised(
         "rungs",
         [
             {
-                "level": rung.model.level,
-                "title": rung.model.title,
-                "values": rung.values,
-                "seconds": rung.seconds,
-                "estimate": None if np.isnan(rung.estimate) else rung.estimate,
-                "error": None if np.isnan(rung.error) else rung.error,
+                "level": result.model.level,
+                "title": result.model.title,
+                "values": result.values,
+                "seconds": result.seconds,
+                "estimate": None if np.isnan(result.estimate) else result.estimate,
+                "error": None if np.isnan(result.error) else result.error,
             }
-            for rung in advice.results
+            for result in advice.results
         ],
     )
