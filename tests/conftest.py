@@ -1,9 +1,10 @@
 """What several test modules use: coarse scenes, built once a session, and commands in a folder."""
 
 import os
+import shutil
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,32 @@ COARSE = {
 def coarse_scene(kind: str, **changes: object) -> Scene:
     """The library's main bearing, made small."""
     return change_scene(library_scene(f"main_bearing_{kind}"), COARSE | changes)
+
+
+#: Programs that tests start; all else that they need is a Python package.
+PROGRAMS = ("ccx", "chromium")
+
+#: Where this is set, a test that is skipped has failed: everything that tests need is installed.
+NO_SKIP_VARIABLE = "FE_DRIVETRAIN_NO_SKIP"
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test where a program or package that its mark ``needs`` names is not installed."""
+    for name in (name for mark in item.iter_markers("needs") for name in mark.args):
+        if name not in PROGRAMS:
+            pytest.importorskip(name, exc_type=ImportError)
+        elif shutil.which(name) is None:
+            pytest.skip(f"there is no program {name}")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Let no test be skipped where none may be."""
+    report = yield
+    if report.skipped and os.environ.get(NO_SKIP_VARIABLE):
+        report.outcome = "failed"
+    return report
 
 
 @pytest.fixture(scope="session", autouse=True)

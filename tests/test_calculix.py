@@ -1,7 +1,6 @@
 """Decks for CalculiX: what stands in them is the model, and ccx, where it is, answers alike."""
 
 import re
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +23,6 @@ from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene
 
 FORMS = ["bonded", "sliding", "averaged", "rigid", "spring", "rollers"]
-
-needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
 
 
 def blocks(text: str) -> list[tuple[str, list[str]]]:
@@ -287,7 +284,7 @@ def test_a_missing_calculix_says_how_to_get_it():
         find_calculix("no-such-program")
 
 
-@needs_ccx
+@pytest.mark.needs("ccx")
 @pytest.mark.parametrize("form", ["sliding", "spring", "rollers"])
 def test_ccx_agrees_in_all_its_digits(models, form, tmp_path):
     """Torque, a force and self-weight, through a joint that slides, and through springs."""
@@ -306,7 +303,7 @@ def test_ccx_agrees_in_all_its_digits(models, form, tmp_path):
     assert (np.abs(reactions - own).max(axis=0) < 2 * ROUNDING * size).all()
 
 
-@needs_ccx
+@pytest.mark.needs("ccx")
 def test_a_deck_that_ccx_refuses_is_an_error(tmp_path):
     (tmp_path / "job.inp").write_text("*NODE\n1,0,0,0\n*STEP\n*STATIC\n*CLOAD\n9,1,1.\n*END STEP\n")
     with pytest.raises(RuntimeError, match="ccx ended"):

@@ -1,7 +1,6 @@
 """Matrix files, read by the programs that they are for."""
 
 import csv
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -33,7 +32,6 @@ from fe_drivetrain.export.programs.ccx import run_calculix
 from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level
 
-needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
 TEXTS = ("csv", "mtx", "mtx-mass", "dmig", "calculix")
 
 
@@ -98,13 +96,20 @@ def test_a_statement_survives_as_comments(mark: str) -> None:
     assert said["scene"] == " ".join(title.split())
 
 
-@pytest.mark.parametrize("format", ["csv", "mtx", "calculix", "op4", "dmig"])
+@pytest.mark.parametrize(
+    "format",
+    [
+        "csv",
+        "mtx",
+        "calculix",
+        pytest.param("op4", marks=pytest.mark.needs("pyNastran")),
+        pytest.param("dmig", marks=pytest.mark.needs("pyNastran")),
+    ],
+)
 def test_a_damaged_file_is_read_or_refused(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], format: str
 ) -> None:
     """Characters and lines changed, left out, doubled: no other error, and nothing is printed."""
-    if export.FORMATS[format].extra:
-        pytest.importorskip("pyNastran", reason="the extra nastran is not installed")
     path = written(tmp_path, moderate_element(1), format)
     good = path.read_text().splitlines()
     rng = np.random.default_rng(0)
@@ -195,8 +200,10 @@ def test_no_mass_makes_no_file(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.needs("h5py")
 def test_h5py_reads_hdf5(tmp_path: Path, shaft: Superelement) -> None:
-    h5py = pytest.importorskip("h5py", reason="the extra hdf5 is not installed")
+    import h5py
+
     with h5py.File(written(tmp_path, shaft, "hdf5")) as file:
         assert (file["stiffness"][:] == shaft.stiffness).all()
         assert (file["mass"][:] == shaft.mass).all()
@@ -206,8 +213,10 @@ def test_h5py_reads_hdf5(tmp_path: Path, shaft: Superelement) -> None:
         assert file.attrs["scene hash"] == shaft.origin.scene_hash
 
 
+@pytest.mark.needs("h5py")
 def test_hdf5_of_others_is_refused(tmp_path: Path) -> None:
-    h5py = pytest.importorskip("h5py", reason="the extra hdf5 is not installed")
+    import h5py
+
     path = tmp_path / "a.h5"
     with h5py.File(path, "w") as file:
         file["other"] = [1.0]
@@ -222,8 +231,10 @@ def test_hdf5_of_others_is_refused(tmp_path: Path) -> None:
 # --- CSV ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.needs("pandas")
 def test_csv_is_one_table_with_labels(tmp_path: Path, shaft: Superelement) -> None:
-    pandas = pytest.importorskip("pandas", reason="pandas is not installed")
+    import pandas
+
     text = written(tmp_path, shaft, "csv").read_text()
     start = text.splitlines().index(next(x for x in text.splitlines() if x.startswith("matrix,")))
     table = pandas.read_csv(tmp_path / "csv.csv", skiprows=start, comment="#", index_col=[0, 1])
@@ -272,7 +283,6 @@ def test_sixteen_characters_keep_ten_digits(value: float) -> None:
 
 def dmig_by_pynastran(path: Path) -> tuple[dict[str, Floats], Floats]:
     """Matrices with six freedoms of each grid in order, and positions."""
-    pytest.importorskip("pyNastran", reason="the extra nastran is not installed")
     model = nastran.pynastran("bdf.bdf").BDF(debug=None)
     model.read_bdf(str(path), punch=True, xref=False)
     found = {}
@@ -285,6 +295,7 @@ def dmig_by_pynastran(path: Path) -> tuple[dict[str, Floats], Floats]:
     return found, np.array([node.xyz for node in model.nodes.values()])
 
 
+@pytest.mark.needs("pyNastran")
 @pytest.mark.parametrize("seed", [0, 1, 3])
 def test_pynastran_reads_dmig(tmp_path: Path, seed: int) -> None:
     element = random_element(seed)
@@ -296,6 +307,7 @@ def test_pynastran_reads_dmig(tmp_path: Path, seed: int) -> None:
     np.testing.assert_allclose(positions, element.positions, rtol=1e-9)
 
 
+@pytest.mark.needs("pyNastran")
 def test_a_free_shaft_stays_free_in_dmig(tmp_path: Path, shaft: Superelement) -> None:
     """Rounding to the characters of a field is all that a rigid motion then meets."""
     found, _ = dmig_by_pynastran(written(tmp_path, shaft, "dmig"))
@@ -313,6 +325,7 @@ def entries(path: Path) -> list[tuple[str, str, str]]:
     return found
 
 
+@pytest.mark.needs("pyNastran")
 def test_one_triangle_of_a_symmetric_dmig_is_the_whole_matrix(tmp_path: Path) -> None:
     """Columns from the diagonal down, as here; and down to it, as Nastran punches them."""
     element = moderate_element(2)
@@ -341,9 +354,9 @@ def test_one_triangle_of_a_symmetric_dmig_is_the_whole_matrix(tmp_path: Path) ->
     assert (mine.mass == theirs.mass).all()
 
 
+@pytest.mark.needs("pyNastran")
 def test_columns_of_a_dmig_may_stand_in_any_order(tmp_path: Path) -> None:
     """pyNastran numbers freedoms as they come up."""
-    pytest.importorskip("pyNastran", reason="the extra nastran is not installed")
     element = moderate_element(2)
     path = written(tmp_path, element, "dmig")
     text = path.read_text().splitlines()
@@ -356,6 +369,7 @@ def test_columns_of_a_dmig_may_stand_in_any_order(tmp_path: Path) -> None:
     assert difference(export.read(path, "dmig").stiffness, element.stiffness) < 1e-9
 
 
+@pytest.mark.needs("pyNastran")
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -367,7 +381,6 @@ def test_columns_of_a_dmig_may_stand_in_any_order(tmp_path: Path) -> None:
     ],
 )
 def test_a_wrong_dmig_gets_one_sentence(tmp_path: Path, old: str, new: str, message: str) -> None:
-    pytest.importorskip("pyNastran", reason="the extra nastran is not installed")
     path = written(tmp_path, moderate_element(1), "dmig")
     text = path.read_text()
     assert old in text
@@ -377,24 +390,23 @@ def test_a_wrong_dmig_gets_one_sentence(tmp_path: Path, old: str, new: str, mess
     assert str(path) in str(caught.value)
 
 
+@pytest.mark.needs("pyyeti", "pyNastran")
 def test_pyyeti_reads_dmig_and_op4(tmp_path: Path, shaft: Superelement) -> None:
     """A second reader, that knows nothing of the first."""
-    pytest.importorskip("pyyeti", reason="pyyeti is not installed")
     from pyyeti.nastran import bulk, op4
 
     frames = bulk.rddmig(str(written(tmp_path, shaft, "dmig")))
     for name, expected in (("kshaft", shaft.stiffness), ("mshaft", shaft.mass)):
         assert expected is not None
         assert difference(frames[name].to_numpy(), expected) < 1e-9
-    pytest.importorskip("pyNastran", reason="the extra nastran is not installed")
     matrices = op4.read(str(written(tmp_path, shaft, "op4")))
     assert (matrices["kgg"] == 0.5 * (shaft.stiffness + shaft.stiffness.T)).all()
     assert (matrices["mgg"] == shaft.mass).all()
     assert (matrices["xyz"] == shaft.positions).all()
 
 
+@pytest.mark.needs("pyNastran")
 def test_op4_tells_the_free_from_the_supported(tmp_path: Path, shaft: Superelement) -> None:
-    pytest.importorskip("pyNastran", reason="the extra nastran is not installed")
     assert not export.read(written(tmp_path, shaft, "op4"), "op4").supported
     (tmp_path / "op4.op4").unlink()
     assert export.read(written(tmp_path, moderate_element(2), "op4"), "op4").supported
@@ -437,14 +449,14 @@ def test_a_free_body_has_six_squares_less(shaft: Superelement) -> None:
     assert len(squares(shaft.stiffness)[0]) == 6 * len(shaft.points) - 6
 
 
-@needs_ccx
+@pytest.mark.needs("ccx")
 @pytest.mark.parametrize("seed", [0, 1, 3])
 def test_ccx_moves_as_a_random_stiffness_says(tmp_path: Path, seed: int) -> None:
     element = random_element(seed)
     assert_printed(compliance_by_calculix(element, tmp_path), element.stiffness)
 
 
-@needs_ccx
+@pytest.mark.needs("ccx")
 def test_ccx_moves_as_the_free_shaft_and_as_a_bearing_unit(
     tmp_path: Path, shaft: Superelement
 ) -> None:
@@ -453,7 +465,7 @@ def test_ccx_moves_as_the_free_shaft_and_as_a_bearing_unit(
     assert_printed(compliance_by_calculix(unit, tmp_path), unit.stiffness)
 
 
-@needs_ccx
+@pytest.mark.needs("ccx")
 def test_ccx_swings_as_stiffness_and_mass_say(tmp_path: Path, shaft: Superelement) -> None:
     for element, count in ((shaft, 2), (moderate_element(4), 3)):
         start = held(element)
@@ -466,7 +478,7 @@ def test_ccx_swings_as_stiffness_and_mass_say(tmp_path: Path, shaft: Superelemen
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
-@needs_ccx
+@pytest.mark.needs("ccx")
 def test_two_superelements_stand_in_one_deck(tmp_path: Path) -> None:
     """Shaft and housing, so to speak: numbers of their own, and their first points tied."""
     a, b = moderate_element(2, 5), moderate_element(1, 6)
@@ -487,7 +499,7 @@ def test_two_superelements_stand_in_one_deck(tmp_path: Path) -> None:
     assert_printed(found, together)
 
 
-@needs_ccx
+@pytest.mark.needs("ccx")
 def test_ccx_puts_a_drivetrain_together_from_its_parts(tmp_path: Path, shaft: Superelement) -> None:
     """Free shaft, bearing unit and gearbox reaction in one deck: the hub moves as at level 2."""
     scene = coarse_scene("bonded")

@@ -287,23 +287,26 @@ def test_windio_is_not_overwritten_unless_told(turbine: Path) -> None:
         windio.write_torsion(turbine.with_name("none"), turbine.with_name("b"), NEW)
 
 
+@pytest.mark.needs("windIO")
 def test_windio_reads_its_own_example_with_ours_in_it(tmp_path: Path) -> None:
-    reader = pytest.importorskip("windIO", reason="windIO is not installed")
-    source = Path(reader.__file__).parent / "examples" / "turbine" / "IEA-15-240-RWT.yaml"
+    import windIO
+
+    source = Path(windIO.__file__).parent / "examples" / "turbine" / "IEA-15-240-RWT.yaml"
     target = tmp_path / "iea15.yaml"
     windio.write_torsion(source, target, NEW, "windio")
     assert set(windio.read_torsion(source).values()) == {69737644923.05057, 49372801.61198211}
-    reader.validate(target, "turbine/turbine_schema")
-    elastic = reader.load_yaml(target)["components"]["drivetrain"]["elastic_properties"]
+    windIO.validate(target, "turbine/turbine_schema")
+    elastic = windIO.load_yaml(target)["components"]["drivetrain"]["elastic_properties"]
     assert (elastic["spring_constant"], elastic["damping_coefficient"]) == NEW
 
 
+@pytest.mark.needs("wisdem")
 def test_wisdem_takes_the_override_from_a_turbine_file(tmp_path: Path) -> None:
     """WISDEM's own reader, and its component of the drivetrain's torsion, that reads it there."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        wisdem = pytest.importorskip("wisdem", reason="WISDEM is not installed")
         import openmdao.api as om
+        import wisdem
         from wisdem.drivetrainse.drive_components import DriveDynamics
         from wisdem.inputs import load_geometry_yaml
 

@@ -229,13 +229,13 @@ def scene_named(name: str) -> Scene:
     return library_scene(name) if make is None else make(name)
 
 
+@pytest.mark.needs("exudyn")
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("kind", ["guyan", "craig_bampton", "floating", "rigid bodies"])
 def test_exudyn_has_the_reactions_and_frequencies_of_the_condensed_model(
     name: str, kind: str
 ) -> None:
     """Reactions to a millionth: loads are applied both ways, so turning counts only cubed."""
-    pytest.importorskip("exudyn", reason="needs Exudyn, the extra exudyn")
     scene = scene_named(name)
     supports = scene_supports(scene, bearing_stiffness(scene))
     if kind == "rigid bodies":
@@ -274,10 +274,10 @@ def test_exudyn_has_the_reactions_and_frequencies_of_the_condensed_model(
         np.testing.assert_allclose(half, weight, rtol=0, atol=1e-6 * scale)
 
 
+@pytest.mark.needs("exudyn")
 @pytest.mark.parametrize("kind", ["floating", "rigid bodies"])
 def test_exudyn_stretches_a_shaft_that_has_turned(kind: str) -> None:
     """Pulled at its hub after a swing of 1.2 rad: longer by F / k, and by nothing else."""
-    pytest.importorskip("exudyn", reason="needs Exudyn, the extra exudyn")
     body = lumped_superelement(coarse_scene("bonded"))
     build = {
         "floating": exudyn_system.floating_system,
@@ -298,8 +298,8 @@ def test_exudyn_stretches_a_shaft_that_has_turned(kind: str) -> None:
     assert stretch == pytest.approx(force * flexibility, rel=1e-6)
 
 
+@pytest.mark.needs("exudyn")
 def test_exudyn_refuses_what_is_at_no_point() -> None:
-    pytest.importorskip("exudyn", reason="needs Exudyn, the extra exudyn")
     body = lumped_superelement(coarse_scene("bonded"))
     with pytest.raises(InputError, match="support 'nowhere'"):
         exudyn_system.flexible_system(body, {"nowhere": np.eye(6)})
@@ -310,8 +310,8 @@ def test_exudyn_refuses_what_is_at_no_point() -> None:
         exudyn_system.flexible_system(replace(body, supported=True), {})
 
 
+@pytest.mark.needs("exudyn")
 def test_exudyn_names_a_body_that_nothing_holds() -> None:
-    pytest.importorskip("exudyn", reason="needs Exudyn, the extra exudyn")
     system = exudyn_system.flexible_system(lumped_superelement(coarse_scene("bonded")), {})
     assert (system.frequencies()[:6] < 1e-2).all()
     with pytest.raises(ArithmeticError, match="no equilibrium"):
@@ -320,13 +320,10 @@ def test_exudyn_names_a_body_that_nothing_holds() -> None:
 
 # --- ROSS ---
 
-ROSS = "needs ROSS, the extra ross"
-
 
 @pytest.fixture(scope="module")
 def rotors() -> dict[str, tuple[Beam, ross_rotor.Rotor]]:
     """A scene's beam with full 6x6 supports, and its rotor."""
-    pytest.importorskip("ross", reason=ROSS)
     found = {}
     for name in ("bonded", "two_bearings"):
         scene = scene_named(name)
@@ -336,6 +333,7 @@ def rotors() -> dict[str, tuple[Beam, ross_rotor.Rotor]]:
     return found
 
 
+@pytest.mark.needs("ross")
 @pytest.mark.parametrize("name", ["bonded", "two_bearings"])
 def test_ross_has_the_same_shaft_and_supports(rotors, name: str) -> None:  # type: ignore[no-untyped-def]
     """Its stiffness is that of exact elements, put together, and of the springs at their nodes."""
@@ -358,6 +356,7 @@ def test_ross_has_the_same_shaft_and_supports(rotors, name: str) -> None:  # typ
         assert along @ M @ along == pytest.approx(beam.material.density * volume, rel=1e-12)
 
 
+@pytest.mark.needs("ross")
 @pytest.mark.parametrize("name", ["bonded", "two_bearings"])
 def test_ross_deflects_and_reacts_as_level_1_does(rotors, name: str) -> None:  # type: ignore[no-untyped-def]
     """To a few times the millionth by which its stiff springs are not rigid."""
@@ -381,9 +380,9 @@ def test_ross_deflects_and_reacts_as_level_1_does(rotors, name: str) -> None:  #
     )
 
 
+@pytest.mark.needs("ross")
 def test_ross_static_analysis_is_that_of_rigid_bearings() -> None:
     """Its reactions are not zero however stiff a bearing is, and add up to the weight."""
-    pytest.importorskip("ross", reason=ROSS)
     scene = library_scene("stepped_shaft")
     for factor in (1.0, 1e6):
         stiffness = {n: factor * k for n, k in bearing_stiffness(scene, coupled=False).items()}
@@ -404,6 +403,7 @@ def test_ross_static_analysis_is_that_of_rigid_bearings() -> None:
         assert sum(found.values()) == pytest.approx(weight, rel=1e-6)
 
 
+@pytest.mark.needs("ross")
 def test_ross_modal_analysis_has_these_frequencies(rotors) -> None:  # type: ignore[no-untyped-def]
     _, rotor = rotors["bonded"]
     modal = rotor.rotor.run_modal(speed=0.0, num_modes=12)
@@ -411,9 +411,9 @@ def test_ross_modal_analysis_has_these_frequencies(rotors) -> None:  # type: ign
     np.testing.assert_allclose(np.sort(modal.wn)[:6] / (2 * np.pi), found, rtol=1e-8)
 
 
+@pytest.mark.needs("ross")
 def test_free_frequencies_of_ross_come_down_to_timoshenkos() -> None:
     """Errors of its elements go with h^2 at least: a fourth at half the length."""
-    pytest.importorskip("ross", reason=ROSS)
     scene = slender(8.0)
     beam = replace(ross_rotor.beam_of_scene(scene, {"main_bearing": np.zeros(6)}), supports=())
     found = []
@@ -428,8 +428,8 @@ def test_free_frequencies_of_ross_come_down_to_timoshenkos() -> None:
     assert errors[1] < errors[0] / 3.5
 
 
+@pytest.mark.needs("ross")
 def test_ross_refuses_what_it_cannot_hold() -> None:
-    pytest.importorskip("ross", reason=ROSS)
     scene = coarse_scene("bonded")
     beam = ross_rotor.beam_of_scene(scene, bearing_stiffness(scene))
     with pytest.raises(InputError, match="longest element is 0 m"):

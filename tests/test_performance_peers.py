@@ -146,6 +146,7 @@ def test_two_materials_in_series_are_springs_in_series(tool, variant, bar):
     assert stiffness_by(tool, variant, bar) == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.needs  # looked for in the process of its own
 @pytest.mark.parametrize("variant", PEERS, ids=str)
 def test_installed_peers_agree_where_quadrature_is_exact(variant, bar, tmp_path):
     outcome = measured(variant, bar, tmp_path)

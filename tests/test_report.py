@@ -4,7 +4,6 @@ import base64
 import hashlib
 import json
 import math
-import shutil
 import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
@@ -305,10 +304,7 @@ def test_the_same_results_make_the_same_page(tmp_path: Path) -> None:
     assert page_of(tmp_path, results()) == page_of(tmp_path, results())
 
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-
-
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+@pytest.mark.needs("chromium")
 def test_a_browser_draws_the_chart_and_runs_nothing_hostile(tmp_path: Path) -> None:
     folder = tmp_path / "out"
     folder.mkdir()
@@ -316,7 +312,7 @@ def test_a_browser_draws_the_chart_and_runs_nothing_hostile(tmp_path: Path) -> N
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
     done = subprocess.run(
         [
-            str(CHROMIUM),
+            "chromium",
             *options,
             f"--user-data-dir={tmp_path / 'profile'}",
             "--virtual-time-budget=5000",

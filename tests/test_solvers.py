@@ -24,7 +24,9 @@ def missing(method):
 EACH = [
     pytest.param(
         method,
-        marks=pytest.mark.skipif(missing(method), reason=f"{method} is not installed"),
+        marks=pytest.mark.needs(direct_solvers.PACKAGES[method])
+        if method in ("pardiso", "cholmod")
+        else [],
     )
     for method in METHODS
     if method != "auto"
@@ -237,7 +239,7 @@ def test_thinness_of_a_plate_is_that_of_its_wall():
     assert cost_model.thinness(system.elements) == pytest.approx(expected, rel=1e-3)
 
 
-@pytest.mark.skipif(missing("cholmod"), reason="cholmod is not installed")
+@pytest.mark.needs("sksparse")
 def test_entries_of_a_factor_are_counted(cube):
     """Against CHOLMOD's own factor, which it copies to show; its supernodes keep some zeros."""
     from sksparse.cholmod import cholesky

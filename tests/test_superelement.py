@@ -20,17 +20,14 @@ from fe_drivetrain.fidelity.shafts import meridian_shaft
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.solve.condensation import keep_points
 
-READABLE = [name for name in export.FORMATS if hasattr(export.format_module(name), "read")]
-
 #: What the extra of a format installs.
 IMPORTS = {"hdf5": "h5py", "nastran": "pyNastran"}
 
-
-def needs(format: str) -> None:
-    """Skip where the extra of a format is not installed."""
-    extra = export.FORMATS[format].extra
-    if extra:
-        pytest.importorskip(IMPORTS.get(extra, extra), reason=f"needs the extra {extra!r}")
+READABLE = [
+    pytest.param(name, marks=[pytest.mark.needs(IMPORTS[f.extra])] if f.extra else [])
+    for name, f in export.FORMATS.items()
+    if hasattr(export.format_module(name), "read")
+]
 
 
 def random_element(seed: int, mass: bool = True, free: bool = False) -> Superelement:
@@ -57,7 +54,6 @@ def random_element(seed: int, mass: bool = True, free: bool = False) -> Superele
 @pytest.mark.parametrize("format", READABLE)
 @pytest.mark.parametrize(("seed", "mass"), [(0, True), (1, True), (2, False), (3, True)])
 def test_round_trip(tmp_path: Path, format: str, seed: int, mass: bool) -> None:
-    needs(format)
     element = random_element(seed, mass)
     path = tmp_path / f"element{export.FORMATS[format].suffix}"
     export.write(path, element, format)
@@ -73,7 +69,6 @@ def test_round_trip(tmp_path: Path, format: str, seed: int, mass: bool) -> None:
 @pytest.mark.parametrize("format", READABLE)
 @pytest.mark.parametrize("content", [b"", b"not of any format\n", bytes(range(256)), b"{}"])
 def test_a_malformed_file_gets_one_sentence(tmp_path: Path, format: str, content: bytes) -> None:
-    needs(format)
     path = tmp_path / f"element{export.FORMATS[format].suffix}"
     path.write_bytes(content)
     with pytest.raises(InputError) as caught:
@@ -84,7 +79,6 @@ def test_a_malformed_file_gets_one_sentence(tmp_path: Path, format: str, content
 
 @pytest.mark.parametrize("format", READABLE)
 def test_a_truncated_file_is_refused(tmp_path: Path, format: str) -> None:
-    needs(format)
     path = tmp_path / f"element{export.FORMATS[format].suffix}"
     export.write(path, random_element(5), format)
     content = path.read_bytes()

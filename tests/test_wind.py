@@ -101,8 +101,8 @@ def test_power_law_is_exact_at_the_hub_and_straight_in_logarithms() -> None:
     np.testing.assert_allclose(np.diff(np.log(speeds)) / np.log(2.0), 0.37)
 
 
+@pytest.mark.needs("pyconturb")
 def test_formulas_agree_with_pyconturb() -> None:
-    pytest.importorskip("pyconturb", reason="PyConTurb is an optional, independent check")
     import pandas as pd
     from pyconturb.coherence import get_iec_cor_mat
     from pyconturb.sig_models import iec_sig

@@ -5,14 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.common import Floats, largest_difference
+from fe_drivetrain.common import (
+    Floats,
+    largest_difference,
+)
 from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.export import Superelement, from_scene
+from fe_drivetrain.export import (
+    Superelement,
+    from_scene,
+)
 from fe_drivetrain.fidelity import (
     LEAST_ORDER,
     LevelModel,
@@ -22,21 +27,15 @@ from fe_drivetrain.fidelity import (
     solid_level,
 )
 from fe_drivetrain.report import (
-    AssumptionRow,
     Cell,
-    Image,
+    Chart,
     NoPictureError,
-    Section,
-    Table,
-    Text,
-    Verdict,
     chart,
-    judge,
     picture_of_displacements,
     trace,
 )
 from fe_drivetrain.scene import Component, SomeComponent
-from fe_drivetrain.suite import Run
+from fe_drivetrain.suite import Page, Run, column
 
 #: Coarsening of the mesh under --quick.
 QUICK = 1.8
@@ -55,7 +54,8 @@ SOLVED_REASON = (
     "motions that are small beside the largest"
 )
 
-_LEAST = 1e-6  # per cent: what is exact has a place on a logarithmic axis
+_LEAST = 1e-6  # percent: what is exact has a place on a logarithmic axis
+_CHANGE = "change over the diagonal [-]"
 
 
 def coarser(component: SomeComponent, factor: float) -> SomeComponent:
@@ -65,15 +65,15 @@ def coarser(component: SomeComponent, factor: float) -> SomeComponent:
 
 @dataclass(frozen=True)
 class Ladder:
-    """The levels of a component, from cheap to dear, the last the solid.
+    """The levels of a component, from cheap to expensive, the last the solid.
 
     Attributes
     ----------
-    models, seconds
+    models, seconds : sequence of LevelModel, of float
         Each level and its wall time, meshes included.
-    solids
+    solids : sequence of SolidComponent
         The solids, of the coarsest mesh first.
-    coarse
+    coarse : sequence of LevelModel
         Levels of all solids but the finest.
     """
 
@@ -138,9 +138,9 @@ class Quantity:
 
     Attributes
     ----------
-    name, unit
+    name, unit : str
         For headings.
-    of
+    of : callable
         Its value at a level; NaN where the level cannot tell.
     """
 
@@ -149,45 +149,28 @@ class Quantity:
     of: Callable[[LevelModel], float]
 
 
-def ladder_section(ladder: Ladder, quantities: Sequence[Quantity]) -> tuple[Section, Verdict, str]:
+def show_ladder(page: Page, ladder: Ladder, quantities: Sequence[Quantity]) -> None:
     """Levels compared: value, error against the solid, its band, time, what is neglected.
 
-    Returns
-    -------
-    The section, whether some level is known to be within `TOLERANCE` in the first quantity, and
-    the answer in a sentence.
+    Parameters
+    ----------
+    page : Page
+        Takes the answer, the check whether some level is known to be within `TOLERANCE` in the
+        first quantity, and the section.
+    ladder : Ladder
+        The levels.
+    quantities : sequence of Quantity
+        What they are compared by; the first decides.
     """
-    rows: list[list[Cell]] = []
-    traces: list[Any] = []
     bands = [ladder.band(quantity.of) for quantity in quantities]
     times = ladder.seconds
     errors_of = [
         [abs(quantity.of(model) / quantity.of(ladder.top) - 1.0) for model in ladder.models]
         for quantity in quantities
     ]
-    for model, seconds, error in zip(ladder.models, times, errors_of[0], strict=True):
-        is_top = model is ladder.top
-        known = bands[0].relative_uncertainty if is_top else error
-        rows.append(
-            [
-                f"{model.level} {model.title}",
-                _cell(quantities[0].of(model)),
-                _cell(100 * error),
-                100 * known if is_top else None,
-                seconds,
-                times[-1] / seconds,
-                "; ".join(model.neglects) or "nothing that the component has",
-            ]
-        )
-        if np.isfinite(known):
-            title = f"level {model.level}, {model.title}"
-            at = [seconds], [max(100 * known, _LEAST)]
-            traces.append(trace(title, *at, points=True, marker={"size": 11}))
-    limit = 100 * TOLERANCE
-    traces.append(trace("tolerance", [min(times), max(times)], [limit] * 2, line={"dash": "dash"}))
-    first, band = quantities[0], bands[0]
+    first, own = quantities[0], bands[0].relative_uncertainty
     known_errors = [
-        error + band.relative_uncertainty if model is not ladder.top else band.relative_uncertainty
+        own if model is ladder.top else error + own
         for model, error in zip(ladder.models, errors_of[0], strict=True)
     ]
     enough = [k for k, error in enumerate(known_errors) if error <= TOLERANCE]
@@ -197,78 +180,93 @@ def ladder_section(ladder: Ladder, quantities: Sequence[Quantity]) -> tuple[Sect
     if model is ladder.top:
         sentence = (
             f"{first.name} within {share} needs level {model.level}, {model.title}: "
-            f"band ± {100 * band.relative_uncertainty:.2g} %"
+            f"band ± {100 * own:.2g} %"
         )
     else:
         sentence = (
             f"{first.name} within {share}: level {model.level}, {model.title}, is enough: "
-            f"{100 * errors_of[0][chosen]:.2g} % from the solid (± "
-            f"{100 * band.relative_uncertainty:.2g} %), and {times[-1] / times[chosen]:.3g} times "
-            "faster"
+            f"{100 * errors_of[0][chosen]:.2g} % from the solid (± {100 * own:.2g} %), and "
+            f"{times[-1] / times[chosen]:.3g} times faster"
         )
-    sentence = _capital(sentence)
-    verdict = judge(
+    page.answer(f"{_capital(sentence)}.")
+    page.at_most(
         f"{first.name}: error of level {model.level}, {model.title}, and band of the solid",
         known_errors[chosen],
-        0.0,
-        tolerance=TOLERANCE,
-        relative=False,
+        TOLERANCE,
+        why="the tolerance that was requested",
         source="the solid and its grid convergence",
-        reason="asked for",
     )
-    table = Table(
-        caption=_capital(f"{first.name} at each level"),
-        columns=[
-            "level",
-            f"value [{first.unit}]",
-            "error against the solid [%]",
-            "band ± [%]",
-            "time [s]",
-            "times faster than the solid",
-            "neglects",
+    page.section("The ladder")
+    page.text(_capital(sentence))
+    page.add(_against_time(ladder, first.name, errors_of[0], own))
+    page.table(
+        _capital(f"{first.name} at each level"),
+        [
+            {
+                "level": f"{model.level} {model.title}",
+                f"value [{first.unit}]": _cell(first.of(model)),
+                "error against the solid [%]": _cell(100 * error),
+                "band ± [%]": 100 * own if model is ladder.top else None,
+                "time [s]": seconds,
+                "times faster than the solid": times[-1] / seconds,
+                "neglects": "; ".join(model.neglects) or "nothing that the component has",
+            }
+            for model, seconds, error in zip(ladder.models, times, errors_of[0], strict=True)
         ],
-        rows=rows,
     )
-    others = Table(
-        caption="All quantities: the solid, its band, and the error of the levels below it",
-        columns=[
+    page.table(
+        "All quantities: the solid, its band, and the error of the levels below it",
+        [
+            [
+                quantity.name,
+                quantity.unit,
+                quantity.of(ladder.top),
+                100 * band.relative_uncertainty,
+                *(_cell(100 * error) for error in errors[:-1]),
+            ]
+            for quantity, band, errors in zip(quantities, bands, errors_of, strict=True)
+        ],
+        [
             "quantity",
             "unit",
             "solid",
             "band ± [%]",
             *(f"{model.title} [%]" for model in ladder.models[:-1]),
         ],
-        rows=[
-            [
-                quantity.name,
-                quantity.unit,
-                quantity.of(ladder.top),
-                100 * found.relative_uncertainty,
-                *(_cell(100 * error) for error in errors[:-1]),
-            ]
-            for quantity, found, errors in zip(quantities, bands, errors_of, strict=True)
-        ],
     )
-    picture = chart(
-        _capital(f"{first.name}: error against time; of the solid its own band"),
+    found = "; ".join(
+        f"{q.name}: {band.sentence(q.unit)}" for q, band in zip(quantities, bands, strict=True)
+    )
+    page.text(
+        f"Band: three meshes, sizes times {COARSER[0]:g}, {COARSER[1]:g} and 1. Stress is "
+        "singular at inner edges, energy converges there as h^1.09 at best (Williams 1952), and "
+        f"coarse meshes are not there yet: no better order than {LEAST_ORDER:g} is relied upon. "
+        f"{found}."
+    )
+
+
+def _against_time(ladder: Ladder, name: str, errors: Sequence[float], own: float) -> Chart:
+    """Error of each level over its time; of the solid its own band."""
+    times = ladder.seconds
+    traces = [
+        trace(
+            f"level {model.level}, {model.title}",
+            [seconds],
+            [max(100 * error, _LEAST)],
+            points=True,
+            marker={"size": 11},
+        )
+        for model, seconds, error in zip(ladder.models, times, [*errors[:-1], own], strict=True)
+        if np.isfinite(error)
+    ]
+    ends, limit = [min(times), max(times)], 100 * TOLERANCE
+    traces.append(trace("tolerance", ends, [limit, limit], line={"dash": "dash"}))
+    return chart(
+        _capital(f"{name}: error against time; of the solid its own band"),
         traces,
         x="time [s]",
         y="error [%]",
         logarithmic=("x", "y"),
-    )
-    said = "; ".join(
-        f"{q.name}: {b.sentence(q.unit)}" for q, b in zip(quantities, bands, strict=True)
-    )
-    note = Text(
-        text=f"Band: three meshes, sizes times {COARSER[0]:g}, {COARSER[1]:g} and 1. Stress is "
-        "singular at inner edges, energy converges there as h^1.09 at best (Williams 1952), and "
-        f"coarse meshes are not there yet: no better order than {LEAST_ORDER:g} is relied upon. "
-        f"{said}."
-    )
-    return (
-        Section(title="The ladder", items=[Text(text=sentence), picture, table, others, note]),
-        verdict,
-        sentence,
     )
 
 
@@ -280,10 +278,9 @@ def _cell(value: float) -> Cell:
     return value if np.isfinite(value) else None
 
 
-def files_section(run: Run, element: Superelement) -> tuple[Section, Verdict]:
+def show_files(run: Run, page: Page, element: Superelement) -> None:
     """Write a superelement in every format that can be read back here, and read it again."""
-    rows: list[list[Cell]] = []
-    worst = 0.0
+    rows = []
     with run.step("export"):
         for name, form in export.FORMATS.items():
             module = export.format_module(name)
@@ -292,65 +289,60 @@ def files_section(run: Run, element: Superelement) -> tuple[Section, Verdict]:
             path = run.folder / f"{element.name}_{name}{form.suffix}"
             export.write(path, element, name)
             back = export.read(path, name)
-            changed = largest_difference(back.stiffness, element.stiffness)
-            worst = max(worst, changed)
-            rows.append([name, path.name, path.stat().st_size, changed, 10.0**-form.digits])
-    table = Table(
-        caption=f"{element.name} at {', '.join(element.points)}: stiffness read back",
-        columns=["format", "file", "bytes", "change over the diagonal [-]", "the format keeps [-]"],
-        rows=rows,
-    )
-    verdict = judge(
+            rows.append(
+                {
+                    "format": name,
+                    "file": path.name,
+                    "bytes": path.stat().st_size,
+                    _CHANGE: largest_difference(back.stiffness, element.stiffness),
+                    "the format keeps [-]": 10.0**-form.digits,
+                }
+            )
+    page.vanishes(
         "stiffness read back from files, largest change over the diagonal",
-        worst,
-        0.0,
-        tolerance=1e-9,
-        relative=False,
-        unit="-",
+        max(column(rows, _CHANGE)),
+        within=1e-9,
+        why="the format with the fewest digits keeps 10",
         source="the superelement that was written",
-        reason="the format with the fewest digits keeps 10",
-        measure="identity",
+        unit="-",
     )
     band = "not known" if element.band is None else f"{100 * element.band:.2g} %"
-    text = Text(
-        text=f"Free at its points, with mass; band of the stiffness {band} of the diagonal, from a "
+    page.section("Exported")
+    page.text(
+        f"Free at its points, with mass; band of the stiffness {band} of the diagonal, from a "
         f"coarser mesh. `fe-drivetrain export {element.name} --format json --out FILE` writes the "
         "same."
     )
-    return Section(title="Exported", items=[text, table]), verdict
+    page.table(f"{element.name} at {', '.join(element.points)}: stiffness read back", rows)
 
 
-def picture_section(run: Run, solid: SolidComponent, motions: Floats, what: str) -> Section:
+def show_picture(run: Run, page: Page, solid: SolidComponent, motions: Floats, what: str) -> None:
     """The solid, deformed."""
+    page.section("Deformed")
     with run.step("picture"):
         try:
             u = solid.displacements(motions)
             factor = picture_of_displacements(solid.mesh, u, run.folder / "deformed.png")
         except NoPictureError as reason:
-            return Section(title="Deformed", items=[Text(text=f"No picture: {reason}")])
-    caption = f"{what}; displacements times {factor:g}, and the elements' edges"
-    return Section(title="Deformed", items=[Image(caption=caption, file="deformed.png")])
+            page.text(f"No picture: {reason}")
+            return
+    page.image(f"{what}; displacements times {factor:g}, and the elements' edges", "deformed.png")
 
 
-def assumption_rows(component: Component) -> list[AssumptionRow]:
+def assume_dimensions(page: Page, component: Component) -> None:
     """The body's dimensions, and where each comes from."""
-    return [
-        AssumptionRow(name=a.name, value=a.value, unit=a.unit, source=a.source)
-        for a in component.body.assumptions()
-    ]
+    for a in component.body.assumptions():
+        page.assume(a.name, a.value, a.unit, a.source)
 
 
-def rigid_verdict(element: Superelement) -> Verdict:
+def check_rigid_motion(page: Page, element: Superelement) -> None:
     """No force against a rigid motion of the free solid."""
-    return judge(
+    page.vanishes(
         "free solid: force against rigid motions, of those that its terms have one by one",
         element.rigid_error(),
-        0.0,
-        tolerance=1e-12,
-        relative=False,
-        unit="-",
-        source="a body that moves as a whole is not strained",
-        reason="the condensed stiffness is made of flexibilities between points, so that only "
+        within=1e-12,
+        why="the condensed stiffness is made of flexibilities between points, so that only "
         "round-off of its products is left",
-        measure="identity",
+        source="a body that moves as a whole is not strained",
+        unit="-",
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,9 +25,10 @@ class Solved:
 
     Attributes
     ----------
-    model, response
+    model : Model
+    response : Response
         Of the finite elements.
-    seconds
+    seconds : float
         Wall time, mesh included.
     """
 
@@ -85,8 +85,8 @@ def difference(one: Floats, other: Floats) -> float:
     return float((np.abs(one - other) / np.outer(size, size)).max())
 
 
-def roller_totals(response: Response, lines: Floats, loads: Mapping[str, Floats] | Floats) -> float:
-    """How far the sum of roller loads (n, 10) along lines (n, 6) is from what the joint carries."""
-    total = lines.T @ np.asarray(loads)
+def roller_imbalance(response: Response, lines: Floats, loads: Floats) -> float:
+    """Sum of roller loads (n, 10) along lines (n, 6), less what the joint carries, relative."""
+    total = lines.T @ loads
     carried = response.reactions[f"{BEARING}.outer"]
     return float(np.abs(total - carried).max() / np.abs(carried).max())

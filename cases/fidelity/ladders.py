@@ -1,61 +1,31 @@
-"""What the cases of the ladder share: a library scene, climbed to its top, and its stiffness."""
+"""Library scenes, each climbed to the top of its model levels, and their stiffness in files."""
 
-from __future__ import annotations
+from typing import Any
 
-from fe_drivetrain.cases.fidelity.published_torsion import (
-    Published,
-    beside_published,
-)
-from fe_drivetrain.cases.fidelity.stiffness_files import (
-    stiffness_files,
-)
+from fe_drivetrain.cases import cases
+from fe_drivetrain.cases.fidelity.published_torsion import Published, beside_published
+from fe_drivetrain.cases.fidelity.stiffness_files import stiffness_files
 from fe_drivetrain.commands import advised
 from fe_drivetrain.fidelity import Quantity
-from fe_drivetrain.report import Results
 from fe_drivetrain.scene import change_scene, library_scene
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.suite import Page, Record, Run
 
-#: Coarsening of the mesh under --quick.
-QUICK = 1.4
+COARSER = 1.4  # the mesh of a quick run
 
 
-def climbed(
-    case: Case,
-    run: Run,
-    name: str,
-    quantity: str,
-    tolerance: float,
-    published: Published | None = None,
-) -> Results:
-    """All levels of a library scene with the user's changes to it, and its stiffness in files.
-
-    Parameters
-    ----------
-    case, run
-        Whose results these are.
-    name
-        Of the scene.
-    quantity, tolerance
-        See `fe_drivetrain.fidelity.adviser`.
-    published
-        What the shaft's torsion is held against, as long as shaft and materials are the library's.
-    """
-    original = library_scene(name)
+@cases("ladders.yaml")
+def run(run: Run, page: Page, row: Record) -> None:
+    """All levels of a library scene with the user's changes to it, and its stiffness in files."""
+    original = library_scene(row["scene"])
     scene = change_scene(original, run.settings)
     if run.quick:
-        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(QUICK)})
-    results = advised(case, run, scene, Quantity(quantity), tolerance, to_the_top=True)
+        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)})
+    quantity = Quantity(row["quantity"])
+    advised(run, page, scene, quantity, row["tolerance"], to_the_top=True)
     with run.step("stiffness for other models"):
-        section, verdicts = stiffness_files(run.folder, scene, Quantity(quantity), results)
-    sections, summary = [*results.sections, section], list(results.summary)
-    verdicts = [*results.verdicts, *verdicts]
-    same = (scene.shaft, scene.materials) == (original.shaft, original.materials)
-    if published is not None and same:
+        stiffness_files(page, run.folder, scene, quantity)
+    published: dict[str, Any] | None = row.get("published")
+    # the source describes the library's shaft, not one that the user changed
+    if published and (scene.shaft, scene.materials) == (original.shaft, original.materials):
         with run.step("torsion beside the published figure"):
-            section, said, judged = beside_published(scene, published)
-        sections.append(section)
-        summary.append(said)
-        verdicts += judged
-    update = {"sections": sections, "verdicts": verdicts, "summary": summary, "times": run.times}
-    return results.model_copy(update=update)
+            beside_published(page, scene, Published(**published))

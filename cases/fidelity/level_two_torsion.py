@@ -1,10 +1,14 @@
 """Level 2 in torsion of a stepped shaft, to 1e-8: between two bounds that leave no more."""
 
 from itertools import pairwise
-from typing import Any
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.cases import case
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.report import trace
+from fe_drivetrain.revolution import meridian, stiffness_between_ends
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
 LARGE, SMALL, LENGTH = 0.6, 0.4, 0.6
 BORES = {"bored": 0.2, "solid": 0.0}
@@ -18,162 +22,113 @@ SIZES = (0.05, 0.025, 0.0125)
 HALVINGS = 24
 CLAIM = 1e-8
 
+STIFFNESS, ERROR = "stiffness [N m/rad]", "from the bounds' middle, relative"
 
-def run(run: Run) -> Any:
+
+@case(
+    "Level 2 in torsion of a stepped shaft, to 1e-8",
+    source="Two bounds of the stiffness from scalar problems in the meridian (Michell 1899)",
+)
+def run(run: Run, page: Page) -> None:
     """The bounds closed in on, and the meridian's 12 x 12 between them."""
-    from fe_drivetrain.cases.verification import shaft_inputs
-    from fe_drivetrain.geometry import Section as Length
-    from fe_drivetrain.geometry import Shaft
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.revolution import meridian, stiffness_between_ends
-    from fe_drivetrain.scene import MATERIALS
-    from fe_drivetrain.validation.torsion_meridian import (
-        torsion_bounds,
-    )
-
     steel = MATERIALS["steel"]
-    verdicts, traces = [], []
-    rows: list[list[Any]] = []
-    widths: list[list[Any]] = []
-    errors = {}
-    sizes = SIZES[:1] if run.quick else SIZES
-    settings = QUICK_SETTINGS if run.quick else SETTINGS
+    rows: list[Record] = []
+    widths: list[Record] = []
     for name, bore in BORES.items():
-        shaft = Shaft(
-            front=0.0,
-            sections=tuple(
-                Length(length=LENGTH, outer_diameter=outer, inner_diameter=bore)
-                for outer in (LARGE, SMALL)
-            ),
+        sections = tuple(
+            Section(length=LENGTH, outer_diameter=outer, inner_diameter=bore)
+            for outer in (LARGE, SMALL)
         )
+        shaft = Shaft(front=0.0, sections=sections)
         with run.step(f"{name}: bounds"):
-            all_bounds = [
-                torsion_bounds(shaft, steel.shear_modulus, size, HALVINGS) for size in sizes
-            ]
-        bounds = all_bounds[-1]
-        width = 2 * bounds.half_width / bounds.middle
-        widths += [
-            [name, 1e3 * size, b.lower, b.upper, 2 * b.half_width / b.middle]
-            for size, b in zip(sizes, all_bounds, strict=True)
-        ]
-        found, unknowns = [], []
-        for order, layers in settings:
+            for size in SIZES[:1] if run.quick else SIZES:
+                bounds = torsion_bounds(shaft, steel.shear_modulus, size, HALVINGS)
+                widths.append(
+                    {
+                        "shaft": name,
+                        "element size [mm]": 1e3 * size,
+                        "lower [N m/rad]": bounds.lower,
+                        "upper [N m/rad]": bounds.upper,
+                        "width, relative": 2 * bounds.half_width / bounds.middle,
+                    }
+                )
+        for order, layers in QUICK_SETTINGS if run.quick else SETTINGS:
             with run.step(f"{name}: meridian"):
                 mesh = meridian(shaft, order=order, layers=layers)
-                found.append(float(stiffness_between_ends(mesh, steel)[3, 3]))
-            unknowns.append(len(mesh.nodes))
-            rows.append([name, order, layers, unknowns[-1], found[-1]])
-            rows[-1].append(found[-1] / bounds.middle - 1)
-        errors[name] = abs(found[-1] / bounds.middle - 1)
-        traces.append(trace(name, unknowns, [abs(k / bounds.middle - 1) for k in found]))
-        verdicts += [
-            judge(
-                f"{name}: torsional stiffness, order {settings[-1][0]}",
-                found[-1],
-                bounds.middle,
-                tolerance=width / 2,
-                unit="N m/rad",
-                source="between two bounds, by displacements and by the torsion function (Michell "
-                "1899), in triangles of scikit-fem",
-                reason="half the distance of the bounds",
-                measure="stiffness",
-                band=abs(found[-1] - found[-2]),
-            ),
-            judge(
-                f"{name}: width of the bounds, relative",
-                width,
-                0.0,
-                tolerance=1e-6 if run.quick else CLAIM,
-                relative=False,
-                source="exact stiffness lies between them",
-                reason="coarse bounds of a quick run" if run.quick else "what is to be shown",
-                measure="identity",
-                band=0.0,
-            ),
-            judge(
-                f"{name}: most by which stiffness grows as elements gain freedom, relative",
-                max(0.0, *(b / a - 1 for a, b in pairwise(found))),
-                0.0,
-                tolerance=1e-10,
-                relative=False,
-                source="displacements of the coarser mesh make no less energy",
-                reason="round-off; the meshes are nested but for the middle of the corners",
-                measure="identity",
-                band=0.0,
-            ),
-        ]
-    return CASE.results(
-        run,
-        summary=[
-            f"The torsional stiffness of a stepped shaft between rigid ends is that of two bounds "
-            f"to {max(errors.values()):.1g}; the bounds are "
-            f"{max(w[4] for w in widths if w[1] == 1e3 * sizes[-1]):.1g} apart.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Torsion",
-                items=[
-                    chart(
-                        "Difference of the meridian's stiffness from the bounds' middle",
-                        traces,
-                        "nodes, one unknown each",
-                        "relative difference [-]",
-                        logarithmic="xy",
-                    ),
-                    Table(
-                        caption="Meridian between rigid ends",
-                        columns=[
-                            "shaft",
-                            "order",
-                            "layers at corners",
-                            "nodes",
-                            "stiffness [N m/rad]",
-                            "from the bounds' middle, relative",
-                        ],
-                        rows=rows,
-                    ),
-                    Table(
-                        caption="Bounds",
-                        columns=[
-                            "shaft",
-                            "element size [mm]",
-                            "lower [N m/rad]",
-                            "upper [N m/rad]",
-                            "width, relative",
-                        ],
-                        rows=widths,
-                    ),
-                    Text(
-                        text=f"Bounds: triangles of fourth order, halved {HALVINGS} times at the "
-                        "corners, so that the size elsewhere is what is left. The upper one is the "
-                        "energy of an angle of twist, the lower one that of a torsion function; "
-                        "both are least, and nothing is shared with the meridian's program but the "
-                        "outline. Of the solid shaft the lower bound takes the torsion function "
-                        "on the step's face by interpolation, and is a bound but for that."
-                    ),
-                    shaft_inputs.inputs(
-                        ("large diameter", LARGE, "m", "chosen"),
-                        ("small diameter", SMALL, "m", "chosen"),
-                        ("bore of the bored shaft", BORES["bored"], "m", "chosen"),
-                        ("length of each part", LENGTH, "m", "chosen"),
-                        *shaft_inputs.steel_rows(steel),
-                    ),
-                ],
+                found = float(stiffness_between_ends(mesh, steel)[3, 3])
+            rows.append(
+                {
+                    "shaft": name,
+                    "order": order,
+                    "layers at corners": layers,
+                    "nodes": len(mesh.nodes),
+                    STIFFNESS: found,
+                    ERROR: found / bounds.middle - 1,
+                }
             )
-        ],
-        figures={"errors": errors},
+        series = [row[STIFFNESS] for row in rows if row["shaft"] == name]
+        width = widths[-1]["width, relative"]
+        page.equals(
+            f"{name}: torsional stiffness, order {order}",
+            series[-1],
+            bounds.middle,
+            within=width / 2,
+            why="half the distance of the bounds",
+            source="between two bounds, by displacements and by the torsion function (Michell "
+            "1899), in triangles of scikit-fem",
+            unit="N m/rad",
+            measure="stiffness",
+            band=abs(series[-1] - series[-2]),
+        )
+        page.at_most(
+            f"{name}: width of the bounds, relative",
+            width,
+            1e-6 if run.quick else CLAIM,
+            why="coarse bounds of a quick run"
+            if run.quick
+            else "a comparison to 1e-8 needs bounds that are no farther apart",
+            source="exact stiffness lies between them",
+            measure="identity",
+        )
+        page.at_most(
+            f"{name}: largest growth of stiffness as elements gain degrees of freedom, relative",
+            max(0.0, *(b / a - 1 for a, b in pairwise(series))),
+            1e-10,
+            why="round-off; the meshes are nested but for the middle of the corners",
+            source="displacements of the coarser mesh make no less energy",
+            measure="identity",
+        )
+    finest = {name: of[-1] for name, of in grouped(rows, "shaft")}
+    page.answer(
+        "The torsional stiffness of a stepped shaft between rigid ends is that of two bounds to "
+        f"{max(abs(row[ERROR]) for row in finest.values()):.1g}; the bounds are "
+        f"{max(of[-1]['width, relative'] for _, of in grouped(widths, 'shaft')):.1g} apart."
     )
-
-
-CASE = Case(
-    name="fidelity/level_two_torsion",
-    title="Level 2 in torsion of a stepped shaft, to 1e-8",
-    source="Two bounds of the stiffness from scalar problems in the meridian (Michell 1899)",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+    page.section("Torsion")
+    page.chart(
+        "Difference of the meridian's stiffness from the bounds' middle",
+        [
+            trace(name, column(of, "nodes"), [abs(error) for error in column(of, ERROR)])
+            for name, of in grouped(rows, "shaft")
+        ],
+        "nodes, one unknown each",
+        "relative difference [-]",
+        "xy",
+    )
+    page.table("Meridian between rigid ends", rows)
+    page.table("Bounds", widths)
+    page.text(
+        f"Bounds: triangles of fourth order, halved {HALVINGS} times at the corners, so that the "
+        "size elsewhere is what is left. The upper one is the energy of an angle of twist, the "
+        "lower one that of a torsion function; both are least, and nothing is shared with the "
+        "meridian's program but the outline. Of the solid shaft the lower bound takes the torsion "
+        "function on the step's face by interpolation, and is a bound but for that."
+    )
+    page.data("errors", {name: abs(row[ERROR]) for name, row in finest.items()})
+    page.assume("large diameter", LARGE, "m", "chosen")
+    page.assume("small diameter", SMALL, "m", "chosen")
+    page.assume("bore of the bored shaft", BORES["bored"], "m", "chosen")
+    page.assume("length of each part", LENGTH, "m", "chosen")
+    page.assume("E", steel.youngs_modulus / 1e9, "GPa", "steel, assumed")
+    page.assume("nu", steel.poisson_ratio, "-", "steel, assumed")
+    page.assume("G = E / (2 (1 + nu))", steel.shear_modulus / 1e9, "GPa", "of these")

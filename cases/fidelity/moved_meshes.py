@@ -1,8 +1,9 @@
 """Dimensions of a bonded main bearing changed by moving the nodes of one mesh.
 
-A mesh made anew differs in its errors by more than a small change of a dimension does; one whose
-nodes move along with the surfaces keeps its errors, so differences of solutions are smooth. Each
-move is linear between surfaces, and carries each of them exactly onto that of the changed scene.
+The errors of two meshes that are made separately differ by more than a small change of a dimension
+does; a mesh whose nodes move along with the surfaces keeps its errors, so differences of solutions
+are smooth. Each move is linear between surfaces, and carries each of them exactly onto that of the
+changed scene.
 """
 
 from __future__ import annotations
@@ -27,15 +28,22 @@ def moved(scene: Scene, mesh: Mesh, key: str, value: float) -> tuple[Scene, Mesh
 
     Parameters
     ----------
-    scene
+    scene : Scene
         One bonded bearing at x = 0 on a bored shaft of one section; flanks of the pedestal that
         go straight from shell to foot.
-    mesh
+    mesh : Mesh
         Of that scene.
-    key
+    key : str
         `OUTER`, `BORE`, `FRONT`, `PEDESTAL` or `WALL`.
-    value
+    value : float
         [m].
+
+    Returns
+    -------
+    changed : Scene
+        With that value.
+    moved : Mesh
+        The same elements, on the surfaces of the changed scene.
     """
     changed = with_values(scene, {key: value})
     points = mesh.points

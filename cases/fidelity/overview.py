@@ -1,9 +1,11 @@
 """All scenes side by side: what the beam itself costs, and what its supports do."""
 
-from typing import Any
+from dataclasses import asdict
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.fidelity.side_by_side import FORCE, QUANTITIES, compared, show
+from fe_drivetrain.scene import library_scene
+from fe_drivetrain.suite import Page, Run
 
 SCENES = (
     "main_bearing_spherical",
@@ -26,49 +28,35 @@ MERIDIAN = 1e-4
 BEARABLE = 0.05
 
 
-def run(run: Run) -> Any:
+@case(
+    "For which shafts is the beam enough?",
+    source="the scenes of the library; sources stand in each",
+)
+def run(run: Run, page: Page) -> None:
     """Levels 1 and 2 of every scene, housings rigid and as springs."""
-    from dataclasses import asdict
-
-    from fe_drivetrain.cases.fidelity.side_by_side import (
-        FORCE,
-        QUANTITIES,
-        chart,
-        compared,
-        table,
-    )
-    from fe_drivetrain.report import Section, Text, judge
-    from fe_drivetrain.scene import library_scene
-
-    found, verdicts = [], []
+    found = []
     for name in SCENES[::3] if run.quick else SCENES:
         with run.step(name):
             scene = library_scene(name)
             mesh = scene.mesh.scaled(QUICK if run.quick else COARSER)
             one = compared(name, scene.model_copy(update={"mesh": mesh}))
         found.append(one)
-        verdicts += [
-            judge(
-                f"{name}: hub stiffer on softer supports, relative",
-                one.stiffer_on_softer,
-                0.0,
-                tolerance=1e-6,
-                relative=False,
-                source="a support that gives more lets the hub give more (Rayleigh)",
-                reason="housings are solved to 1e-9, and their inverses cost three digits",
-                measure="identity",
-            ),
-            judge(
-                f"{name}: free meridian stiffer in torsion than the beam, no fillets, relative",
-                one.stiffer_than_beam,
-                0.0,
-                tolerance=MERIDIAN,
-                relative=False,
-                source="a beam keeps its sections plane and round (least potential energy)",
-                reason="what the meridian itself may be off",
-                measure="identity",
-            ),
-        ]
+        page.at_most(
+            f"{name}: hub stiffer on softer supports, relative",
+            one.stiffer_on_softer,
+            1e-6,
+            why="housings are solved to 1e-9, and their inverses cost three digits",
+            source="a support that gives more lets the hub give more (Rayleigh)",
+            measure="identity",
+        )
+        page.at_most(
+            f"{name}: free meridian stiffer in torsion than the beam, no fillets, relative",
+            one.stiffer_than_beam,
+            MERIDIAN,
+            why="the error that the meridian itself may have",
+            source="a beam keeps its sections plane and round (least potential energy)",
+            measure="identity",
+        )
     bending, torsion, _ = QUANTITIES
     enough = {
         key: [one.scene for one in found if one.changes[key].beam <= BEARABLE] for key in QUANTITIES
@@ -82,7 +70,7 @@ def run(run: Run) -> Any:
     uncertain = [one.scene for one in found if one.changes[FORCE].faces > BEARABLE]
     bare = [one.scene for one in found if one.changes[bending].bare > BEARABLE]
     share = f"{100 * BEARABLE:g} %"
-    summary = [
+    page.answer(
         "A beam in place of the exact shaft changes the hub's bending stiffness by at most "
         f"{share} in {len(enough[bending])} of {len(found)} scenes"
         + (f" (not in {', '.join(poor)})" if poor else "")
@@ -90,48 +78,24 @@ def run(run: Run) -> Any:
         f"{len(enough[torsion])}; the most in torsion is "
         f"{100 * worst.changes[torsion].beam:.2g} %, {worst.scene}.",
         "A beam counts the rings of its bearings as wholly part of the shaft: of the same shafts "
-        f"without rings, its bending stiffness is off by more than {share} in "
+        f"without rings, its bending stiffness has an error of more than {share} in "
         f"{', '.join(bare) or 'no scene'}.",
         f"In {supports} of {len(found)} scenes the housings do more to the bending stiffness than "
         "beam theory does: whether they give, or how the shaft holds their faces, which only the "
         "assembly of solids decides.",
         f"The force of the first bearing depends on that by more than {share} in "
         f"{', '.join(uncertain) or 'no scene'}.",
-    ]
-    note = Text(
-        text="Changes are relative to the meridian on housings as springs whose faces keep in "
+    )
+    page.section("What is compared")
+    page.text(
+        "Changes are relative to the meridian on housings as springs whose faces keep in "
         "shape. Beam instead of meridian: the shaft's theory alone, supports the same; then both "
         "without the rings that stand on the shaft. Rigid housings: the supports alone. How the "
         "shaft holds their faces: from kept in shape to moving on average. A beam is held at the "
         "middle of a seat, a solid over its width: where a bonded bearing takes moments, that "
         "alone makes the beam softer."
     )
-    return CASE.results(
-        run,
-        summary=summary,
-        verdicts=verdicts,
-        sections=[
-            Section(title="What is compared", items=[note]),
-            *(
-                Section(title=words.partition(":")[0], items=[chart(key, found), table(key, found)])
-                for key, words in QUANTITIES.items()
-            ),
-        ],
-        figures={
-            one.scene: {key: asdict(changes) for key, changes in one.changes.items()}
-            for one in found
-        },
-    )
-
-
-CASE = Case(
-    name="fidelity/overview",
-    title="For which shafts is the beam enough?",
-    source="the scenes of the library; sources stand in each",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+    for key in QUANTITIES:
+        show(page, key, found)
+    for one in found:
+        page.data(one.scene, {key: asdict(changes) for key, changes in one.changes.items()})

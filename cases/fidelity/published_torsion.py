@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fe_drivetrain.beam import Beam, BeamSection, shaft_stiffness
-from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
-from fe_drivetrain.report import Section, Table, Verdict, judge
+from fe_drivetrain.geometry import (
+    LENGTH_TOLERANCE,
+    Shaft,
+)
+from fe_drivetrain.report import Cell
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import Material, Scene
+from fe_drivetrain.suite import Page
 
 
 @dataclass(frozen=True)
@@ -17,15 +21,15 @@ class Published:
 
     Attributes
     ----------
-    name
+    name : str
         What they call it.
-    to
+    to : float
         x of the station to which it reaches from the front face [m]; there, the shaft is cut.
-    value, half_digit
+    value, half_digit : float
         The stiffness, and half of its last printed digit [N m/rad].
-    source
+    source : str
         Of the value.
-    rounding
+    rounding : float
         Half of the last digit of the scene's diameters and lengths [m].
     """
 
@@ -37,7 +41,7 @@ class Published:
     rounding: float = 0.0
 
 
-def beside_published(scene: Scene, published: Published) -> tuple[Section, str, list[Verdict]]:
+def beside_published(page: Page, scene: Scene, published: Published) -> None:
     """The shaft from its front face to a station, ends rigid, beside what the sources say."""
     shaft = front_part(scene.shaft, published.to)
     material = scene.material_of("shaft")
@@ -47,50 +51,45 @@ def beside_published(scene: Scene, published: Published) -> tuple[Section, str, 
     plain = float(end_stiffness(_without_fillets(shaft), material)[3, 3])
     summed = _in_series(shaft, material)
     thicker = _in_series(_enlarged(shaft, published.rounding), material)
-    tolerance = published.half_digit / published.value + thicker / summed - 1.0
     band = abs(found - coarser)
     where = f"front face to x = {published.to:g} m"
-    verdicts = [
-        judge(
-            f"G J / L of the sections in series, {where}",
-            summed,
-            published.value,
-            tolerance=tolerance,
-            unit="N m/rad",
-            source=published.source,
-            reason="half of its last printed digit"
-            + (", and of the scene's dimensions" if published.rounding else ""),
-            measure="stiffness",
-        ),
-        judge(
-            f"finite elements without fillets above the sections in series, {where}, relative",
-            max(plain / summed - 1.0, 0.0),
-            0.0,
-            tolerance=1e-8,
-            relative=False,
-            source="sections kept plane and round only make it stiffer (least potential energy)",
-            reason="round-off of a condensed stiffness",
-            measure="identity",
-        ),
-    ]
-    rows: list[list[str | float | None]] = [
-        [published.name, published.value, published.half_digit, 1.0],
-        ["G J / L of the sections in series", summed, None, summed / published.value],
-        ["finite elements, ends rigid", found, band, found / published.value],
-    ]
-    table = Table(
-        caption=f"Torsional stiffness from the {where}",
-        columns=["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
-        rows=rows,
+    page.equals(
+        f"G J / L of the sections in series, {where}",
+        summed,
+        published.value,
+        within=published.half_digit / published.value + thicker / summed - 1.0,
+        why="half of its last printed digit"
+        + (", and of the scene's dimensions" if published.rounding else ""),
+        source=published.source,
+        unit="N m/rad",
+        measure="stiffness",
+    )
+    page.at_most(
+        f"finite elements without fillets above the sections in series, {where}, relative",
+        max(plain / summed - 1.0, 0.0),
+        1e-8,
+        why="round-off of a condensed stiffness",
+        source="sections kept plane and round only make it stiffer (least potential energy)",
+        measure="identity",
     )
     less = 100 * (1 - found / published.value)
-    said = (
+    page.answer(
         f"{published.name} is published as {published.value:.4g} N m/rad; the shaft of this scene "
         f"has {found:.4g} ± {band:.1g} by finite elements"
         + (f", {less:.2g} % less" if abs(less) > 0.01 else "")
         + "."
     )
-    return Section(title="Beside the published stiffness", items=[table]), said, verdicts
+    page.section("Beside the published stiffness")
+    rows: list[list[Cell]] = [
+        [published.name, published.value, published.half_digit, 1.0],
+        ["G J / L of the sections in series", summed, None, summed / published.value],
+        ["finite elements, ends rigid", found, band, found / published.value],
+    ]
+    page.table(
+        f"Torsional stiffness from the {where}",
+        rows,
+        ["how", "stiffness [N m/rad]", "half width of the band", "over the published"],
+    )
 
 
 def _in_series(shaft: Shaft, material: Material) -> float:

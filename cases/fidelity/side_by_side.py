@@ -16,9 +16,10 @@ from fe_drivetrain.fidelity import (
     shaft_level,
     simplified,
 )
-from fe_drivetrain.report import Chart, Table, rounded
+from fe_drivetrain.report import Chart, rounded
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.solve import Condensed, keep_points
+from fe_drivetrain.suite import Page
 
 #: What is compared, in words; FORCE is that of the first bearing.
 FORCE = "Fz"
@@ -37,13 +38,13 @@ class Changes:
 
     Attributes
     ----------
-    beam
+    beam : float
         The meridian by a beam.
-    bare
+    bare : float
         The same, of a shaft without the rings of its bearings.
-    housings
+    housings : float
         Housings as springs by rigid ones.
-    faces
+    faces : float
         Housings whose faces keep in shape by such whose faces move on average.
     """
 
@@ -59,16 +60,16 @@ class Compared:
 
     Attributes
     ----------
-    scene
+    scene : str
         Name.
-    slenderness
+    slenderness : float
         Length of the shaft over its largest diameter, the flange aside.
-    changes
+    changes : dict of str to Changes
         By key of `QUANTITIES`.
-    stiffer_on_softer
+    stiffer_on_softer : float
         Largest share by which a motion of the hub is stiffer where its supports are softer; 0 by
         Rayleigh.
-    stiffer_than_beam
+    stiffer_than_beam : float
         Share by which the free shaft's meridian is stiffer in torsion than its beam, fillets left
         out; 0, because a beam keeps its sections plane and round.
     """
@@ -125,23 +126,56 @@ def _end_torsion(body: Condensed) -> float:
     return float(keep_points(body, ("hub", "gearbox")).stiffness[3, 3])
 
 
-def chart(key: str, found: Sequence[Compared]) -> Chart:
+def show(page: Page, key: str, found: Sequence[Compared]) -> None:
+    """A section with one quantity of all scenes, as bars and in numbers.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the section.
+    key : str
+        Of `QUANTITIES`.
+    found : sequence of Compared
+        The scenes.
+    """
+    page.section(QUANTITIES[key].partition(":")[0])
+    page.add(_bars(key, found))
+    page.table(
+        QUANTITIES[key],
+        [
+            {
+                "scene": one.scene,
+                "length over diameter": one.slenderness,
+                **{
+                    f"{title} [%]": round(100 * getattr(one.changes[key], part), 6)
+                    for part, title in _TITLES.items()
+                },
+            }
+            for one in found
+        ],
+    )
+
+
+_TITLES = {
+    "beam": "beam instead of meridian",
+    "bare": "the same without rings",
+    "housings": "rigid housings",
+    "faces": "how the shaft holds their faces",
+}
+
+
+def _bars(key: str, found: Sequence[Compared]) -> Chart:
     """Bars of each scene's changes, the slenderest scene at the bottom."""
-    ordered = sorted(found, key=lambda c: c.slenderness, reverse=True)
+    ordered = sorted(found, key=lambda one: one.slenderness, reverse=True)
     bars = [
         {
             "type": "bar",
             "orientation": "h",
             "name": title,
-            "y": [f"{c.scene} ({c.slenderness:.1f})" for c in ordered],
-            "x": rounded([max(100 * getattr(c.changes[key], part), _LEAST) for c in ordered]),
+            "y": [f"{one.scene} ({one.slenderness:.1f})" for one in ordered],
+            "x": rounded([max(100 * getattr(one.changes[key], part), _LEAST) for one in ordered]),
         }
-        for title, part in (
-            ("beam instead of meridian", "beam"),
-            ("the same without rings", "bare"),
-            ("rigid housings", "housings"),
-            ("how the shaft holds their faces", "faces"),
-        )
+        for part, title in _TITLES.items()
     ]
     layout = {
         "barmode": "group",
@@ -155,34 +189,3 @@ def chart(key: str, found: Sequence[Compared]) -> Chart:
     }
     caption = f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
     return Chart(caption=caption, figure={"data": bars, "layout": layout})
-
-
-def table(key: str, found: Sequence[Compared]) -> Table:
-    """The same in numbers."""
-    return Table(
-        caption=QUANTITIES[key],
-        columns=[
-            "scene",
-            "length over diameter",
-            "beam instead of meridian [%]",
-            "the same without rings [%]",
-            "rigid housings [%]",
-            "how the shaft holds their faces [%]",
-        ],
-        rows=[
-            [
-                c.scene,
-                c.slenderness,
-                *(
-                    round(100 * share, 6)
-                    for share in (
-                        c.changes[key].beam,
-                        c.changes[key].bare,
-                        c.changes[key].housings,
-                        c.changes[key].faces,
-                    )
-                ),
-            ]
-            for c in found
-        ],
-    )

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from fe_drivetrain import export
-from fe_drivetrain.common import largest_difference, symmetry_error
-from fe_drivetrain.export import SEATS, SHAFT, Superelement, superelement_of
+from fe_drivetrain.common import (
+    Floats,
+    largest_difference,
+    symmetry_error,
+)
+from fe_drivetrain.export import (
+    SEATS,
+    SHAFT,
+    Superelement,
+    superelement_of,
+)
 from fe_drivetrain.fidelity import Quantity, shaft_level
-from fe_drivetrain.report import Results, Section, Table, Text, Verdict, judge
+from fe_drivetrain.report import Cell
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.solve import Condensed
+from fe_drivetrain.suite import Page
 
 #: Level of the shaft that is written: exact elasticity of a body of revolution.
 LEVEL = 2
@@ -29,12 +37,22 @@ _ROUND_OFF = 1e-12
 _SOLVED_TWICE = 1e-6
 
 
-def stiffness_files(
-    folder: Path, scene: Scene, quantity: Quantity, results: Results
-) -> tuple[Section, list[Verdict]]:
-    """Write the free shaft and the bearings on the ground, read them again, and build on them."""
+def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) -> None:
+    """Write the free shaft and the bearings on the ground, read them again, and build on them.
+
+    Parameters
+    ----------
+    page : Page
+        With what `fe_drivetrain.commands.advised` found of the scene; takes the checks and tables.
+    folder : Path
+        Where the files go.
+    scene : Scene
+        The scene.
+    quantity : Quantity
+        The quantity that a model made of the files must give as the level itself does.
+    """
     written = {what: superelement_of(scene, what) for what in (SHAFT, SEATS)}
-    verdicts, rows, read = [], [], {}
+    rows, read = [], {}
     for what, element in written.items():
         names = []
         worst = 0.0
@@ -45,73 +63,59 @@ def stiffness_files(
             again = read[what] = export.read(path, format)
             worst = max(worst, largest_difference(again.stiffness, element.stiffness))
         rows.append(_row(names, element))
-        verdicts += [
-            _identity(
-                f"{what}: stiffness read less stiffness written, of a unit diagonal",
-                worst,
-                "the matrix before it was written",
-                "seventeen digits name every double",
-                1e-15,
-            ),
-            _identity(
-                f"{what}: asymmetry of what is read, of a unit diagonal",
-                symmetry_error(again.stiffness),
-                "Betti",
-                "round-off of small matrices",
-            ),
-        ]
-    verdicts.append(
-        _identity(
-            "shaft: force against a rigid motion, of the forces that it is a sum of",
-            read[SHAFT].rigid_error(),
-            "a free body",
-            "round-off of small matrices",
+        page.vanishes(
+            f"{what}: stiffness read less stiffness written, of a unit diagonal",
+            worst,
+            within=1e-15,
+            why="seventeen digits name every double",
+            source="the matrix before it was written",
         )
+        page.vanishes(
+            f"{what}: asymmetry of what is read, of a unit diagonal",
+            symmetry_error(again.stiffness),
+            within=_ROUND_OFF,
+            why="round-off of small matrices",
+            source="Betti",
+        )
+    page.vanishes(
+        "shaft: force against a rigid motion, of the forces that it is a sum of",
+        read[SHAFT].rigid_error(),
+        within=_ROUND_OFF,
+        why="round-off of small matrices",
+        source="a free body",
     )
-    rung = _rung(results)
-    verdicts.append(_rebuilt(scene, quantity, read[SHAFT], read[SEATS], rung["values"]))
-    items: list[Text | Table] = [
-        Text(
-            text="Files beside these results, for other programs: the free shaft at its reference "
-            "points, with the rings that stand on it, and every bearing with its housing on the "
-            "ground. Put together, with the gearbox's springs, they are level 2 of the ladder: "
-            f"{100 * rung['error']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
-            "writes them in further formats, and with fixed-interface modes."
-        ),
-        Table(
-            caption="Stiffness for other models; bands are of any entry, relative to the diagonal "
-            "entries of its row and column: of the shaft, the difference to elements of one order "
-            "less; of bearings, that between a face held in shape and one that moves on average",
-            columns=["files", "points", "level", "mesh", "band ± [%]", "mass [kg]"],
-            rows=rows,
-        ),
+    (rung,) = [rung for rung in page.figures["rungs"] if rung["level"] == LEVEL]
+    found = _rebuilt(scene, quantity, read[SHAFT], read[SEATS])
+    page.vanishes(
+        f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",
+        float(np.linalg.norm(found - rung["values"]) / np.linalg.norm(rung["values"])),
+        within=_SOLVED_TWICE,
+        why="housings solved twice to 1e-9, and the digits that supports on a free body cost",
+        source=f"level {LEVEL} of the ladder",
+    )
+    page.section("Stiffness for other models")
+    page.text(
+        "Files beside these results, for other programs: the free shaft at its reference "
+        "points, with the rings that stand on it, and every bearing with its housing on the "
+        "ground. Put together, with the gearbox's springs, they are level 2 of the ladder: "
+        f"{100 * rung['error']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
+        "writes them in further formats, and with fixed-interface modes."
+    )
+    page.table(
+        "Stiffness for other models; bands are of any entry, relative to the diagonal "
+        "entries of its row and column: of the shaft, the difference to elements of one order "
+        "less; of bearings, that between a face held in shape and one that moves on average",
+        rows,
+        ["files", "points", "level", "mesh", "band ± [%]", "mass [kg]"],
+    )
+    page.table(
+        "Some of its numbers; other motions of the same bearing held",
         _numbers(read[SHAFT], read[SEATS]),
-    ]
-    return Section(title="Stiffness for other models", items=items), verdicts
-
-
-def _rung(results: Results) -> Any:
-    """What the ladder says of the level that is written, its housings as springs."""
-    (rung,) = [rung for rung in results.figures["rungs"] if rung["level"] == LEVEL]
-    return rung
-
-
-def _identity(
-    quantity: str, value: float, source: str, reason: str, tolerance: float = _ROUND_OFF
-) -> Verdict:
-    return judge(
-        quantity,
-        value,
-        0.0,
-        tolerance=tolerance,
-        relative=False,
-        source=source,
-        reason=reason,
-        measure="identity",
+        ["stiffness", "value", "unit"],
     )
 
 
-def _row(names: list[str], element: Superelement) -> list[str | float | None]:
+def _row(names: list[str], element: Superelement) -> list[Cell]:
     inertia = element.inertia()
     return [
         ", ".join(names),
@@ -123,13 +127,7 @@ def _row(names: list[str], element: Superelement) -> list[str | float | None]:
     ]
 
 
-def _rebuilt(
-    scene: Scene,
-    quantity: Quantity,
-    shaft: Superelement,
-    seats: Superelement,
-    expected: Sequence[float],
-) -> Verdict:
+def _rebuilt(scene: Scene, quantity: Quantity, shaft: Superelement, seats: Superelement) -> Floats:
     """The quantity, of a model that knows the files and the gearbox's springs alone."""
     body = Condensed(
         shaft.points,
@@ -142,19 +140,12 @@ def _rebuilt(
         name: seats.stiffness[6 * k : 6 * k + 6, 6 * k : 6 * k + 6]
         for k, name in enumerate(seats.points)
     }
-    found = quantity.of(shaft_level(scene, LEVEL, blocks, body), scene.shaft.length)
-    return _identity(
-        f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",
-        float(np.linalg.norm(found - expected) / np.linalg.norm(expected)),
-        f"level {LEVEL} of the ladder",
-        "housings solved twice to 1e-9, and the digits that supports on a free body cost",
-        _SOLVED_TWICE,
-    )
+    return quantity.of(shaft_level(scene, LEVEL, blocks, body), scene.shaft.length)
 
 
-def _numbers(shaft: Superelement, seats: Superelement) -> Table:
+def _numbers(shaft: Superelement, seats: Superelement) -> list[list[Cell]]:
     """The few that beam and multibody models ask for."""
-    rows: list[list[str | float | None]] = []
+    rows: list[list[Cell]] = []
     for component, what in ((0, "tension"), (3, "torsion")):
         value = _between(shaft, component, shaft.points[0], shaft.points[-1])
         unit = "N/m" if component == 0 else "N m/rad"
@@ -168,11 +159,7 @@ def _numbers(shaft: Superelement, seats: Superelement) -> Table:
             value = float(seats.stiffness[6 * k + c, 6 * k + c])
             if motion and value > 0:
                 rows.append([f"{name} with its housing, {motion}", value, unit])
-    return Table(
-        caption="Some of its numbers; other motions of the same bearing held",
-        columns=["stiffness", "value", "unit"],
-        rows=rows,
-    )
+    return rows
 
 
 def _between(element: Superelement, component: int, first: str, last: str) -> float:

@@ -175,6 +175,12 @@ class Series:
             )
         )
 
+    def worst_error(self) -> float:
+        """Largest error of equilibrium and of superposition of the coarser solutions."""
+        return float(
+            np.max([f[name] for f in self.levels[:-1] for name in f if name.endswith("checks")])
+        )
+
     def checked(self, label: str) -> list[Verdict]:
         """Whether the coarser solutions are in balance; nothing where there are none."""
         if not self.complete:

@@ -1,11 +1,10 @@
-"""Beams against FE over all hub-load histories: the figures of the study, as rows of its tables."""
+"""Beams against FE over all hub-load histories: the study as records of its tables."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -27,7 +26,7 @@ from fe_drivetrain.cases.main_bearing.study import (
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.compare import compare, statistics
 from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Run
+from fe_drivetrain.suite import Record, Run
 
 #: Mean error [%] and correlation of the resultant force over all histories (Stirling 2023, lines
 #: on Figures 3.6, 3.8 and 3.15), for other hub loads and another housing than here.
@@ -36,12 +35,12 @@ PUBLISHED = {
     "pinned beam against bonded FE": (22.74, 0.7781),
     "torsional-spring beam against bonded FE": (1.61, 0.9996),
 }
+MEAN_ERROR = "mean error [%]"
+THESIS = ("thesis: mean error [%]", "thesis: correlation")
 SIXBYSIX = "beam on the 6x6 against bonded FE"
 QUANTITIES = ("Fy", "Fz", "My", "Mz")
 COMPONENT = {"Fy": 1, "Fz": 2, "My": 4, "Mz": 5}
 UNITS = {"Fy": "N", "Fz": "N", "My": "N m", "Mz": "N m"}
-
-Row = list[Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +120,7 @@ class Comparison:
     mean_error, correlation
         Of the resultant radial force, by comparison [%] and [-].
     headline, quantities, estimators, causes
-        Rows of tables.
+        Records of tables.
     with_their_stiffness
         Mean error of the pinned beam against the closed form with the thesis's own K_R [%].
     seconds
@@ -132,10 +131,10 @@ class Comparison:
     pairs: dict[str, tuple[str, Floats]]
     mean_error: dict[str, float]
     correlation: dict[str, float]
-    headline: list[Row]
-    quantities: list[Row]
-    estimators: list[Row]
-    causes: list[Row]
+    headline: list[Record]
+    quantities: list[Record]
+    estimators: list[Record]
+    causes: list[Record]
     with_their_stiffness: float
     seconds: float
 
@@ -191,15 +190,17 @@ def compared(
             label: float(statistics.correlation(force[kind], beam_force[label]).mean())
             for label, (kind, _) in pairs.items()
         }
-        headline: list[Row] = [
-            [
-                label,
-                error[label],
-                100.0 * float(statistics.relative_error(force[kind], beam_force[label]).mean()),
-                100.0 * float(statistics.excluded_share(force[kind]).mean()),
-                f"{correlation[label]:.6f}",
-                *PUBLISHED.get(label, (None, None)),
-            ]
+        headline: list[Record] = [
+            {
+                "comparison": label,
+                MEAN_ERROR: error[label],
+                "mean |error| / mean |force| [%]": 100.0
+                * float(statistics.relative_error(force[kind], beam_force[label]).mean()),
+                "samples left out of the mean error [%]": 100.0
+                * float(statistics.excluded_share(force[kind]).mean()),
+                "correlation": f"{correlation[label]:.6f}",
+                **dict(zip(THESIS, PUBLISHED.get(label, (None, None)), strict=True)),
+            }
             for label, (kind, _) in pairs.items()
         ]
         quantities = [
@@ -234,18 +235,23 @@ def compared(
 def of_one_mesh(
     hub: HubLoads, scene: Scene, matrix: Floats, stiffness: Floats
 ) -> tuple[float, float, float]:
-    """How far both beams are from a bonded bearing, with what one mesh gives.
+    """Errors of both beams against a bonded bearing, with what one mesh gives.
 
     Parameters
     ----------
-    scene
+    hub : HubLoads
+        The load histories.
+    scene : Scene
         The bonded scene.
-    matrix, stiffness
+    matrix, stiffness : array
         (6, 10) reactions, and (2,) K_R from the averaged seat.
 
     Returns
     -------
-    Mean error of the pinned and of the torsional-spring beam [%], and the latter's correlation.
+    pinned, sprung : float
+        Mean error of the pinned and of the torsional-spring beam [%].
+    correlation : float
+        Of the torsional-spring beam.
     """
     force = Linear.of_reactions(matrix, scene.gearbox.weight).radial(hub.loads)
     spring = main_bearing_beam(scene, float(stiffness[0]), float(stiffness[1]))
@@ -270,7 +276,7 @@ def _mean_error(reference: Floats, found: Floats) -> float:
     return float(statistics.mean_percentage_error(reference, found).mean())
 
 
-def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Row]:
+def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Record]:
     """Usable as a model uncertainty: means over all histories, one row a quantity."""
     columns = [COMPONENT[q] for q in QUANTITIES]
     result = compare(
@@ -281,40 +287,42 @@ def _by_quantity(label: str, reference: Floats, model: Floats) -> list[Row]:
         # A spherical joint carries no moment: what stands there is rounding.
         negligible=(1.0, 1.0, 1.0, 1.0),
     )
-    rows: list[Row] = []
+    rows: list[Record] = []
     for k, quantity in enumerate(QUANTITIES):
         if np.isnan(result.correlation[:, k]).any():
             continue
         rows.append(
-            [
-                label,
-                f"{quantity} [k{UNITS[quantity]}]".replace("N m", "N\u00a0m"),
-                float(result.reference_rms[:, k].mean()) / 1e3,
-                float(result.rmse[:, k].mean()) / 1e3,
-                float(result.bias[:, k].mean()) / 1e3,
-                100.0 * float(result.relative_scatter[:, k].mean()),
-                float(result.slope[:, k].mean()),
-                float(result.cov[:, k].mean()),
-                f"{float(result.correlation[:, k].mean()):.6f}",
-            ]
+            {
+                "comparison": label,
+                "quantity": f"{quantity} [k{UNITS[quantity]}]".replace("N m", "N\u00a0m"),
+                "rms of FE": float(result.reference_rms[:, k].mean()) / 1e3,
+                "RMSE": float(result.rmse[:, k].mean()) / 1e3,
+                "bias, beam less FE": float(result.bias[:, k].mean()) / 1e3,
+                "relative scatter [%]": 100.0 * float(result.relative_scatter[:, k].mean()),
+                "slope FE/beam [-]": float(result.slope[:, k].mean()),
+                "CoV [-]": float(result.cov[:, k].mean()),
+                "correlation": f"{float(result.correlation[:, k].mean()):.6f}",
+            }
         )
     return rows
 
 
 def _by_estimator(
     estimator: str, tilt: Tilt, reference: Floats, force: Floats, model: Linear, loads: Floats
-) -> Row:
+) -> Record:
     """The torsional-spring beam with K_R of one estimator against bonded FE."""
     fy, fz = (loads @ model.matrix[:, k] + model.constant[k] for k in (1, 2))
     found = statistics.resultant(fy, fz)
-    return [
-        estimator,
-        *(k / 1e6 for k in tilt.both(estimator)),
-        _mean_error(force, found),
-        f"{float(statistics.correlation(force, found).mean()):.6f}",
-        float(statistics.rmse(reference[..., 1], fy).mean()) / 1e3,
-        float(statistics.rmse(reference[..., 2], fz).mean()) / 1e3,
-    ]
+    vertical, horizontal = tilt.both(estimator)
+    return {
+        "estimator": estimator,
+        "K_R vertical [MN m/rad]": vertical / 1e6,
+        "K_R horizontal [MN m/rad]": horizontal / 1e6,
+        "mean error of the resultant [%]": _mean_error(force, found),
+        "correlation": f"{float(statistics.correlation(force, found).mean()):.6f}",
+        "RMSE Fy [kN]": float(statistics.rmse(reference[..., 1], fy).mean()) / 1e3,
+        "RMSE Fz [kN]": float(statistics.rmse(reference[..., 2], fz).mean()) / 1e3,
+    }
 
 
 def _causes(
@@ -324,7 +332,7 @@ def _causes(
     spring: Linear,
     beam_force: dict[str, Floats],
     force: dict[str, Floats],
-) -> list[Row]:
+) -> list[Record]:
     """Beam against FE with one load at a time taken out or put in."""
     first, _, third = PUBLISHED
     plain = "all hub loads, no self-weight"
@@ -344,11 +352,11 @@ def _causes(
     heavy_force = Linear.of_fe(bonded, GRAVITY).radial(loads)
     cases.append((third, heavy, heavy_force, beam_force[third]))
     return [
-        [
-            label,
-            what,
-            _mean_error(reference, found),
-            f"{float(statistics.correlation(reference, found).mean()):.6f}",
-        ]
+        {
+            "comparison": label,
+            "loads": what,
+            MEAN_ERROR: _mean_error(reference, found),
+            "correlation": f"{float(statistics.correlation(reference, found).mean()):.6f}",
+        }
         for label, what, reference, found in cases
     ]

@@ -7,17 +7,23 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import FORCES, Floats, InputError, user_cache
+from fe_drivetrain.common import (
+    FORCES,
+    Floats,
+    InputError,
+    user_cache,
+)
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.hub_loads import (
     Condition,
+    assumptions,
     hub_load_set,
     not_kept,
     read_hub_loads,
     surrogate_grid,
 )
-from fe_drivetrain.report import Chart, Table, rounded, trace
-from fe_drivetrain.suite import Jobs, Run
+from fe_drivetrain.report import Chart, rounded, trace
+from fe_drivetrain.suite import Jobs, Page, Run
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
 QUICK_SEEDS = 2
@@ -67,8 +73,6 @@ def own_hub_loads(run: Run) -> HubLoads | None:
 
 def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
     """Made hub loads; those that were not made before are made side by side."""
-    from fe_drivetrain.hub_loads import assumptions
-
     grid = surrogate_grid()
     if run.quick:
         grid = [c for c in grid if c.seed <= QUICK_SEEDS]
@@ -140,19 +144,22 @@ def _read(pattern: str) -> HubLoads:
     )
 
 
-def load_table(hub: HubLoads) -> Table:
+def load_table(page: Page, hub: HubLoads) -> None:
     """Range of each component, where a wrong sign or unit shows."""
-    flat = hub.loads.reshape(-1, 6)
-    rows: list[list[Any]] = []
-    for k, component in enumerate(FORCES):
-        values = flat[:, k] / 1e3
-        unit = "kN" if k < 3 else "kN\u00a0m"
-        numbers = (values.min(), values.mean(), values.max(), values.std())
-        rows.append([f"{component} [{unit}]", *(float(v) for v in numbers)])
-    return Table(
-        caption="Hub loads over all histories, in the non-rotating shaft frame at the hub",
-        columns=["component", "least", "mean", "largest", "standard deviation"],
-        rows=rows,
+    flat = hub.loads.reshape(-1, 6) / 1e3
+    units = 3 * ["kN"] + 3 * ["kN\u00a0m"]
+    page.table(
+        "Hub loads over all histories, in the non-rotating shaft frame at the hub",
+        [
+            {
+                "component": f"{component} [{unit}]",
+                "least": flat[:, k].min(),
+                "mean": flat[:, k].mean(),
+                "largest": flat[:, k].max(),
+                "standard deviation": flat[:, k].std(),
+            }
+            for k, (component, unit) in enumerate(zip(FORCES, units, strict=True))
+        ],
     )
 
 
@@ -171,10 +178,9 @@ def write_reactions(folder: Path, hub: HubLoads, fe: Mapping[str, Floats]) -> No
 
 
 def rmse_charts(
-    conditions: Sequence[Condition], fe: Mapping[str, Floats], pairs: Pairs
-) -> list[Chart]:
+    page: Page, conditions: Sequence[Condition], fe: Mapping[str, Floats], pairs: Pairs
+) -> None:
     """RMSE per plane against mean wind speed: mean and standard deviation of each seed group."""
-    charts = []
     groups = [(c.wind_speed, c.turbulence, c.shear) for c in conditions]
     for label, (kind, model) in pairs.items():
         for plane, quantity, component in _PLANES:
@@ -198,7 +204,7 @@ def rmse_charts(
                         error_y={"type": "data", "array": rounded(by_group.std[rows])},
                     )
                 )
-            charts.append(
+            page.add(
                 Chart(
                     caption=f"RMSE, {label}, {plane} plane ({quantity}): mean and standard "
                     "deviation over the seeds of each group, staggered about the mean wind speed",
@@ -217,16 +223,14 @@ def rmse_charts(
                     },
                 )
             )
-    return charts
 
 
 def series_charts(
-    hub: HubLoads, fe: Mapping[str, Floats], pairs: Pairs, seconds: float = 60.0
-) -> list[Chart]:
+    page: Page, hub: HubLoads, fe: Mapping[str, Floats], pairs: Pairs, seconds: float = 60.0
+) -> None:
     """The beginning of one history, FE and beams, per plane."""
     chosen = len(hub.names) // 2
     shown = hub.time - hub.time[0] <= seconds
-    charts = []
     shown_seconds = min(seconds, float(hub.time[-1] - hub.time[0]))
     for plane, quantity, component in _PLANES:
         for kind in ("spherical", "bonded"):
@@ -235,7 +239,6 @@ def series_charts(
                     f"{kind} FE",
                     hub.time[shown],
                     fe[kind][chosen, shown, component] / 1e3,
-                    mode="lines",
                     line={"width": 3},
                 )
             ]
@@ -244,7 +247,6 @@ def series_charts(
                     label.partition(" against")[0],
                     hub.time[shown],
                     model[chosen, shown, component] / 1e3,
-                    mode="lines",
                     line={"dash": dash},
                 )
                 for (label, (of, model)), dash in zip(
@@ -252,35 +254,27 @@ def series_charts(
                 )
                 if of == kind
             ]
-            charts.append(
-                Chart(
-                    caption=f"Load on the {kind} main bearing, {plane} plane ({quantity}): first "
-                    f"{shown_seconds:.0f} s of {hub.names[chosen]}",
-                    figure={
-                        "data": traces,
-                        "layout": {
-                            "xaxis": {"title": {"text": "time [s]"}},
-                            "yaxis": {"title": {"text": f"{quantity} [kN]"}},
-                        },
-                    },
-                )
+            page.chart(
+                f"Load on the {kind} main bearing, {plane} plane ({quantity}): first "
+                f"{shown_seconds:.0f} s of {hub.names[chosen]}",
+                traces,
+                "time [s]",
+                f"{quantity} [kN]",
             )
-    return charts
 
 
 def scatter_charts(
-    fe: Mapping[str, Floats], pairs: Pairs, points: int = 1500, seed: int = 0
-) -> list[Chart]:
+    page: Page, fe: Mapping[str, Floats], pairs: Pairs, points: int = 1500, seed: int = 0
+) -> None:
     """FE against beam for each quantity of the bonded bearing, on a random choice of samples."""
     reference = fe["bonded"].reshape(-1, 6)
     generator = np.random.default_rng(seed)
     chosen = generator.choice(len(reference), min(points, len(reference)), replace=False)
-    charts = []
     for quantity, component in (("Fy", 1), ("Fz", 2), ("My", 4), ("Mz", 5)):
         x = reference[chosen, component] / 1e3
         unit = "kN" if component < 3 else "kN m"
         ends = np.array([x.min(), x.max()])
-        traces = [trace("equal", ends, ends, mode="lines", line={"color": "#888888", "width": 1})]
+        traces = [trace("equal", ends, ends, line={"color": "#888888", "width": 1})]
         traces += [
             trace(
                 label.partition(" against")[0],
@@ -292,17 +286,10 @@ def scatter_charts(
             for label, (kind, model) in pairs.items()
             if kind == "bonded"
         ]
-        charts.append(
-            Chart(
-                caption=f"{quantity} on the bonded main bearing, beams against FE: "
-                f"{len(chosen):,} of {len(reference):,} samples, chosen at random",
-                figure={
-                    "data": traces,
-                    "layout": {
-                        "xaxis": {"title": {"text": f"{quantity}, FE [{unit}]"}},
-                        "yaxis": {"title": {"text": f"{quantity}, beam [{unit}]"}},
-                    },
-                },
-            )
+        page.chart(
+            f"{quantity} on the bonded main bearing, beams against FE: "
+            f"{len(chosen):,} of {len(reference):,} samples, chosen at random",
+            traces,
+            f"{quantity}, FE [{unit}]",
+            f"{quantity}, beam [{unit}]",
         )
-    return charts

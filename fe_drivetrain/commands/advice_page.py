@@ -10,10 +10,10 @@ import numpy as np
 from fe_drivetrain.fidelity.ablation import Effect, effects
 from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.report.charts import chart, rounded, trace
-from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, Text, judge
+from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.suite.case import OldCase as Case
 from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.page import Page
 
 _LEAST = 1e-6  # in percent; statics has no error, but a logarithmic axis needs one
 
@@ -173,16 +173,16 @@ def _percent(share: float) -> Cell:
 
 
 def advised(
-    case: Case, run: Run, scene: Scene, quantity: Quantity, tolerance: float, to_the_top: bool
-) -> Results:
+    run: Run, page: Page, scene: Scene, quantity: Quantity, tolerance: float, to_the_top: bool
+) -> None:
     """Find the cheapest level that is accurate enough, and rank the details of the scene.
 
     Parameters
     ----------
-    case : Case
-        The case that the results belong to.
     run : Run
-        Its run.
+        The run that the levels are steps of.
+    page : Page
+        Takes the levels, the details and the check of the level that was chosen.
     scene : Scene
         The scene.
     quantity : Quantity
@@ -192,10 +192,6 @@ def advised(
     to_the_top : bool
         Whether to run every level, even if a cheaper one is accurate enough.
 
-    Returns
-    -------
-    Results
-
     Raises
     ------
     InputError
@@ -203,46 +199,37 @@ def advised(
     """
     with run.step("model levels"):
         advice = advise(scene, quantity, tolerance, to_the_top, run.report)
-    sections = [ladder(advice)]
-    level = 2 if advice.chosen is not None and advice.results[advice.chosen].model.level == 2 else 1
+    chosen = None if advice.chosen is None else advice.results[advice.chosen]
+    page.sections.append(ladder(advice))
+    level = 2 if chosen is not None and chosen.model.level == 2 else 1
     if advice.springs:
         with run.step("details"):
             found = effects(scene, quantity, level, advice.springs, run.report)
-        sections.append(tornado(advice, f"{level} with housings as springs", found))
-    summary = [advice.sentence()]
-    if advice.chosen is not None and advice.results[advice.chosen].model.neglects:
-        summary.append(f"It neglects {', '.join(advice.results[advice.chosen].model.neglects)}.")
-    known = advice.top if advice.chosen is None else advice.results[advice.chosen]
-    uncertain = (
+        page.sections.append(tornado(advice, f"{level} with housings as springs", found))
+    page.answer(advice.sentence())
+    if chosen is not None and chosen.model.neglects:
+        page.answer(f"It neglects {', '.join(chosen.model.neglects)}.")
+    known = advice.top if chosen is None else chosen
+    page.at_most(
+        f"{quantity.name}: error of level {known.model.level}, {known.model.title}",
         known.estimate
         if known.estimate == 0.0 or known is advice.top
-        else (known.error + advice.top.estimate)
-    )
-    verdict = judge(
-        f"{quantity.name}: error of level {known.model.level}, {known.model.title}",
-        uncertain,
-        0.0,
-        tolerance=tolerance,
-        relative=False,
+        else known.error + advice.top.estimate,
+        tolerance,
+        why="the tolerance that was requested",
         source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
-        reason="the tolerance that was requested",
     )
-    return case.results(
-        run,
-        summary=summary,
-        verdicts=[verdict],
-        sections=sections,
-        figures={
-            "rungs": [
-                {
-                    "level": result.model.level,
-                    "title": result.model.title,
-                    "values": result.values.tolist(),
-                    "seconds": result.seconds,
-                    "estimate": None if np.isnan(result.estimate) else result.estimate,
-                    "error": None if np.isnan(result.error) else result.error,
-                }
-                for result in advice.results
-            ]
-        },
+    page.data(
+        "rungs",
+        [
+            {
+                "level": rung.model.level,
+                "title": rung.model.title,
+                "values": rung.values,
+                "seconds": rung.seconds,
+                "estimate": None if np.isnan(rung.estimate) else rung.estimate,
+                "error": None if np.isnan(rung.error) else rung.error,
+            }
+            for rung in advice.results
+        ],
     )

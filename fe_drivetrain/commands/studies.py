@@ -24,8 +24,8 @@ from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
-    from fe_drivetrain.report.results import Results
-    from fe_drivetrain.suite.case import OldCase, Run
+    from fe_drivetrain.suite.case import Run
+    from fe_drivetrain.suite.page import Page
 
 _Scene = Annotated[
     str,
@@ -84,7 +84,7 @@ def advise_command(
             scene,
             f"{found.title}: the model level that {quantity} needs",
             out,
-            lambda case, run: advised(case, run, found, asked, share, to_the_top),
+            lambda run, page: advised(run, page, found, asked, share, to_the_top),
         )
 
     raise typer.Exit(guarded(work))
@@ -160,9 +160,9 @@ def uncertainty_command(
             scene,
             f"{found.title}: uncertainty of the results",
             out,
-            lambda case, run: uncertain(
-                case,
+            lambda run, page: uncertain(
                 run,
+                page,
                 found,
                 quantity or (),
                 factors,
@@ -182,18 +182,13 @@ def _run_on_scene(
     scene: str,
     title: str,
     out: Path | None,
-    study: Callable[[OldCase, Run], Results],
+    study: Callable[[Run, Page], None],
 ) -> int:
     """Run a study as a case of its own and print its outcome; returns the exit status."""
-    from fe_drivetrain.suite.case import OldCase, run_case
+    from fe_drivetrain.suite.case import Case, run_case
 
     name = Path(scene).stem
-    case = OldCase(
-        name=f"{command}/{name}",
-        title=title,
-        source=f"the scene {name}",
-        run=lambda run: study(case, run),
-    )
+    case = Case(f"{command}/{name}", title, f"the scene {name}", study)
     folder = Path("reports", command, name) if out is None else out
     with show_steps() as report:
         results = run_case(case, folder.resolve(), report=report)

@@ -12,10 +12,10 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.fidelity.adviser import Advice
 from fe_drivetrain.fidelity.quantities import Number
 from fe_drivetrain.report.charts import chart, rounded
-from fe_drivetrain.report.results import Cell, Chart, Results, Section, Table, Text, Verdict, judge
+from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.scene.scene import Scene, Spread
-from fe_drivetrain.suite.case import OldCase as Case
 from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.page import Page
 from fe_drivetrain.uncertainty.input_study import Study, level_error, result_at, study
 from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value
 
@@ -283,8 +283,8 @@ def relative_spread(spread: Spread) -> float:
 
 
 def uncertain(
-    case: Case,
     run: Run,
+    page: Page,
     scene: Scene,
     asked: Sequence[str],
     load: Floats | None,
@@ -293,15 +293,15 @@ def uncertain(
     count: int,
     seed: int,
     sobol: int,
-) -> Results:
+) -> None:
     """Propagate the uncertain values of a scene to its reactions and stiffnesses.
 
     Parameters
     ----------
-    case : Case
-        The case that the results belong to.
     run : Run
-        Its run.
+        The run that the study is a step of.
+    page : Page
+        Takes bands, inputs, sensitivities, and the check of the level that was sampled.
     scene : Scene
         The scene.
     asked : sequence of str
@@ -319,10 +319,6 @@ def uncertain(
     sobol : int
         Base samples of Sobol indices, a power of two; 0 for none.
 
-    Returns
-    -------
-    Results
-
     Raises
     ------
     InputError
@@ -330,19 +326,14 @@ def uncertain(
     """
     with run.step("uncertainty"):
         found = study(scene, asked, load, tolerance, level, count, seed, sobol, run.report)
-    sections = [bands(found), inputs(found), slopes(found), variance(found)]
+    page.seed = seed
+    page.answer(*_summary(found))
+    for advice in found.advices:
+        _judge(page, advice, found.level, tolerance)
+    page.sections += [bands(found), inputs(found), slopes(found), variance(found)]
     if found.advices:
-        sections.append(ladder(found))
-    results = case.results(
-        run,
-        summary=_summary(found),
-        verdicts=[_verdict(advice, found.level, tolerance) for advice in found.advices],
-        sections=sections,
-        figures=figures(found),
-    )
-    return results.model_copy(
-        update={"environment": results.environment.model_copy(update={"seed": seed})}
-    )
+        page.sections.append(ladder(found))
+    page.figures |= figures(found)
 
 
 def figures(found: Study) -> dict[str, Any]:
@@ -539,16 +530,13 @@ def _summary(found: Study) -> list[str]:
     return sentences
 
 
-def _verdict(advice: Advice, level: int, tolerance: float) -> Verdict:
-    result = result_at(advice, level)
-    return judge(
-        f"{advice.quantity.name}: error of level {level}, {result.model.title}",
+def _judge(page: Page, advice: Advice, level: int, tolerance: float) -> None:
+    page.at_most(
+        f"{advice.quantity.name}: error of level {level}, {result_at(advice, level).model.title}",
         level_error(advice, level),
-        0.0,
-        tolerance=tolerance,
-        relative=False,
+        tolerance,
+        why="the tolerance that was requested",
         source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
-        reason="the tolerance that was requested",
     )
 
 

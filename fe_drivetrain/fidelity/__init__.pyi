@@ -5,6 +5,8 @@ from .adviser import advise as advise
 from .bearing_units import scene_supports as scene_supports
 from .bearing_units import unit_stiffness as unit_stiffness
 from .component_frames import housing_frame as housing_frame
+from .component_levels import GearboxSprings as GearboxSprings
+from .component_levels import PinMotions as PinMotions
 from .component_levels import frame_level as frame_level
 from .component_levels import frame_levels as frame_levels
 from .component_levels import gearbox_springs as gearbox_springs

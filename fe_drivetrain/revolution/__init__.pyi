@@ -7,6 +7,7 @@ from .harmonics import harmonic_solver as harmonic_solver
 from .harmonics import stresses as stresses
 from .harmonics import surface_loads as surface_loads
 from .harmonics import turn as turn
+from .influence import InfluenceFunctions as InfluenceFunctions
 from .influence import Strip as Strip
 from .influence import carried as carried
 from .influence import influence_functions as influence_functions

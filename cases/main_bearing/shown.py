@@ -1,0 +1,226 @@
+"""What every page of the main-bearing cases shows: checks, meshes, pictures, matrices, sources."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from fe_drivetrain.cases.main_bearing.bands import Series
+from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt, spread
+from fe_drivetrain.common import (
+    FORCES,
+    Floats,
+)
+from fe_drivetrain.report import (
+    Image,
+    NoPictureError,
+    Text,
+    picture_of_deformation,
+    picture_of_model,
+)
+from fe_drivetrain.response import (
+    LOADS,
+)
+from fe_drivetrain.scene import Scene
+from fe_drivetrain.suite import Page, Run
+
+#: K_R by plane (Stirling 2023, section 3.3.1) [MN m/rad].
+PUBLISHED = {"vertical": 145.0, "horizontal": 392.0}
+
+
+def check_solution(page: Page, solved: Solved, label: str) -> None:
+    """The two independent checks that every solution carries."""
+    page.vanishes(
+        f"{label}: total equilibrium, applied less reacted",
+        solved.response.equilibrium_error,
+        within=1e-8,
+        why="reactions come from the residual on constrained degrees of freedom: solver accuracy",
+        source="exact",
+    )
+    page.vanishes(
+        f"{label}: linearity, a random load solved directly against superposed",
+        solved.response.superposition_error,
+        within=1e-8,
+        why="the scene is linear: solver accuracy",
+        source="exact",
+    )
+
+
+def check_series(page: Page, series: Series, label: str) -> None:
+    """Whether the coarser solutions of a series are in balance; nothing where there are none."""
+    if series.complete:
+        page.vanishes(
+            f"{label}, coarser meshes of its bands: equilibrium and linearity, the worst",
+            series.worst_error(),
+            within=1e-8,
+            why="solver accuracy",
+            source="exact",
+        )
+
+
+def tilt_table(page: Page, tilt: Tilt, series: Series) -> None:
+    """K_R by plane and estimator, each with its band, beside the thesis's."""
+    rows = []
+    for p, (plane, values) in enumerate(tilt.by_plane.items()):
+        row: dict[str, object] = {"plane": plane}
+        for k, (estimator, value) in enumerate(zip(ESTIMATORS, values.values(), strict=True)):
+            band = series.band(lambda f, p=p, k=k: float(f["K_R"][p, k]) / 1e6)
+            row |= {estimator: value / 1e6, f"± {estimator}": band}
+        rows.append(row | {"spread [%]": spread(values), "Stirling 2023": PUBLISHED[plane]})
+    page.table(
+        "K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed. The "
+        "thesis's values belong to its own housing, whose dimensions it does not give",
+        rows,
+    )
+
+
+def matrix_table(page: Page, caption: str, matrix: Floats) -> None:
+    """A 6x6 stiffness."""
+    names = ("ux", "uy", "uz", "rx", "ry", "rz")
+    size = np.sqrt(np.outer(matrix.diagonal(), matrix.diagonal()))
+    shown = np.where(np.abs(matrix) < 1e-3 * size, 0.0, matrix)
+    page.table(
+        caption + " [N/m, N, N m/rad]; terms below 0.1 % of their diagonals shown as 0",
+        [[name, *row] for name, row in zip(names, shown.tolist(), strict=True)],
+        ["", *names],
+    )
+
+
+def reaction_table(page: Page, caption: str, reaction: Floats) -> None:
+    """A (6, 10) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
+    size = np.abs(reaction).max(axis=0)
+    # A column may hold nothing but round-off: the bearing feels no torque, no gearbox weight.
+    shown = np.where(np.abs(reaction) < np.maximum(1e-4 * size, 1e-6), 0.0, reaction)
+    page.table(
+        f"{caption}. Below 0.01 % of their column's largest, or 1e-6, entries show as 0",
+        [
+            [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *row]
+            for c, row in zip(FORCES, shown.tolist(), strict=True)
+        ],
+        ["reaction", *(f"{load} [per {_unit(load)}]" for load in LOADS)],
+    )
+
+
+def _unit(load: str) -> str:
+    if load.startswith("gravity"):
+        return "m/s²"
+    return "N m" if load.startswith("hub.M") else "N"
+
+
+def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
+    """A section with mesh, solver and diagnostics of each solution."""
+    page.section("Mesh and solution")
+    page.table(
+        "Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve. "
+        f"Solver {_choices(solutions)}{_warnings(solutions)}",
+        [
+            {
+                "model": label,
+                "elements": len(s.model.mesh.cells),
+                "nodes": len(s.model.mesh.points),
+                "unknowns": s.response.n_unknowns,
+                "minimum scaled Jacobian": s.quality.minimum_scaled_jacobian,
+                "solver": s.response.method,
+                "iterations": s.response.iterations or None,
+                "set-up and solve [s]": s.response.seconds,
+                "relative residual": s.response.residual,
+                "energy error": s.response.energy_error,
+                "equilibrium error": s.response.equilibrium_error,
+                "superposition error": s.response.superposition_error,
+            }
+            for label, s in solutions.items()
+        ],
+    )
+
+
+def _choices(solutions: Mapping[str, Solved]) -> str:
+    """Which solver, and why, of each model that gives another reason."""
+    reasons: dict[str, str] = {}
+    for label, s in solutions.items():
+        reasons.setdefault(s.response.reason, label)
+    return "; ".join(f"({label}): {reason}" for reason, label in reasons.items())
+
+
+def _warnings(solutions: Mapping[str, Solved]) -> str:
+    """What the models warn of, each once, with the first model that does."""
+    found: dict[str, str] = {}
+    for label, s in solutions.items():
+        for warning in s.model.warnings:
+            found.setdefault(warning, label)
+    return "".join(f". Warning ({label}): {warning}" for warning, label in found.items())
+
+
+def pictures_of(run: Run, solved: Solved, loads: Floats, what: str) -> Sequence[Image | Text]:
+    """Draw the model and its deformed shape.
+
+    Parameters
+    ----------
+    run : Run
+        Its folder takes the pictures.
+    solved : Solved
+        The model and its response.
+    loads : array
+        (10,) load factors of the deformed shape.
+    what : str
+        The loads in words.
+
+    Returns
+    -------
+    items : sequence of Image or Text
+        For the page; a sentence that says why where nothing can be drawn.
+    """
+    with run.step("pictures"):
+        try:
+            picture_of_model(solved.model, run.folder / "model.png")
+            factor = picture_of_deformation(
+                solved.model, solved.response, loads, run.folder / "deformed.png"
+            )
+        except NoPictureError as reason:
+            return [Text(text=f"No picture: {reason}")]
+    return [
+        Image(caption=f"{solved.scene.title}: parts, loads and supports", file="model.png"),
+        Image(caption=f"Deformed {factor:,.0f} times too large, under {what}", file="deformed.png"),
+    ]
+
+
+def assume(page: Page, scene: Scene) -> None:
+    """Everything that the thesis does not give."""
+    unit = scene.bearing_units[0]
+    torque = scene.gearbox.stiffness[3]
+    page.assume(
+        "gearbox torque reaction",
+        torque if torque == "rigid" else float(torque),
+        "" if torque == "rigid" else "N m/rad",
+        "a spherical joint lets the shaft spin, so the gearbox must react torque; the thesis "
+        "names three translational springs only",
+    )
+    page.assume(
+        "coupling of hub and gearbox",
+        f"{scene.hub.coupling}, {scene.gearbox.coupling}",
+        "",
+        "averaged: loads and springs act on the mean motion of the shaft's end face (RBE3)",
+    )
+    base = {
+        "fixed": "the whole underside of the housing is fixed, as in the thesis",
+        "bolted": "four washer footprints are fixed; in the thesis the whole underside",
+    }[unit.housing.base]
+    page.assume("bedplate", "rigid", "", base)
+    page.assume(
+        "clearance, friction, damping", "none", "", "as in the thesis: quasi-static, linear"
+    )
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.housing)):
+            for what, value, unit_of_it, source in part.assumptions():
+                if unit.housing.base == "bolted" or not what.startswith(("bolt_", "washer_")):
+                    page.assume(f"{owner}: {what}", value, unit_of_it, source)
+    names = [unit.bearing.name for unit in scene.bearing_units]
+    for name in ("shaft", *names, *(f"{name}.housing" for name in names)):
+        material = scene.material_of(name)
+        own = material in scene.materials.values()
+        page.assume(
+            f"{name}: E, nu, density",
+            f"{material.youngs_modulus / 1e9:g} GPa, {material.poisson_ratio:g}, "
+            f"{material.density:g} kg/m³",
+            "",
+            "given by the scene" if own else "assumed: the thesis names no material",
+        )
