@@ -36,20 +36,20 @@ def forms(sphere):
 
 @pytest.mark.parametrize("form", ["sliding", "averaged"])
 def test_elimination_fulfils_every_row(sphere, form, rng):
-    constraints, n = forms(sphere)
-    elimination = constraints.eliminate([constraints[form]], n)
+    joints, n = forms(sphere)
+    elimination = constraints.eliminate([joints[form]], n)
     T = elimination.T
     q = rng.standard_normal(T.shape[1])
-    assert elimination.free.sum() == n - len(constraints[form].pivots)
-    assert not elimination.free[constraints[form].pivots].any()
-    assert np.abs(constraints[form].rows @ (T @ q)).max() < 1e-12 * np.abs(q).max()
+    assert elimination.free.sum() == n - len(joints[form].pivots)
+    assert not elimination.free[joints[form].pivots].any()
+    assert np.abs(joints[form].rows @ (T @ q)).max() < 1e-12 * np.abs(q).max()
 
 
 def test_averaged_form_equals_its_dense_definition(sphere, rng):
     """Grouping is a matter of sparsity only: the means of both faces are equal, nothing else."""
     points, inner, outer, weights = sphere
-    constraints, n = forms(sphere)
-    T = constraints.eliminate([constraints["averaged"]], n).T
+    joints, n = forms(sphere)
+    T = constraints.eliminate([joints["averaged"]], n).T
     u = (T @ rng.standard_normal(T.shape[1]))[: points.size].reshape(-1, 3)
     w = constraints.centred_weights(weights, points[inner], CENTRE)
     np.testing.assert_allclose(w @ u[inner], w @ u[outer], atol=1e-11)
@@ -67,7 +67,7 @@ def test_averaged_form_equals_its_dense_definition(sphere, rng):
 def test_sphere_turns_freely_about_its_centre_and_carries_translation(sphere, form):
     """The inner side turned as a rigid body, the outer at rest: allowed; moved: not allowed."""
     points, inner, _, weights = sphere
-    constraints, n = forms(sphere)
+    joints, n = forms(sphere)
     rigid = np.zeros((n, 6))
     rigid[constraints.freedoms(inner).ravel()] = rigid_motions(points[inner], CENTRE)
     if form == "averaged":  # its group sums follow the nodes: take the last rows, of the means
@@ -76,7 +76,7 @@ def test_sphere_turns_freely_about_its_centre_and_carries_translation(sphere, fo
         assert np.abs(mean[:, 3:]).max() < 1e-14
         assert np.linalg.matrix_rank(mean[:, :3]) == 3
     else:
-        error = constraints[form].rows @ rigid
+        error = joints[form].rows @ rigid
         assert np.abs(error[:, 3:]).max() < 1e-14
         assert np.linalg.matrix_rank(error[:, :3]) == 3
 
