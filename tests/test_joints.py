@@ -192,7 +192,7 @@ def test_rollers_without_thrust_leave_the_shaft_free() -> None:
             {"interface": "spring", "stiffness": (np.eye(6) + np.eye(6, k=1)).tolist()},
             "symmetric",
         ),
-        ("bonded", {"interface": "spring", "stiffness": (-np.eye(6)).tolist()}, "drives one"),
+        ("bonded", {"interface": "spring", "stiffness": (-np.eye(6)).tolist()}, "drives a motion"),
         (
             "bonded",
             {"interface": "rollers", "rollers": {"count": 9, "stiffness": 1e9, "rows": [{"x": 1}]}},
