@@ -3,11 +3,12 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.drivetrain import low_speed_shaft, published
+from fe_drivetrain.cases.drivetrain import low_speed_shaft
 from fe_drivetrain.cases.verification.published_shafts import torsion
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation import published_drivetrains as published
 from fe_drivetrain.validation.shaft_theory import solid_diameter
 
 SHEAR_MODULUS = 80e9

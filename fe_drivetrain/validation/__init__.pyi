@@ -18,6 +18,7 @@ from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
+from . import published_drivetrains as published_drivetrains
 from . import quarter_disc as quarter_disc
 from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_solids as ring_solids
