@@ -11,14 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.cases.verification.published_shafts import (
-    material_of,
-)
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import Constraint, averaged_point, fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh import Mesh, face_weights, generate
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation.twisted_tubes import material_of
 
 SHEAR_MODULUS = 80e9
 MATERIAL = material_of(SHEAR_MODULUS)

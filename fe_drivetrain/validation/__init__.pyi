@@ -34,4 +34,5 @@ from . import tied_rings as tied_rings
 from . import tied_strips as tied_strips
 from . import torsion_meridian as torsion_meridian
 from . import turned_frames as turned_frames
+from . import twisted_tubes as twisted_tubes
 from . import two_bodies as two_bodies
