@@ -332,7 +332,7 @@ def iea_15(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainSha
         4.5008,
         within=0.5e-4 / 4.5008,
         why=DIGITS,
-        source="a list of reference values that quotes it (second-hand: its own source was not read)",
+        source="a list of reference values (second-hand: its own source was not read)",
         unit="m^4",
         measure="stiffness",
         basis="second-hand",
@@ -520,11 +520,13 @@ def nrel_5mw(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainS
     page.table(
         "Free-free frequency of rotor and generator",
         [
-            ["published", free],
-            ["WISDEM's shafts in series", soft],
-            ["published, generator held", fixed],
+            {"stiffness": name, "frequency [Hz]": frequency}
+            for name, frequency in (
+                ("published", free),
+                ("WISDEM's shafts in series", soft),
+                ("published, generator held", fixed),
+            )
         ],
-        ["stiffness", "frequency [Hz]"],
     )
     diameters = np.linspace(0.4, 1.2, 60)
     page.chart(
