@@ -35,7 +35,7 @@ def run(run: Run, page: Page) -> None:
         model, response = scenes.solved(run, kind)
         work = scenes.work(model, response)
         asymmetry = relative_asymmetry(work)
-        row = {
+        row: Record = {
             "scene": kind,
             "unknowns": response.n_unknowns,
             "solver": response.method,

@@ -9,6 +9,7 @@ from . import faulty_meshes as faulty_meshes
 from . import fillet_factors as fillet_factors
 from . import folded_meshes as folded_meshes
 from . import housing_nodes as housing_nodes
+from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
 from . import layers as layers
 from . import locking_bars as locking_bars
