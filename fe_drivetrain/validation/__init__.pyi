@@ -9,6 +9,7 @@ from . import faulty_meshes as faulty_meshes
 from . import fillet_factors as fillet_factors
 from . import folded_meshes as folded_meshes
 from . import housing_nodes as housing_nodes
+from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
 from . import layers as layers
 from . import locking_bars as locking_bars
@@ -35,4 +36,5 @@ from . import tied_rings as tied_rings
 from . import tied_strips as tied_strips
 from . import torsion_meridian as torsion_meridian
 from . import turned_frames as turned_frames
+from . import twisted_tubes as twisted_tubes
 from . import two_bodies as two_bodies
