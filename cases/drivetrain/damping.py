@@ -26,10 +26,10 @@ from fe_drivetrain.torsion import (
     two_masses,
 )
 from fe_drivetrain.validation import published_drivetrains as published
+from fe_drivetrain.validation.implied_shafts import DAMPING_RATIO, SHEAR_MODULUS, implied
 
-#: Section 4.1: average damping ratios of shafts and of gear meshes.
-SHAFT_RATIO, MESH_RATIO = 0.006, 0.1
-SHEAR_MODULUS = 80e9
+#: Section 4.1: average damping ratio of gear meshes.
+MESH_RATIO = 0.1
 POINTS, QUICK_POINTS = 500, 120
 #: Frequency [Hz] above which the generator's spring makes no difference, for a table.
 LOW = 10.0
@@ -68,7 +68,7 @@ def run(run: Run, page: Page) -> None:
     page.equals(
         "2 masses, generator free, Eq 4.5 with J_1 J_2 / (J_1 + J_2): damping ratio",
         float(swinging),
-        SHAFT_RATIO,
+        DAMPING_RATIO,
         within=1e-10,
         why="two free masses are one oscillator: exact but for rounding",
         source="Al-Hamadani 2018, section 4.1: 0.006 of critical damping",
@@ -90,8 +90,8 @@ def run(run: Run, page: Page) -> None:
     lss = behind[0]
     page.answer(
         f"The shaft dampers of Table 4.2 damp the drivetrain's swing by {tabled:.1g} of critical "
-        f"damping, not by the {SHAFT_RATIO:g} that the text asks for: Eq 4.5 was evaluated with J "
-        "as the shaft's second moment of area [m^4] where it needs an inertia [kg m^2].",
+        f"damping, not by the {DAMPING_RATIO:g} that the text asks for: Eq 4.5 was evaluated with "
+        "J as the shaft's second moment of area [m^4] where it needs an inertia [kg m^2].",
         f"That gives away the shafts: C_LSS = {lss['C [N m s/rad]']:g} N m s/rad is a J of "
         f"{lss['J [m^4]']:.3e} m^4, a solid shaft of {lss['diameter [m]']:.3f} m and, with G = "
         f"80 GPa, {lss['length G J / k [m]']:.2f} m length.",
@@ -123,15 +123,15 @@ def shafts_behind() -> list[Record]:
     """Eq 4.5 backwards: the J behind each tabled damper, and the solid shaft of that J."""
     rows = []
     for shaft in TABLE.shafts:
-        J = (shaft.damping / (2 * SHAFT_RATIO)) ** 2 / shaft.stiffness
+        solid = implied(shaft.stiffness, shaft.damping)
         rows.append(
             {
                 "shaft": shaft.name,
                 "k [N m/rad]": shaft.stiffness,
                 "C [N m s/rad]": shaft.damping,
-                "J [m^4]": J,
-                "diameter [m]": float((32 * J / np.pi) ** 0.25),
-                "length G J / k [m]": J * SHEAR_MODULUS / shaft.stiffness,
+                "J [m^4]": solid.polar,
+                "diameter [m]": solid.diameter,
+                "length G J / k [m]": solid.length,
             }
         )
     return rows
@@ -188,7 +188,7 @@ def models_of(state: GeneratorState, meshes: list[Record]) -> dict[str, Torsiona
     before, after = cumulated[:-1], cumulated[-1] - cumulated[:-1]
     speeds = TABLE.speeds
     shafts = {
-        shaft.name: shaft_damping(SHAFT_RATIO, float(a * b / (a + b) / s**2), shaft.stiffness)
+        shaft.name: shaft_damping(DAMPING_RATIO, float(a * b / (a + b) / s**2), shaft.stiffness)
         for shaft, a, b, s in zip(TABLE.shafts, before, after, speeds, strict=True)
     }
     on_rotor = {
@@ -196,7 +196,7 @@ def models_of(state: GeneratorState, meshes: list[Record]) -> dict[str, Torsiona
     }
     of_meshes = {element: row["computed"] for row in meshes for element in row["elements"]}
     a, b = two.J
-    swing = shaft_damping(SHAFT_RATIO, float(a * b / (a + b)), float(two.k[0]))
+    swing = shaft_damping(DAMPING_RATIO, float(a * b / (a + b)), float(two.k[0]))
     return {
         "2 masses, as tabled": two,
         "5 masses, as tabled": five,
@@ -279,7 +279,7 @@ def check_quartic(page: Page, system: Torsional) -> Floats:
     """Decay of two masses against the characteristic quartic: its coefficients."""
     (a, b), (k, g) = system.J, system.k
     c = float(system.C[0, 0])
-    quartic = np.polysub(np.polymul([a, c, k], [b, c, k + g]), np.polymul([c, k], [c, k]))
+    quartic: Floats = np.polysub(np.polymul([a, c, k], [b, c, k + g]), np.polymul([c, k], [c, k]))
     roots = np.roots(quartic)
     roots = np.sort_complex(roots[roots.imag > 0])
     roots = roots[np.argsort(roots.imag)]

@@ -7,7 +7,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.drivetrain import low_speed_shaft as lss
 from fe_drivetrain.compare import GridConvergence, grid_convergence
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
@@ -22,7 +21,9 @@ from fe_drivetrain.torsion import (
     stage_masses,
     two_masses,
 )
+from fe_drivetrain.validation import low_speed_shaft as lss
 from fe_drivetrain.validation import published_drivetrains as published
+from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, implied
 from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
 #: Elements round a turn of the meshes.
@@ -35,7 +36,7 @@ ORDERS = (2, 3, 4)
 TABLE = published.table("nrel_750kw")
 TABLED = TABLE.shafts[0].stiffness
 HALF_DIGIT = published.digit("3.69e7") / 2
-IMPLIED = lss.implied(TABLED, TABLE.shafts[0].damping)
+IMPLIED = implied(TABLED, TABLE.shafts[0].damping)
 
 MAKERS: dict[str, Callable[[Drivetrain, GeneratorState], Torsional]] = {
     "2 masses": two_masses,
@@ -160,7 +161,7 @@ def check_meridian(page: Page, quick: bool) -> float:
     )
     sharp = lss.stepped(IMPLIED.length, TABLED, 0.0)
     found = [lss.meridian_stiffness(sharp, 0.3, order) for order in ((3, 4) if quick else (5, 6))]
-    bounds = torsion_bounds(sharp, lss.SHEAR_MODULUS, 0.1, 2 if quick else 5)
+    bounds = torsion_bounds(sharp, SHEAR_MODULUS, 0.1, 2 if quick else 5)
     page.equals(
         "shaft with sharp steps, meridian",
         found[-1],
@@ -311,7 +312,7 @@ def show_stiffness(
     ways: list[tuple[str, float, float | None]] = [
         ("Table 4.2; J G / L of a uniform shaft", TABLED, HALF_DIGIT),
         ("sum of L / J G of the sections", sections, None),
-        ("meridian, ends rigid", *meridian),
+        ("meridian, ends rigid", meridian.value, meridian.band),
         *(
             (
                 f"three dimensions, {n:,} unknowns, ends rigid",
@@ -325,11 +326,11 @@ def show_stiffness(
             solid.averaged,
             None,
         ),
-        ("taken over: from free to rigid front", *taken),
+        ("taken over: from free to rigid front", taken.value, taken.band),
     ]
     page.table(
         "Torsional stiffness of the low-speed shaft",
-        [[*way, way[1] / TABLED] for way in ways],
+        [[how, K, band, K / TABLED] for how, K, band in ways],
         ["how", "K [N m/rad]", "half width of the band", "over Table 4.2"],
     )
     page.text(f"In three dimensions: {solid.series.sentence('N m/rad')}.")
@@ -402,7 +403,7 @@ def assume_shape(page: Page, shaft: Shaft) -> None:
         "m",
         "not given; J G / K_LSS with the J that C_LSS = 2.396 N m s/rad implies by Eq 4.5",
     )
-    page.assume("G", lss.SHEAR_MODULUS, "Pa", "steel; not given")
+    page.assume("G", SHEAR_MODULUS, "Pa", "steel; not given")
     for part, piece in zip(("flange", "body", "rear"), shaft.pieces, strict=True):
         page.assume(
             f"{part}: diameter and length",

@@ -143,7 +143,12 @@ def show_keys(page: Page, table: Drivetrain) -> None:
     page.table(
         "Keys of the file",
         [
-            [owner, key, field.description or "", field.is_required() or key == "kind"]
+            {
+                "of": owner,
+                "key": key,
+                "what": field.description or "",
+                "needed": field.is_required() or key == "kind",
+            }
             for owner, model in (
                 ("drivetrain", Drivetrain),
                 ("each of shafts", ShaftRow),
@@ -153,6 +158,5 @@ def show_keys(page: Page, table: Drivetrain) -> None:
             )
             for key, field in model.model_fields.items()
         ],
-        ["of", "key", "what", "needed"],
     )
     page.text(f"Read here: {table.model_dump_json(exclude_none=True)}")

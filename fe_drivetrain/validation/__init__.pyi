@@ -14,6 +14,7 @@ from . import independent_torsion as independent_torsion
 from . import layers as layers
 from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
+from . import low_speed_shaft as low_speed_shaft
 from . import manufactured as manufactured
 from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
