@@ -269,8 +269,8 @@ def _by_general_factor(shaft: Any, material: Any, median: Any) -> dict[str, floa
 
     from fe_drivetrain.revolution import (
         Meridian,
+        dofs,
         element_matrices,
-        freedoms,
         harmonic_solver,
         meridian,
     )
@@ -278,7 +278,7 @@ def _by_general_factor(shaft: Any, material: Any, median: Any) -> dict[str, floa
     mesh = meridian(shaft)
     size = 3 * len(mesh.nodes)
     front = mesh.where(lambda x, r: x == x.min())
-    held = np.concatenate([freedoms(front, c) for c in range(3)])
+    held = np.concatenate([dofs(front, c) for c in range(3)])
     free = np.setdiff1d(np.arange(size), held)
     F = np.zeros((size, 12))
     F[free] = np.random.default_rng(0).standard_normal((len(free), 12))

@@ -91,18 +91,18 @@ def cantilever(
     """
     mesh = shaft_hexahedra(shaft, size, 27, elements_per_turn=turn, refinement=refinement)
     n = mesh.points.size
-    n_freedoms = n + 6 if rigid else n
-    F = np.zeros((n_freedoms, 2))
-    constraints = [fixed("rear", mesh.rear, n_freedoms)]
+    n_dofs = n + 6 if rigid else n
+    F = np.zeros((n_dofs, 2))
+    constraints = [fixed("rear", mesh.rear, n_dofs)]
     if rigid:
-        front = rigid_point("front", np.array([shaft.front, 0.0, 0.0]), n, n_freedoms)
+        front = rigid_point("front", np.array([shaft.front, 0.0, 0.0]), n, n_dofs)
         constraints.append(rigid_face("front", mesh.front, mesh.points, front))
         F[[n + 3, n + 4], [0, 1]] = 1.0
     else:
         F[:, 0] = _twist(mesh)
         F[:, 1] = _oval(mesh, shaft)
-    K = assemble(mesh.points, mesh.cells, STEEL.lame, n_freedoms)
-    elimination = eliminate(constraints, n_freedoms)
+    K = assemble(mesh.points, mesh.cells, STEEL.lame, n_dofs)
+    elimination = eliminate(constraints, n_dofs)
     system = reduce(mesh.points, mesh.cells, K, elimination)
     return Problem(mesh, shaft, system, np.asarray(elimination.T.T @ F))
 
@@ -182,7 +182,7 @@ def _oval(mesh: Hexahedra, shaft: Shaft) -> Floats:
 
 def oval_work(shaft: Shaft, elements: int = 8) -> float:
     """Work of that pressure on the same tube, from its meridian in the harmonic cos 2t [J]."""
-    from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
+    from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads
 
     radius = shaft.sections[0].outer_diameter / 2.0
     mesh = meridian(shaft, shaft.length / elements, order=8, layers=4)
@@ -192,7 +192,7 @@ def oval_work(shaft: Shaft, elements: int = 8) -> float:
         mesh, 2, sides, lambda at, normals: np.tile([0.0, 1.0, 0.0], (len(at), 1))
     )
     rear = np.flatnonzero(np.abs(x - shaft.rear) < 1e-9)
-    which = np.concatenate([freedoms(rear, k) for k in range(3)])
+    which = np.concatenate([dofs(rear, k) for k in range(3)])
     found = harmonic_response(mesh, STEEL, 2, loads, (which, np.zeros(len(which))))
     return float(2.0 * found.energy[0])
 

@@ -271,7 +271,7 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     import numpy as np
 
     from fe_drivetrain.common import rigid_motions
-    from fe_drivetrain.interfaces import held_freedoms, held_nodes
+    from fe_drivetrain.interfaces import held_dofs, held_nodes
     from fe_drivetrain.operator import traction_loads
     from fe_drivetrain.validation import (
         two_bodies,
@@ -290,7 +290,7 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     g = np.column_stack([-turned * z, turned * y]).ravel()
     centre = front[np.argmin(np.abs(points[front, 1:]).sum(axis=1))]
     supports = [
-        held_freedoms("ends", across, n),
+        held_dofs("ends", across, n),
         held_nodes("axial", np.array([centre]), (0,), n),
     ]
     twisted = two_bodies.solve(K, [*ties, *supports], np.zeros((n, 1)), {"ends": g[:, None]})

@@ -297,7 +297,7 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     import numpy as np
 
     from fe_drivetrain.common import rigid_motions
-    from fe_drivetrain.interfaces import freedoms, held_freedoms
+    from fe_drivetrain.interfaces import dofs, held_dofs
     from fe_drivetrain.validation import (
         two_bodies,
     )
@@ -307,8 +307,8 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     ties = [] if tie is None else [tie]
     bore, outside = np.unique(bodies.faces[0]["x0"]), np.unique(bodies.faces[-1]["x1"])
     supports = [
-        held_freedoms("bore", freedoms(bore).ravel(), n),
-        held_freedoms("outside", freedoms(outside).ravel(), n),
+        held_dofs("bore", dofs(bore).ravel(), n),
+        held_dofs("outside", dofs(outside).ravel(), n),
     ]
     moved = rigid_motions(points[outside])[:, [3, 1]]
     solved = two_bodies.solve(K, [*ties, *supports], np.zeros((n, 2)), {"outside": moved})

@@ -117,15 +117,15 @@ def solid_stiffness(mesh: Mesh, *, rigid: bool = True) -> float:
     face = mesh.face_nodes("shaft.front")
     constraints: list[Constraint]
     if rigid:
-        n_freedoms = 3 * n + 6
-        front = rigid_point("front", origin, 3 * n, n_freedoms)
+        n_dofs = 3 * n + 6
+        front = rigid_point("front", origin, 3 * n, n_dofs)
         constraints = [rigid_face("front", face, mesh.points, front)]
     else:
-        n_freedoms = 3 * n
+        n_dofs = 3 * n
         weights = face_weights(mesh.points, mesh.faces["shaft.front"], n)[face]
-        front = averaged_point("front", face, weights, mesh.points, origin, n_freedoms)
+        front = averaged_point("front", face, weights, mesh.points, origin, n_dofs)
         constraints = []
-    constraints.append(fixed("rear", mesh.face_nodes("shaft.rear"), n_freedoms))
+    constraints.append(fixed("rear", mesh.face_nodes("shaft.rear"), n_dofs))
     row = front.motion[[3]]
     found = solve_solid(mesh.points, mesh.cells, MATERIAL.lame, constraints, row.T.toarray())
     return float(1.0 / (row @ found.u)[0, 0])
