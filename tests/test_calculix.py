@@ -1,4 +1,4 @@
-"""Decks for CalculiX: what stands in them is the model, and ccx, where it is, gives the same answers."""
+"""Decks for CalculiX: what stands in them is the model, and ccx, where it is, agrees."""
 
 import re
 from pathlib import Path

@@ -1,6 +1,6 @@
 """Low-speed shaft from finite elements instead of J G / L: what the frequencies make of it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,7 +43,11 @@ MAKERS: dict[str, Callable[[Drivetrain, GeneratorState], Torsional]] = {
     "5 masses": stage_masses,
     "11 masses": gear_masses,
 }
-PRINTED = {"2 masses": published.TWO, "5 masses": published.FIVE, "11 masses": published.ELEVEN}
+PRINTED: tuple[Mapping[str, Sequence[str]], ...] = (
+    published.TWO,
+    published.FIVE,
+    published.ELEVEN,
+)
 #: States of the generator and modes (from 0).
 MODES: tuple[tuple[GeneratorState, int], ...] = (("fixed", 0), ("fixed", 1), ("free", 1))
 
@@ -351,7 +355,7 @@ def show_frequencies(
             trace(
                 "Table 6.1 (J G / L)",
                 [TABLED] * 3,
-                [float(values[state][mode]) for values in PRINTED.values()],
+                [float(values[state][mode]) for values in PRINTED],
                 points=True,
                 marker={"symbol": "diamond"},
             ),

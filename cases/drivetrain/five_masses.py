@@ -309,13 +309,14 @@ def show_restored(
         ["mode", "as printed", "Mandic et al. 2012, as printed there", "by Table 4.2", "restored"],
     )
     inputs = other.inputs
+    rows: list[tuple[str, float, float, float]] = [
+        ("rotor [kg m^2]", TABLE.rotor, TABLE.rotor, inputs[ROTOR]),
+        ("low-speed shaft [N m/rad]", LSS.stiffness, LSS.stiffness, inputs["LSS"]),
+        ("J_2 [kg m^2]", J_2, restored, inputs["stage 1"]),
+    ]
     page.table(
         "The inputs that do",
-        [
-            ["rotor [kg m^2]", TABLE.rotor, TABLE.rotor, inputs[ROTOR]],
-            ["low-speed shaft [N m/rad]", LSS.stiffness, LSS.stiffness, inputs["LSS"]],
-            ["J_2 [kg m^2]", J_2, restored, inputs["stage 1"]],
-        ],
+        rows,
         ["input", "Table 4.2", "for Table 6.1", "for Table 6.2"],
     )
     two = two_masses(TABLE)

@@ -1,4 +1,4 @@
-"""Solid shafts for finite elements: meshes that refine in the same way, loads on ends, motions of sections.
+"""Solid shafts for finite elements: meshes refined similarly, loads on ends, motions of sections.
 
 A section's motion is its mean displacement and its least-squares rotation (an averaged reference
 point). These means are Cowper's (1966), so Timoshenko's beam with his coefficient speaks of the

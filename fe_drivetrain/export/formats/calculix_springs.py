@@ -3,7 +3,8 @@
 CalculiX 2.20 takes no matrix as an element (*MATRIX ASSEMBLE came later, and its *USER ELEMENT is
 the name of a compiled routine), and its springs join single degrees of freedom. But every symmetric
 matrix without negative eigenvalues is a sum of squares of linear forms, K = sum k_i v_i v_i^T, its
-eigenvectors with a unit diagonal: an auxiliary node moves by v_i^T u, by *EQUATION, and stands on a spring k_i (SPRING1) to the ground. A mass does the same with MASS.
+eigenvectors with a unit diagonal: an auxiliary node moves by v_i^T u, by *EQUATION, and stands on a
+spring k_i (SPRING1) to the ground. A mass does the same with MASS.
 
 A point is two nodes, as in `calculix_plan`: degrees of freedom 1 to 3 of the first are its
 displacements, of the second its rotations. The file is for an *INCLUDE in the model definition.
