@@ -165,10 +165,8 @@ def run(run: Run, page: Page) -> None:
     closing = [row for row in rows if row["quantity"] == SHOWN[ALONG][0]]
     check_formulas(page, closing[-1])
 
-    thinnest, points = (
-        ratios[-1],
-        [ring(row["R/h"]).share(row["elements"] / 1e6) for row in closing],
-    )
+    thinnest = ratios[-1]
+    points = [ring(row["R/h"]).share(row["elements"] / 1e6) for row in closing]
     of_series = [ring(row["R/h"]).share(row["series"] / 1e6) for row in closing]
     page.answer(
         f"A ring with R/h = {thinnest:g} closes by {points[-1]:.5f} W R^3/(E' I) along the load "
