@@ -1,7 +1,6 @@
 """Ring between two opposite loads: exact series, curved beam and thin ring."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -13,13 +12,22 @@ from fe_drivetrain.report import Measure, trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation.plane_rings import Lame, even_amplitudes, harmonics, plane_strain
+from fe_drivetrain.validation.plane_rings import plane_strain
 from fe_drivetrain.validation.ring_solids import (
     node_at,
     plane_strain_hold,
     polar_stresses,
     ring_sector,
     sector_symmetry,
+)
+from fe_drivetrain.validation.squeezed_rings import (
+    ACROSS,
+    ALONG,
+    ORDERS,
+    OUTSIDE,
+    STIFFNESS,
+    UNDER,
+    SqueezedRing,
 )
 
 RADIUS = 0.33  # m, of the wall's middle
@@ -33,16 +41,9 @@ QUICK_RATIOS = (2.0, 20.0)
 LEVELS = (1, 2, 4)
 QUICK_LEVELS = (1, 2, 3)
 
-ORDERS = 400  # even harmonics of the series: up to n = 798
-
-SHEAR = 1.2  # of a rectangle
-
 QUARTER = 0.5 * np.pi
 GROWTH = 1.5  # of the elements away from the load, up to 1.5 walls long
 LONGEST = 0.25  # rad: stress turns with the angle, and its recovery is linear in an element
-
-ALONG, ACROSS = "bore along the load", "bore across the load"
-UNDER, OUTSIDE, STIFFNESS = "bore under the load", "outside, across", "stiffness"
 
 #: Title, unit shown, its factor from SI, and the kind of quantity.
 SHOWN: dict[str, tuple[str, str, float, Measure]] = {
@@ -54,70 +55,9 @@ SHOWN: dict[str, tuple[str, str, float, Measure]] = {
 }
 
 
-def reach(ratio: float) -> float:
-    """Half of the loaded arc: half a wall thickness at the middle radius [rad]."""
-    return 0.5 / ratio
-
-
-def pressure(t: Floats, ratio: float) -> Floats:
-    """A smooth bump of the given force [Pa], so that series and elements converge fast."""
-    e = reach(ratio)
-    outer = RADIUS * (1.0 + 0.5 / ratio)
-    # the bump's resultant: integral of (1 + cos(pi t / e)) / 2 cos t over both sides
-    p = np.pi / e
-    resultant = np.sin(e) + 0.5 * (np.sin((p + 1) * e) / (p + 1) + np.sin((p - 1) * e) / (p - 1))
-    bump = np.where(np.abs(t) < e, 0.5 * (1.0 + np.cos(p * np.asarray(t))), 0.0)
-    return np.asarray(FORCE / (outer * resultant) * bump)
-
-
-def exact(ratio: float) -> dict[str, float]:
-    """The ring as a plane problem, by Fourier series of Michell's functions; SI."""
-    a, b = RADIUS * (1.0 - 0.5 / ratio), RADIUS * (1.0 + 0.5 / ratio)
-    amplitude = even_amplitudes(lambda t: pressure(t, ratio), reach(ratio), ORDERS)
-    n = 2 * np.arange(1, ORDERS)
-    ring = Lame(a, b, outside=amplitude[0])
-    waves = harmonics(n, a, b, np.zeros(len(n)), amplitude[1:])
-
-    def displacement(r: float, t: float) -> float:
-        return float(
-            ring.displacement(np.array(r), PLANE)
-            + waves.displacement_amplitudes(r, PLANE)[0] @ np.cos(n * t)
-        )
-
-    def hoop(r: float, t: float) -> float:
-        return float(ring.hoop(np.array(r)) + waves.stress_amplitudes(r)[1] @ np.cos(n * t))
-
-    outside = waves.displacement_amplitudes(b, PLANE)[0]
-    work = 2.0 * amplitude[0] * float(ring.displacement(np.array(b), PLANE))
-    energy = -0.5 * np.pi * b * (work + amplitude[1:] @ outside)
-    return {
-        ALONG: 2.0 * displacement(a, 0.0),
-        ACROSS: 2.0 * displacement(a, QUARTER),
-        UNDER: hoop(a, 0.0),
-        OUTSIDE: hoop(b, QUARTER),
-        STIFFNESS: 0.5 * FORCE**2 / energy,
-    }
-
-
-def curved_beam(ratio: float) -> float:
-    """Approach of the loads by the energy of a curved beam with shear [m]."""
-    h = RADIUS / ratio
-    e = RADIUS - h / np.log((1.0 + 0.5 / ratio) / (1.0 - 0.5 / ratio))
-    x, w = np.polynomial.legendre.leggauss(30)
-    t, w = 0.5 * QUARTER * (1.0 + x), 0.5 * QUARTER * w
-    N, V = -0.5 * FORCE * np.cos(t), 0.5 * FORCE * np.sin(t)
-    grows = 0.5 * FORCE * RADIUS * (1.0 - np.cos(t))
-    # no rotation between the planes of symmetry: the integral of M / e - N vanishes
-    M = grows + (w @ (N - grows / e)) * e / QUARTER
-    bending = (N**2 * RADIUS - 2.0 * M * N + M**2 / e) / (2.0 * PLANE.E * h)
-    shear = SHEAR * V**2 * RADIUS / (2.0 * PLANE.G * h)
-    return float(8.0 * (w @ (bending + shear)) / FORCE)
-
-
-def thin_ring(ratio: float) -> float:
-    """Approach of the loads of a thin ring, (pi/4 - 2/pi) W R^3 / (E I) [m]."""
-    inertia = (RADIUS / ratio) ** 3 / 12.0
-    return float((np.pi / 4.0 - 2.0 / np.pi) * FORCE * RADIUS**3 / (PLANE.E * inertia))
+def ring(ratio: float) -> SqueezedRing:
+    """The ring of that mean radius over wall thickness."""
+    return SqueezedRing(RADIUS, ratio, FORCE, PLANE)
 
 
 def edges(reach: float, longest: float, level: int) -> Floats:
@@ -144,17 +84,18 @@ def edges(reach: float, longest: float, level: int) -> Floats:
 
 
 def solve(ratio: float, level: int) -> dict[str, float]:
-    """The quantities of `exact` from a quarter of solids."""
-    a, b = RADIUS * (1.0 - 0.5 / ratio), RADIUS * (1.0 + 0.5 / ratio)
+    """The quantities of `SHOWN` from a quarter of solids, in SI."""
+    squeezed = ring(ratio)
+    a, b = squeezed.inner, squeezed.outer
     # a thick ring is loaded over more than its radius allows to call smooth: finer
     through = (3 if ratio < 4.0 else 2) * level
     width = (b - a) / through
-    around = edges(reach(ratio), min(1.5 / ratio, LONGEST), level) / QUARTER
+    around = edges(squeezed.reach, min(1.5 / ratio, LONGEST), level) / QUARTER
     divisions = (through, len(around) - 1, 1)
     block = ring_sector(a, b, width, QUARTER, divisions, edges=(None, around, None))
 
     def traction(x: Floats, normal: Floats) -> Floats:
-        return np.asarray(-pressure(np.arctan2(x[:, 2], x[:, 1]), ratio)[:, None] * normal)
+        return np.asarray(-squeezed.pressure(np.arctan2(x[:, 2], x[:, 1]))[:, None] * normal)
 
     F = traction_loads(block.points, block.faces["x1"], traction)
     held = [*sector_symmetry(block, QUARTER), plane_strain_hold(block)]
@@ -175,11 +116,6 @@ def solve(ratio: float, level: int) -> dict[str, float]:
     }
 
 
-def share(change: Any, ratio: Any) -> Any:
-    """A change of diameter [m] over W R^3 / (E' I)."""
-    return -change * PLANE.E / (12.0 * FORCE * ratio**3)
-
-
 @case(
     "Ring between two opposite loads",
     source="Fourier series of Michell's stress functions (Timoshenko and Goodier 1970, art 43); "
@@ -192,7 +128,7 @@ def run(run: Run, page: Page) -> None:
     sizes = 1.0 / np.array(levels)
     rows: list[Record] = []
     for ratio in ratios:
-        reference = run.timed("series", exact, ratio)
+        reference = run.timed("series", ring(ratio).series)
         with run.step(f"elements, R/h = {ratio:g}"):
             found = [solve(ratio, level) for level in levels]
         for key, (name, unit, factor, measure) in SHOWN.items():
@@ -229,23 +165,24 @@ def run(run: Run, page: Page) -> None:
     closing = [row for row in rows if row["quantity"] == SHOWN[ALONG][0]]
     check_formulas(page, closing[-1])
 
-    thinnest, points = ratios[-1], [share(row["elements"] / 1e6, row["R/h"]) for row in closing]
-    of_series = [share(row["series"] / 1e6, row["R/h"]) for row in closing]
+    thinnest = ratios[-1]
+    points = [ring(row["R/h"]).share(row["elements"] / 1e6) for row in closing]
+    of_series = [ring(row["R/h"]).share(row["series"] / 1e6) for row in closing]
     page.answer(
         f"A ring with R/h = {thinnest:g} closes by {points[-1]:.5f} W R^3/(E' I) along the load "
         f"(exact series {of_series[-1]:.5f}, thin ring 0.14878); one with R/h = {ratios[0]:g} by "
         f"{points[0]:.4f} (exact {of_series[0]:.4f}): there the thin ring is of no use."
     )
     page.section("Closing along the load")
-    many = [float(ratio) for ratio in np.geomspace(1.5, 30.0, 25)]
-    theories: dict[str, Callable[[float], float]] = {
-        "exact series": lambda ratio: exact(ratio)[ALONG],
-        "curved beam with shear": lambda ratio: -curved_beam(ratio),
-        "thin ring": lambda ratio: -thin_ring(ratio),
+    many = [ring(float(ratio)) for ratio in np.geomspace(1.5, 30.0, 25)]
+    theories: dict[str, Callable[[SqueezedRing], float]] = {
+        "exact series": lambda of: of.series()[ALONG],
+        "curved beam with shear": lambda of: -of.curved_beam(),
+        "thin ring": lambda of: -of.thin(),
     }
     with run.step("series"):
         lines = [
-            trace(name, many, [share(change(ratio), ratio) for ratio in many])
+            trace(name, [of.ratio for of in many], [of.share(change(of)) for of in many])
             for name, change in theories.items()
         ]
     page.chart(
@@ -262,8 +199,8 @@ def run(run: Run, page: Page) -> None:
         "of the ring is meshed."
     )
     page.data("finest mesh and series", rows)
-    page.data("curved beam [m]", [curved_beam(ratio) for ratio in ratios])
-    page.data("thin ring [m]", [thin_ring(ratio) for ratio in ratios])
+    page.data("curved beam [m]", [ring(ratio).curved_beam() for ratio in ratios])
+    page.data("thin ring [m]", [ring(ratio).thin() for ratio in ratios])
 
 
 def check_formulas(page: Page, thinnest: Record) -> None:
@@ -272,14 +209,14 @@ def check_formulas(page: Page, thinnest: Record) -> None:
     for name, formula, tolerance, reason in (
         (
             "curved beam with shear",
-            curved_beam(ratio),
+            ring(ratio).curved_beam(),
             2.0 / ratio**2,
             "a beam leaves out radial stress and the spread of the load over half a wall, both of "
             "the order of (h/R)^2 = 0.25 %; twice that",
         ),
         (
             "thin ring, 0.1488 W R^3 / (E' I)",
-            thin_ring(ratio),
+            ring(ratio).thin(),
             4.0 / ratio**2,
             "a thin ring leaves out shear besides, pi/4 1.2 E'/(12 G) / 0.1488 (h/R)^2 = 1.5 "
             "(h/R)^2; with the rest of the curved beam 4 (h/R)^2 = 1 %",
