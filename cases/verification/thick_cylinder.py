@@ -79,7 +79,7 @@ def solve(nodes: int, n: int, free_ends: bool = False) -> Record:
 def errors(series: list[Record], quantity: str) -> Floats:
     """Relative, and no smaller than a chart can show."""
     values = np.array(column(series, quantity))
-    return np.maximum(np.abs(values / REFERENCES[quantity] - 1.0), 1e-10)
+    return np.asarray(np.maximum(np.abs(values / REFERENCES[quantity] - 1.0), 1e-10))
 
 
 @case(
