@@ -106,9 +106,10 @@ def run(run: Run, page: Page) -> None:
     page.section("Problem")
     page.text(
         "Two concentric shells meet in a sphere; the inner one is bonded to a rigid core, the "
-        "outer one to rigid surroundings. The core is moved along x, turned about an axis that is "
-        "none of the mesh's, or held while pressure acts from outside, where the outer shell is "
-        "free. The joint is made by the functions that make the spherical joint of a drivetrain."
+        "outer one to rigid surroundings. The core is moved along x, turned about an axis along "
+        "none of the mesh's directions, or held while pressure acts from outside, where the outer "
+        "shell is free. The joint is made by the functions that make the spherical joint of a "
+        "drivetrain."
     )
     page.text(
         "Exact: with u_r = f(r) cos(theta), u_theta = g(r) sin(theta), Navier's equation leaves "

@@ -1,5 +1,7 @@
 """The error of a stiffness, estimated from one mesh, against the error that it has."""
 
+from typing import Any
+
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -45,7 +47,7 @@ LINE, SHAPE, SOURCE = "line of the chart", "error of the shape", "source"
 
 
 def record(
-    problem: str, element: str, unknowns: int, error: float, estimate: float, **more: str | float
+    problem: str, element: str, unknowns: int, error: float, estimate: float, **more: Any
 ) -> Record:
     """One mesh: the true and the estimated error, relative, and what is left out of the table."""
     return {

@@ -105,7 +105,7 @@ def run(run: Run, page: Page) -> None:
         1e6 * free[-1][MOVED],
         1e6 * float(EXACT.displacement(BORE, Plane(E, NU))),
         within=tolerance,
-        why="as in plane strain: the axial strain is uniform, and no error of its own",
+        why="as in plane strain: the axial strain is uniform, and adds no error of its own",
         source=LAME,
         unit="µm",
         measure="deflection",

@@ -130,7 +130,7 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "Standard multipliers are the more accurate ones, as pure bending shows. With them every "
         "node of the slave follows all nodes of the master: on large faces the stiffness fills up, "
-        "and dual multipliers, which are local, are the better bargain."
+        "and dual multipliers, which are local, are the better choice."
     )
     with run.step("fill"):
         fill = [fill_in(n) for n in ((4,) if run.quick else (4, 8))]

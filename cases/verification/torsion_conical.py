@@ -103,7 +103,7 @@ def run(run: Run, page: Page) -> None:
         TORQUE,
         within=3 * shortfall,
         why=f"{best['per turn']} parabolic arcs round a turn: J is {shortfall:.2g} too low, and "
-        "three times that is allowed, since the field is none of the element's here",
+        "three times that is allowed, since the elements do not contain this field",
         source="Michell 1899: 2 pi G (2 - 3 cos a + cos^3 a) for u_t = -r / R^3",
         unit="N m",
         measure="stiffness",
