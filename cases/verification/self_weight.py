@@ -109,7 +109,8 @@ def run(run: Run, page: Page) -> None:
         within=section + local / abs(closed),
         why=f"{arcs}; and the root's reaction enters evenly, {solid_shafts.LOCAL:.0%} of what one "
         "diameter shears",
-        source="q L^4 / 8EI + q L^2 / 2k'GA, k' of evenly loaded sections (Hutchinson 2001)",
+        source="q L^4 / 8EI + q L^2 / 2k'GA, k' of evenly loaded sections (Hutchinson 2001, as "
+        "quoted by Stephen 2001; derived again)",
         unit="m",
         measure="deflection",
         band=bands["sag [m]"],

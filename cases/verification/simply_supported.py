@@ -191,7 +191,8 @@ def check(
         within=section + slack / abs(closed),
         why=f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
         f"{solid_shafts.LOCAL:.0%} of what one diameter shears",
-        source="Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001)",
+        source="Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, "
+        "as quoted by Stephen 2001; derived again)",
         unit="m",
         measure="deflection",
         band=band,
