@@ -29,6 +29,7 @@ from .linear import renumbered as renumbered
 from .linear import straightened as straightened
 from .measures import MeshQuality as MeshQuality
 from .measures import area as area
+from .measures import area_vectors as area_vectors
 from .measures import inverted_cells as inverted_cells
 from .measures import jacobians as jacobians
 from .measures import lattice as lattice
