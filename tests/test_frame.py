@@ -456,7 +456,9 @@ def test_a_coupled_mechanism_is_found():
 
 
 def test_a_support_however_soft_holds():
-    unit_load_response(shaft(2.0, [Support("a", 1.0, (1e-6,) * 6)]), 0.0)
+    unit = unit_load_response(shaft(2.0, [Support("a", 1.0, (1e-6,) * 6)]), 0.0)
+    carried = unit.reaction_matrix("a")
+    assert carried == pytest.approx(wrench_transport([-1.0, 0.0, 0.0]), abs=1e-9)
 
 
 def test_shares_that_statics_cannot_tell_are_refused():
