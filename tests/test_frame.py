@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection, RigiditySection, cowper_shear_coefficient
-from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, solve, unit_load_response
+from fe_drivetrain.beam.shaft import shaft_stiffness, solve, unit_load_response
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.scene.materials import Material

@@ -18,7 +18,7 @@ from fe_drivetrain.geometry import (
     build,
     gmsh_session,
 )
-from fe_drivetrain.geometry.assembly import _elements_beside, _size_limit
+from fe_drivetrain.geometry.element_sizes import _elements_beside, _size_limit
 
 
 def plain_shaft(length=1.0, outer=0.4, inner=0.0):

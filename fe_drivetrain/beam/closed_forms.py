@@ -28,8 +28,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection
-from fe_drivetrain.beam.shaft import Beam, Support
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.materials import MATERIALS, Material

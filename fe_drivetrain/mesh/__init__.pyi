@@ -18,12 +18,9 @@ from .files import write as write
 from .generation import generate as generate
 from .generation import read_gmsh as read_gmsh
 from .generation import relax_flat_cells as relax_flat_cells
-from .hexahedra import UNGRADED as UNGRADED
-from .hexahedra import Grading as Grading
 from .hexahedra import Hexahedra as Hexahedra
 from .hexahedra import Nodes as Nodes
 from .hexahedra import shaft_hexahedra as shaft_hexahedra
-from .hexahedra import shaft_quadrilaterals as shaft_quadrilaterals
 from .linear import first_order as first_order
 from .linear import renumbered as renumbered
 from .linear import straightened as straightened
@@ -38,6 +35,9 @@ from .measures import volume as volume
 from .mesh import FACETS as FACETS
 from .mesh import Mesh as Mesh
 from .mesh import boundary as boundary
+from .shaft_section import UNGRADED as UNGRADED
+from .shaft_section import Grading as Grading
+from .shaft_section import shaft_quadrilaterals as shaft_quadrilaterals
 from .shapes import TETRAHEDRON_EDGES as TETRAHEDRON_EDGES
 from .shapes import element_kind as element_kind
 from .shapes import is_straight as is_straight
