@@ -126,7 +126,7 @@ class Piece:
 
 
 def pieces_of(shaft: Shaft, core: float) -> list[Piece]:
-    """The lengths of a shaft from front to rear, solid ones from the radius of their core [m] up."""
+    """The lengths of a shaft from front to rear; solid ones begin at their core's radius [m]."""
     return [
         Piece(
             x0,
