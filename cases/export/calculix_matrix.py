@@ -1,4 +1,4 @@
-"""Full stiffness and mass matrices in CalculiX, as springs and masses on auxiliary freedoms."""
+"""Full stiffness and mass matrices in CalculiX, as springs and masses on auxiliary nodes."""
 
 from typing import Any
 

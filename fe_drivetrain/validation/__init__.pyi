@@ -34,6 +34,7 @@ from . import solid_fillet as solid_fillet
 from . import solid_shafts as solid_shafts
 from . import spherical_shells as spherical_shells
 from . import squeezed_rings as squeezed_rings
+from . import tied_bars as tied_bars
 from . import tied_rings as tied_rings
 from . import tied_strips as tied_strips
 from . import torsion_meridian as torsion_meridian
