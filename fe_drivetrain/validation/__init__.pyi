@@ -29,7 +29,9 @@ from . import slivers as slivers
 from . import soft_springs as soft_springs
 from . import solid_fillet as solid_fillet
 from . import solid_shafts as solid_shafts
+from . import solver_trials as solver_trials
 from . import spherical_shells as spherical_shells
+from . import thin_bodies as thin_bodies
 from . import tied_rings as tied_rings
 from . import tied_strips as tied_strips
 from . import torsion_meridian as torsion_meridian
