@@ -29,6 +29,7 @@ from . import slivers as slivers
 from . import soft_springs as soft_springs
 from . import solid_fillet as solid_fillet
 from . import solid_shafts as solid_shafts
+from . import solver_steps as solver_steps
 from . import solver_trials as solver_trials
 from . import spherical_shells as spherical_shells
 from . import thin_bodies as thin_bodies
