@@ -14,6 +14,7 @@ from . import layers as layers
 from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import manufactured as manufactured
+from . import one_norm as one_norm
 from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
