@@ -141,7 +141,7 @@ def check_condition(page: Page, rows: list[Record]) -> float:
 
 def check_protection(page: Page, rows: list[Record], beyond: list[Record]) -> None:
     """What is solved wrong is refused, and nothing else."""
-    wrong, refused = is_wrong(rows), array(rows, "refused by the check")
+    wrong, refused = is_wrong(rows), np.array(column(rows, "refused by the check"), dtype=bool)
     page.holds(
         "the sweep goes on until the answer is wrong: flattest bar that is solved wrong or not at "
         "all",

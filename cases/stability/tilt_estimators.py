@@ -21,7 +21,7 @@ ANGLES = tuple(range(0, 91, 15))  # degrees, of the first of the four nodes from
 RADII, QUICK_RADII = 12, 6  # of the circle of nodes, from the seat to the housing's outside
 ALONG = (-0.14, -0.07, 0.0, 0.07, 0.14)  # m, of the circle from the bearing's centre
 #: Hub thrust over tilting moment [1/m], of a rotor: both signs.
-THRUST = np.array(
+THRUST: Floats = np.array(
     (-4.0, -3.0, -2.0, -1.0, -0.5, -0.2, -0.1, 0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 4.0)
 )
 
@@ -411,6 +411,7 @@ def thrust_within(secant: Floats) -> float:
     """Largest thrust over moment of either sign at which the secant is still within."""
     sides = []
     for sign in (1, -1):
-        chosen = sign * THRUST >= 0
-        sides.append(last_within(sign * THRUST[chosen][::sign], (secant - 1.0)[chosen][::sign]))
+        thrust: Floats = float(sign) * THRUST
+        chosen = thrust >= 0
+        sides.append(last_within(thrust[chosen][::sign], (secant - 1.0)[chosen][::sign]))
     return min(sides)

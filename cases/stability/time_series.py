@@ -139,10 +139,13 @@ def outlier(reference: Floats, errors: Floats) -> Outlier:
                 statistics.median_error(reference, model),
             )
         )
+    rms, bias, median = np.array(found, dtype=float).T
     alone = reference + errors
     return Outlier(
         sizes,
-        *np.array(found, dtype=float).T,
+        rms,
+        bias,
+        median,
         float(statistics.rmse(reference, alone)),
         float(statistics.median_error(reference, alone)),
     )
