@@ -1,4 +1,4 @@
-"""Errors of a stiffness over Poisson's ratio: curves and limits of locking."""
+"""Errors of a stiffness by locking: curves and limits, over Poisson's ratio among others."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -33,17 +33,18 @@ def largest(values: ArrayLike) -> float:
     return float(np.abs(values).max())
 
 
+def curve(name: str, x: Sequence[float], errors: ArrayLike, dashed: bool = False) -> Any:
+    """Errors without their sign [%], for a logarithmic axis."""
+    percent = 100 * np.maximum(np.abs(errors), 1e-12)
+    return trace(name, x, percent, mode="lines+markers", line={"dash": "dash"} if dashed else {})
+
+
 def error_traces(of: Mapping[str, Sequence[float]], nus: Sequence[float]) -> list[Any]:
-    """Errors [%] over the ratio of moduli, remedied ones dashed."""
+    """Errors over the ratio of moduli, remedied ones dashed."""
+    moduli = [bulk_over_shear(nu) for nu in nus]
     return [
-        trace(
-            name,
-            [bulk_over_shear(nu) for nu in nus],
-            100 * np.maximum(np.abs(values), 1e-8),
-            mode="lines+markers",
-            line={"dash": "dash"} if "averaged" in name or "modes" in name else {},
-        )
-        for name, values in of.items()
+        curve(name, moduli, errors, dashed="averaged" in name or "modes" in name)
+        for name, errors in of.items()
     ]
 
 
