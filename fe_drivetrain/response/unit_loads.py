@@ -12,7 +12,7 @@ from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import dofs, eliminate
 from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import solve
+from fe_drivetrain.solve.solvers import Diagnostics, solve
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ class Response:
     superposition_error
         Difference between the reactions to a random load, solved directly, and the superposed
         ones, relative to the largest reaction.
-    residual, energy_error, iterations, method, reason, seconds, solver_bytes, n_unknowns
-        Diagnostics of the solve, see `solvers.Solution`.
+    diagnostics
+        Of the solve.
     """
 
     reactions: Mapping[str, Floats]
@@ -52,14 +52,7 @@ class Response:
     displacements: Floats
     equilibrium_error: float
     superposition_error: float
-    residual: float
-    energy_error: float
-    iterations: int
-    method: str
-    reason: str
-    seconds: float
-    solver_bytes: int
-    n_unknowns: int
+    diagnostics: Diagnostics
 
     def reaction_matrix(self) -> tuple[list[str], Floats]:
         """All reactions as one matrix.
@@ -169,14 +162,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         displacements=U[: 3 * n].reshape(n, 3, n_loads),
         equilibrium_error=_equilibrium_error(model, reactions, positions),
         superposition_error=float(np.abs(direct - superposed).max() / np.abs(direct).max()),
-        residual=solution.residual,
-        energy_error=solution.energy_error,
-        iterations=solution.iterations,
-        method=solution.method,
-        reason=solution.reason,
-        seconds=solution.seconds,
-        solver_bytes=solution.bytes,
-        n_unknowns=system.n_free,
+        diagnostics=solution.diagnostics,
     )
 
 

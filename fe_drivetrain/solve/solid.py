@@ -11,7 +11,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import Constraint, eliminate, held_dofs
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import Solution, solve
+from fe_drivetrain.solve.solvers import Diagnostics, solve
 
 Lame = tuple[float, float]
 
@@ -34,15 +34,15 @@ class Static:
         (m,) strain energy [J].
     K
         (n_dofs, n_dofs) stiffness before any constraint [N/m].
-    solution
-        Diagnostics of the solve.
+    diagnostics
+        Of the solve.
     """
 
     u: Floats
     reactions: Mapping[str, Floats]
     energy: Floats
     K: sparse.bsr_array
-    solution: Solution
+    diagnostics: Diagnostics
 
 
 def solve_solid(
@@ -110,7 +110,7 @@ def solve_solid(
     Ku = K @ u
     multipliers = elimination.multipliers(Ku - loads)
     reactions = {c.name: c.rows.T @ multipliers[c.name] for c in held}
-    return Static(u, reactions, 0.5 * np.einsum("nm,nm->m", u, Ku), K, solution)
+    return Static(u, reactions, 0.5 * np.einsum("nm,nm->m", u, Ku), K, solution.diagnostics)
 
 
 def _parts(cells: Ints | Sequence[tuple[Ints, Lame]], lame: Lame | None) -> list[tuple[Ints, Lame]]:

@@ -31,13 +31,11 @@ nothing where they are not small. Mostly it does a tenth to a hundredth of that,
 
 
 @dataclass(frozen=True)
-class Solution:
-    """Solutions of one system and their diagnostics.
+class Diagnostics:
+    """How a system was solved, and how well.
 
     Attributes
     ----------
-    x
-        (n, n_rhs).
     residual
         Largest true relative residual |K x - f| / |f| over the right-hand sides.
     energy_error
@@ -54,9 +52,10 @@ class Solution:
         Wall time of factorisation or hierarchy, and of the solve.
     bytes
         Memory of factor or hierarchy, beside the stiffness matrix.
+    n_unknowns
+        Unknowns of the system.
     """
 
-    x: Floats
     residual: float
     energy_error: float
     round_off: float
@@ -66,11 +65,20 @@ class Solution:
     setup_seconds: float
     solve_seconds: float
     bytes: int
+    n_unknowns: int
 
     @property
     def seconds(self) -> float:
         """Wall time of set-up and solve."""
         return self.setup_seconds + self.solve_seconds
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Solutions of one system, x (n, n_rhs), and how they were found."""
+
+    x: Floats
+    diagnostics: Diagnostics
 
 
 @dataclass(frozen=True)
@@ -122,8 +130,7 @@ class Solver:
         reason = self.reason
         if lost > _DOUBTFUL:
             reason += f"; rounding may change the answer by {100 * lost:.2g} %"
-        return Solution(
-            found.x,
+        diagnostics = Diagnostics(
             residual,
             found.energy_error,
             lost,
@@ -133,7 +140,9 @@ class Solver:
             self.setup_seconds,
             seconds,
             self.bytes,
+            self.system.n_free,
         )
+        return Solution(found.x, diagnostics)
 
     def _instead(
         self, F: Floats, found: multigrid.Iteration, residual: float, seconds: float
@@ -156,11 +165,13 @@ class Solver:
             )
         other = factorise(self.system, cost.method, F.shape[1], self.tolerance)
         solution = other.solve(F)
-        return replace(
-            solution,
-            reason=f"{short}; {cost.method} instead" + solution.reason.removeprefix("as asked"),
-            setup_seconds=self.setup_seconds + seconds + solution.setup_seconds,
+        after = solution.diagnostics
+        diagnostics = replace(
+            after,
+            reason=f"{short}; {cost.method} instead" + after.reason.removeprefix("as asked"),
+            setup_seconds=self.setup_seconds + seconds + after.setup_seconds,
         )
+        return Solution(solution.x, diagnostics)
 
 
 def factorise(

@@ -17,7 +17,7 @@ from fe_drivetrain.mesh import Mesh, element_kind, first_order, generate, straig
 from fe_drivetrain.operator import incompressible, pressure, stresses, traction_loads
 from fe_drivetrain.revolution import dofs, harmonic_response, meridian
 from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import TOLERANCE, Solution, multigrid, reduce, solve_solid
+from fe_drivetrain.solve import TOLERANCE, Diagnostics, multigrid, reduce, solve_solid
 from fe_drivetrain.validation.plane_rings import (
     Lame,
     plane_strain,
@@ -153,7 +153,7 @@ class Disc:
 
     def stiffness(
         self, nu: float, assembly: Assembly, method: str = "auto"
-    ) -> tuple[float, Solution]:
+    ) -> tuple[float, Diagnostics]:
         """Force over displacement of a face, the other held [N/m], and the solver's diagnostics."""
         held = self._held()
         values = np.where(np.isin(held, 3 * self.front), 1.0, 0.0)
@@ -167,7 +167,7 @@ class Disc:
             method,
             assembly,
         )
-        return 2.0 * float(found.energy[0]), found.solution
+        return 2.0 * float(found.energy[0]), found.diagnostics
 
     def iterated(self, nu: float, assembly: Assembly) -> multigrid.Iteration:
         """What multigrid alone comes to, with no direct solver behind it."""

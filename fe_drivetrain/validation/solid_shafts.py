@@ -286,7 +286,7 @@ def sectional_compliance(
         motion[:, :, -1],
         whole[chosen],
         n,
-        found.solution.seconds,
+        found.diagnostics.seconds,
     )
 
 
