@@ -142,10 +142,7 @@ def modes_study(run: Run, page: Page, scene: Scene) -> None:
             for body in bodies
         ]
     study = [
-        {
-            "modes": len(body.omega),
-            **{f"{b:.1f} Hz": float(100 * (a / b - 1)) for a, b in zip(f, whole, strict=True)},
-        }
+        [len(body.omega), *(100 * (f / whole - 1)).tolist()]
         for body, f in zip(bodies, series, strict=True)
     ]
     below = sum(int((f < whole * (1 - 1e-7)).sum()) for f in series)
@@ -175,9 +172,10 @@ def modes_study(run: Run, page: Page, scene: Scene) -> None:
         f"Free shaft of {scene.title}, hub and gearbox kept: error of its natural frequencies "
         "against the meridian that is not condensed [%]",
         study,
+        ["modes", *(f"{f:.1f} Hz" for f in whole)],
     )
     page.text(
         "Points move as the mean of a face, and stand still as such; the face itself goes on to "
         "vibrate. No modes at all is Guyan's condensation."
     )
-    page.data("study", [list(row.values()) for row in study])
+    page.data("study", study)
