@@ -1,18 +1,17 @@
 """Exudyn on drivetrains of scenes: flexible, with modes, and of rigid bodies and springs."""
 
+from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.rotor_scenes import (
-    ORDER,
-    QUICK_SCENES,
-    SCENES,
-    scene_and_units,
-)
+from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
 from fe_drivetrain.common import Floats
 from fe_drivetrain.export import (
+    CraigBampton,
+    Superelement,
     craig_bampton_shaft,
     free_frequencies,
     lumped_superelement,
@@ -32,6 +31,8 @@ FLOATING = 1e-5
 
 #: Natural frequencies of the free shaft in the study.
 FREE = 6
+
+_Body = CraigBampton | Superelement
 
 
 @case(
@@ -97,13 +98,15 @@ def scene_rows(run: Run, name: str, scene: Scene, units: dict[str, Floats]) -> l
             2: shaft_level(scene, 2, units, modal.condensed),
         }
     flexible = exudyn_system.flexible_system
+    floating, chain = exudyn_system.floating_system, exudyn_system.rigid_bodies_system
+    forms: list[tuple[str, int, _Body, Callable[[], exudyn_system.System]]] = [
+        ("flexible, Guyan", 2, guyan, partial(flexible, guyan, supports)),
+        (f"flexible, {MODES} modes", 2, modal, partial(flexible, modal, supports)),
+        ("floating frame", 2, points, partial(floating, points, supports)),
+        ("rigid bodies", 1, lumped, partial(chain, lumped, supports)),
+    ]
     rows = []
-    for label, level, body, build in (
-        ("flexible, Guyan", 2, guyan, lambda: flexible(guyan, supports)),
-        (f"flexible, {MODES} modes", 2, modal, lambda: flexible(modal, supports)),
-        ("floating frame", 2, points, lambda: exudyn_system.floating_system(points, supports)),
-        ("rigid bodies", 1, lumped, lambda: exudyn_system.rigid_bodies_system(lumped, supports)),
-    ):
+    for label, level, body, build in forms:
         with run.step(f"Exudyn on {name}"):
             system = build()
             found = system.reaction_matrix("hub")

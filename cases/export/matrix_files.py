@@ -14,7 +14,7 @@ from fe_drivetrain import export
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import matrices, samples
 from fe_drivetrain.common import Floats, MissingToolError, largest_difference
-from fe_drivetrain.suite import Page, Run, column
+from fe_drivetrain.suite import Page, Record, Run, column
 
 DIFFERENCE = "difference of a unit diagonal"
 
@@ -64,7 +64,7 @@ def run(run: Run, page: Page) -> None:
         raise MissingToolError(
             'HDF5 needs h5py: install it with pip install "fe-drivetrain[hdf5]"'
         ) from error
-    rows = []
+    rows: list[Record] = []
     elements = samples(run)
     with run.step("write and read"), TemporaryDirectory() as name:
         for label, element in elements.items():

@@ -14,12 +14,7 @@ from fe_drivetrain.beam import (
     unit_load_response,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.rotor_scenes import (
-    ORDER,
-    QUICK_SCENES,
-    SCENES,
-    scene_and_units,
-)
+from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
 from fe_drivetrain.common import Floats, largest_difference
 from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
 from fe_drivetrain.export.programs import ross_rotor

@@ -10,12 +10,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import MissingToolError
-from fe_drivetrain.export import (
-    Torsion,
-    shaft_superelement,
-    torsional_damping,
-    torsional_stiffness,
-)
+from fe_drivetrain.export import Torsion, shaft_superelement, torsional_damping, torsional_stiffness
 from fe_drivetrain.export.formats import windio
 from fe_drivetrain.scene import change_scene, library_scene
 from fe_drivetrain.suite import Page, Run
@@ -126,8 +121,10 @@ def run(run: Run, page: Page) -> None:
     )
     page.table(
         "Direct drive, low-speed side",
-        [["WISDEM's own", *own], ["with ours", *used]],
-        ["", "spring [N m/rad]", "damper [N m s/rad]"],
+        [
+            {"": name, "spring [N m/rad]": torsion.spring, "damper [N m s/rad]": torsion.damper}
+            for name, torsion in (("WISDEM's own", own), ("with ours", used))
+        ],
     )
     page.data("own", list(own))
     page.data("used", list(used))

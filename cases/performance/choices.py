@@ -204,7 +204,7 @@ def assemble_shaft(shaft: Shaft, material: Material, mesh: SolidShaft) -> Assemb
 
 
 def _loads(T: Any, point: ReferencePoint) -> Floats:
-    """The six unit loads at a reference point on the freedoms that are left, (n, 6)."""
+    """The six unit loads at a reference point on the remaining degrees of freedom, (n, 6)."""
     return np.asarray(T.T @ point.motion.T.toarray())
 
 

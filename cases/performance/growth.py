@@ -12,9 +12,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
-from fe_drivetrain.cases.performance import (
-    choices,
-)
+from fe_drivetrain.cases.performance import choices
 from fe_drivetrain.common import run_python
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS

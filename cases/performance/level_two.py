@@ -31,6 +31,7 @@ STEEL = MATERIALS["steel"]
 
 #: Error of the 12 x 12 stiffness, scaled to 1 on its diagonal, and the time that is the goal [s].
 ERROR, GOAL = 1e-5, 0.030
+WITHIN_GOAL = f"within the goal of {1e3 * GOAL:g} ms"
 
 #: Largest element over largest diameter, order, layers at corners.
 SIZES, ORDERS, LAYERS = (0.25, 0.5), (4, 5, 6, 8), (2, 3, 4)
@@ -73,7 +74,7 @@ def run(run: Run, page: Page) -> None:
     """Measure every setting, and show the cheapest that is good enough."""
     page.seed = None
     tried: list[Record] = []
-    best = []
+    best: list[Record] = []
     for name, body in SHAFTS.items():
         reference, band = checked_reference(run, page, name, body)
         rows = settings(run, name, body, reference)
@@ -92,7 +93,7 @@ def run(run: Run, page: Page) -> None:
                 "error": cheapest["error"],
                 "own time [ms]": 1e3 * seconds,
                 "wall time [ms]": 1e3 * wall,
-                f"within the goal of {1e3 * GOAL:g} ms": "yes" if seconds <= GOAL else "no",
+                WITHIN_GOAL: "yes" if seconds <= GOAL else "no",
             }
         )
         page.data(name, {"seconds": seconds, "wall": wall, "error": cheapest["error"]})
@@ -123,7 +124,7 @@ def run(run: Run, page: Page) -> None:
     page.table(
         f"The quickest setting within {ERROR:g}",
         best,
-        list(max(best, key=len)),
+        ["shaft", "setting", "error", "own time [ms]", "wall time [ms]", WITHIN_GOAL],
     )
     page.text(
         "Rigid end faces; quadrilaterals, two along a fillet. Errors are against a mesh of higher "

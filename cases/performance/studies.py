@@ -12,9 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.beam import BeamSection, shaft
-from fe_drivetrain.cases.performance import (
-    tilt,
-)
+from fe_drivetrain.cases.performance import tilt
 from fe_drivetrain.cases.performance.choices import (
     CURVED,
     ELEMENTS,
@@ -31,15 +29,8 @@ from fe_drivetrain.cases.performance.choices import (
     shaft_outcomes,
     warm_up,
 )
-from fe_drivetrain.cases.performance.growth import (
-    MATERIAL,
-    STEPPED,
-    Grown,
-    grown,
-)
-from fe_drivetrain.cases.performance.precision import (
-    cheapest_within,
-)
+from fe_drivetrain.cases.performance.growth import MATERIAL, STEPPED, Grown, grown
+from fe_drivetrain.cases.performance.precision import cheapest_within
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import GridConvergence, grid_convergence, richardson
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
