@@ -30,13 +30,13 @@ class Benchmark:
 
     Attributes
     ----------
-    title, quantity, unit
+    title, quantity, unit : str
         For the page.
-    exact
+    exact : float or None
         The stiffness where it is known.
-    at
+    at : callable
         The problem at a mesh size, relative to `size`.
-    guess
+    guess : float
         Nodal displacements at relative size 1, about.
     """
 

@@ -21,17 +21,17 @@ class Row:
 
     Attributes
     ----------
-    variant
+    variant : Variant
         The tool and its solver.
-    unknowns
+    unknowns : int
         Of the mesh.
-    found
+    found : list of dict
         What each run measured, see `tools.runner.measure`.
-    trouble
+    trouble : str
         Why there is nothing, or no more, in words.
-    least_seconds
+    least_seconds : float or None
         The least that it takes, where it was ended or not begun [s].
-    error
+    error : float or None
         Of the stiffness, against the exact solution of the same equations; see `judge_errors`.
     """
 
@@ -79,11 +79,11 @@ class Plan:
 
     Attributes
     ----------
-    repetitions
+    repetitions : int
         Most runs of each row.
-    budget
+    budget : float
         Seconds of solving after which a row is run no more.
-    limits
+    limits : Limits
         Of each run.
     """
 
@@ -113,19 +113,19 @@ def run_rounds(
 
     Parameters
     ----------
-    variants
+    variants : sequence of tuple
         Tools and the interpreters that have them.
-    problem, warm_up
+    problem, warm_up : Path
         Files of the problem and of the small one.
-    unknowns
+    unknowns : int
         Of the problem.
-    plan
+    plan : Plan
         Repetitions and limits.
-    earlier
+    earlier : iterable of Row, optional
         Rows of smaller meshes: what is sure to go over a limit is not begun.
-    report
+    report : callable, optional
         Told of each run.
-    start
+    start : callable, optional
         Runs one; tests have another.
     """
     rows = {variant: Row(variant, unknowns) for variant, _ in variants}
@@ -167,7 +167,7 @@ def foreseen(row: Row, earlier: Sequence[Row], limits: Limits) -> tuple[str, flo
 
     Returns
     -------
-    trouble, least_seconds
+    trouble, least_seconds : tuple
         In words, or empty; and the least time that it takes [s].
     """
     mine = [r for r in earlier if r.variant == row.variant and r.unknowns < row.unknowns]
@@ -209,7 +209,7 @@ def judge_errors(rows: Sequence[Row]) -> dict[str, float]:
 
     Returns
     -------
-    references
+    references : dict of str to float
         By the rule.
     """
     references = {}

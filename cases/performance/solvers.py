@@ -47,11 +47,11 @@ class Problem:
 
     Attributes
     ----------
-    name
+    name : str
         For tables.
-    system
+    system : System
         What is solved.
-    loads
+    loads : ndarray
         (n, 12) twelve right-hand sides.
     """
 

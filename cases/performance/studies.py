@@ -93,17 +93,17 @@ class Study:
 
     Attributes
     ----------
-    title
+    title : str
         Of what the quantities are.
-    quantities
+    quantities : tuple of str
         Their names.
-    outcomes
+    outcomes : list of Outcome
         Of each choice.
-    reference, uncertainty
+    reference, uncertainty : ndarray
         (q,) each quantity, and half the width of its band.
-    limits
+    limits : dict of str to list
         Series of meshes by name, and what each tends to, a `GridConvergence` per quantity.
-    beam
+    beam : tuple or None
         Values (q,) and wall time of beam theory, where there is one.
     """
 
@@ -190,8 +190,10 @@ def meridian_stiffness(shaft: Shaft, material: Material, order: int, layers: int
 
     Returns
     -------
-    (3,) torsional [N m/rad], bending [N m/rad] as a pure moment over the tilt of the front face,
-    which is free to move sideways, and axial [N/m]; each from above, as of all such elements.
+    ndarray
+        (3,) torsional [N m/rad], bending [N m/rad] as a pure moment over the tilt of the front
+        face, which is free to move sideways, and axial [N/m]; each from above, as of all such
+        elements.
     """
     K = end_stiffness(shaft, material, order=order, layers=layers)[:6, :6]
     return np.array([K[3, 3], 1.0 / np.linalg.inv(K)[5, 5], K[0, 0]])
