@@ -7,23 +7,19 @@ steps, whose sections add up to the same k, is what finite elements are asked ab
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from fe_drivetrain.cases.verification.published_shafts import (
-    material_of,
-)
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import Constraint, averaged_point, fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh import Mesh, face_weights, generate
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS as SHEAR_MODULUS
+from fe_drivetrain.validation.implied_shafts import Uniform
+from fe_drivetrain.validation.implied_shafts import implied as implied
+from fe_drivetrain.validation.twisted_tubes import material_of
 
-SHEAR_MODULUS = 80e9
 MATERIAL = material_of(SHEAR_MODULUS)
-#: Section 4.1 of Al-Hamadani 2018.
-DAMPING_RATIO = 0.006
 
 #: Shares of the length, and diameters over each other: flange, body with the main bearing's seat,
 #: rear with the gearbox's. Chosen: the thesis has no drawing.
@@ -31,30 +27,6 @@ SHARES = (0.05, 0.45, 0.50)
 DIAMETERS = (0.70, 0.40, 0.30)
 FILLET = 0.04
 """Radius at the foot of both steps [m]."""
-
-
-class Uniform(NamedTuple):
-    """A solid shaft of one diameter.
-
-    Attributes
-    ----------
-    polar
-        J [m^4].
-    diameter, length
-        [m].
-    """
-
-    polar: float
-    diameter: float
-    length: float
-
-
-def implied(stiffness: float, damping: float) -> Uniform:
-    """What k [N m/rad] and C [N m s/rad] by Eq 4.5 and 4.4 say of the shaft."""
-    polar = (damping / (2 * DAMPING_RATIO)) ** 2 / stiffness
-    return Uniform(
-        polar, float((32 * polar / np.pi) ** 0.25), float(polar * SHEAR_MODULUS / stiffness)
-    )
 
 
 def uniform(found: Uniform) -> Shaft:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.report import Cell, Chart, Table, Verdict, chart, judge, trace
+from fe_drivetrain.report import Cell, Chart, Table, chart, trace
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.manufactured import Series, three_waves
 
@@ -136,25 +136,3 @@ def convergence_table(series: Sequence[Series], size: str) -> Table:
         columns=["element", "error in", size, "unknowns", "relative error", "order", "theory"],
         rows=rows,
     )
-
-
-def order_verdicts(run: Run, series: Sequence[Series], source: str) -> list[Verdict]:
-    """Each observed order against theory."""
-    tolerance, reason = _margin(run)
-    verdicts = []
-    for one in series:
-        for name, theory in one.orders.items():
-            order, change = one.order(name)
-            verdicts.append(
-                judge(
-                    f"{one.label}: order in {name}",
-                    order,
-                    theory,
-                    tolerance=tolerance / theory,
-                    source=source,
-                    reason=reason,
-                    measure="order",
-                    band=change,
-                )
-            )
-    return verdicts

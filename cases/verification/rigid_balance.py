@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from fe_drivetrain.report import Verdict, judge
 from fe_drivetrain.suite import Page
 
 
@@ -14,18 +13,4 @@ def check_balance(page: Page, imbalances: Sequence[float]) -> None:
         within=1e-7,
         why="iterations end at 1e-9 in the energy norm; round-off of slender solids is above",
         source="Clapeyron's theorem",
-    )
-
-
-def balance_verdict(imbalances: list[float]) -> Verdict:
-    """Whether the solver solved: Clapeyron's theorem on every mesh."""
-    return judge(
-        "work of the loads less twice the energy stored, relative, worst of all meshes",
-        max(imbalances),
-        0.0,
-        tolerance=1e-7,
-        relative=False,
-        source="Clapeyron's theorem",
-        reason="iterations end at 1e-9 in the energy norm; round-off of slender solids is above",
-        measure="identity",
     )

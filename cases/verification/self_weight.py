@@ -1,206 +1,193 @@
-"""Sag of an overhung shaft under its own weight, to the order that a beam can tell."""
+"""Sag of an overhung shaft under its own weight, to the order that a beam can predict."""
 
-from typing import Any
+import numpy as np
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.beam import Beam, BeamSection, Support, solve
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.report import trace
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.validation import solid_shafts
+from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, parabola_shortfall
 
+STEEL = MATERIALS["steel"]
+GRAVITY = -9.80665  # m/s^2
 OUTER = 0.4
 RATIO = 6.0
 #: Lengths over diameter of the chart.
 RATIOS = (1.5, 2.0, 3.0, 4.0)
+LENGTH = RATIO * OUTER
+TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
+Q = STEEL.density * TUBE.area * GRAVITY  # N/m
+ROTATION = -Q * LENGTH**3 / (6 * TUBE.EI)  # rad
+
+OVERHANG = "overhang over diameter"
+FOUND, EVEN = "solid", "beam, evenly held"
 
 
-def run(run: Run) -> Any:
+def sag(load: float, rigidity: float, shear: float, length: float) -> float:
+    """Of a cantilever's tip under a load per length, with shear [m]."""
+    return load * length**4 / (8 * rigidity) + load * length**2 / (2 * shear)
+
+
+def solid(refinement: int) -> Record:
+    """Sag, rotation and mass of one mesh."""
+    shaft = solid_shafts.straight((0.0, LENGTH), OUTER)
+    mesh = solid_shafts.solid(shaft, refinement, size=1.5 * OUTER)
+    C = solid_shafts.sectional_compliance(mesh, STEEL, (0.0, LENGTH))
+    return {
+        "per turn": mesh.per_turn,
+        "sag [m]": GRAVITY * float(C.weight[1, 0]),
+        "rotation [rad]": GRAVITY * float(C.weight[1, 1]),
+        "mass [kg]": float(C.weight_resultant[0]),
+    }
+
+
+def beyond_the_beam(ratio: float) -> Record:
+    """Sag beyond Timoshenko's beam with Cowper's coefficient [%], at another length."""
+    short = Tube(OUTER, 0.0, ratio * OUTER, STEEL)
+    mesh = solid_shafts.solid(solid_shafts.straight((0.0, short.length), OUTER), 2, size=OUTER)
+    C = solid_shafts.sectional_compliance(mesh, STEEL, (0.0, short.length))
+    # with the mesh's own mass and I, so that what is left is not the section's error
+    load = float(C.weight_resultant[0]) / short.length
+    rigidity = STEEL.youngs_modulus * solid_shafts.meshed_moment(mesh) / short.length / 2
+    cowper = sag(load, rigidity, short.kGA, short.length)
+    even = sag(load, rigidity, evenly_loaded_shear(short), short.length)
+    return {
+        OVERHANG: ratio,
+        FOUND: 100 * (float(C.weight[1, 0]) / cowper - 1),
+        EVEN: 100 * (even / cowper - 1),
+    }
+
+
+@case(
+    "Sag of an overhung shaft under its own weight",
+    source="Closed form q L^4 / 8EI + q L^2 / 2kGA (Cowper 1966; Hutchinson 2001)",
+)
+def run(run: Run, page: Page) -> None:
     """Gravity on the solid, its root held by its mean motion."""
-    import numpy as np
-
-    from fe_drivetrain.beam import Beam, BeamSection, Support, solve
-    from fe_drivetrain.cases.verification import shaft_inputs
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
-    from fe_drivetrain.validation import (
-        solid_shafts,
-    )
-    from fe_drivetrain.validation.shaft_theory import (
-        Tube,
-        evenly_loaded_shear,
-        parabola_shortfall,
-    )
-
-    steel = MATERIALS["steel"]
-    gravity = -9.80665
-    refinements = (1, 2) if run.quick else (1, 2, 3)
-    length = RATIO * OUTER
-    tube = Tube(OUTER, 0.0, length, steel)
-    q = steel.density * tube.area * gravity
-    closed = q * length**4 / (8 * tube.EI) + q * length**2 / (2 * tube.kGA)
-    even = q * length**4 / (8 * tube.EI) + q * length**2 / (2 * evenly_loaded_shear(tube))
-    beam = Beam([BeamSection(length, OUTER)], [Support("root", 0.0, [np.inf] * 6)], material=steel)
+    closed = sag(Q, TUBE.EI, TUBE.kGA, LENGTH)
+    even = sag(Q, TUBE.EI, evenly_loaded_shear(TUBE), LENGTH)
+    beam = Beam([BeamSection(LENGTH, OUTER)], [Support("root", 0.0, [np.inf] * 6)], material=STEEL)
     with run.step("frame"):
-        frame = solve(beam, length, np.zeros(6), length, (0.0, 0.0, gravity))
-    by_frame, frame_turn = float(frame.displacements[2]), float(frame.displacements[4])
-    by_mesh, turns, masses = [], [], []
-    for refinement in refinements:
-        with run.step("mesh and solve"):
-            mesh = solid_shafts.solid(
-                solid_shafts.straight((0.0, length), OUTER), refinement, size=1.5 * OUTER
-            )
-            C = solid_shafts.sectional_compliance(mesh, steel, (0.0, length))
-        by_mesh.append(gravity * float(C.weight[1, 0]))
-        turns.append(gravity * float(C.weight[1, 1]))
-        masses.append(float(C.weight_resultant[0]))
-    turn = mesh.per_turn
+        frame = solve(beam, LENGTH, np.zeros(6), LENGTH, (0.0, 0.0, GRAVITY))
+    refinements = (1, 2) if run.quick else (1, 2, 3)
+    with run.step("mesh and solve"):
+        meshes = [solid(refinement) for refinement in refinements]
+    with run.step("other lengths"):
+        sweep = [beyond_the_beam(ratio) for ratio in (RATIOS[:2] if run.quick else RATIOS)]
+    best = meshes[-1]
+    of_solid, turned = best["sag [m]"], best["rotation [rad]"]
+    of_frame, frame_turned = float(frame.displacements[2]), float(frame.displacements[4])
+    bands = {
+        name: solid_shafts.mesh_band(refinements, column(meshes, name))
+        for name in ("sag [m]", "rotation [rad]", "mass [kg]")
+    }
+    turn = best["per turn"]
     section = 2 * 2 * parabola_shortfall(turn)
-    bands = [solid_shafts.mesh_band(refinements, v) for v in (by_mesh, turns, masses)]
-    local = abs(q) * length * solid_shafts.local_compliance(tube)
+    local = abs(Q) * LENGTH * solid_shafts.local_compliance(TUBE)
     arcs = (
         f"{turn} parabolic arcs round a turn: weight over I is wrong by twice the radius's "
         "shortfall, twice that is allowed"
     )
-    verdicts = [
-        judge(
-            "sag of the tip, frame",
-            by_frame,
-            closed,
-            tolerance=1e-10,
-            unit="m",
-            source="q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966",
-            reason="the frame's sections are exact: round-off",
-            measure="deflection",
-        ),
-        judge(
-            "sag of the tip, solid",
-            by_mesh[-1],
-            even,
-            tolerance=section + local / abs(closed),
-            unit="m",
-            source="q L^4 / 8EI + q L^2 / 2k'GA, k' of evenly loaded sections (Hutchinson 2001)",
-            reason=f"{arcs}; and the root's reaction enters evenly, {solid_shafts.LOCAL:.0%} of "
-            "what one diameter shears",
-            measure="deflection",
-            band=bands[0],
-        ),
-        judge(
-            "rotation of the tip, solid",
-            turns[-1],
-            -q * length**3 / (6 * tube.EI),
-            tolerance=section,
-            unit="rad",
-            source="q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending",
-            reason=arcs,
-            measure="rotation",
-            band=bands[1],
-        ),
-        judge(
-            "rotation of the tip, frame",
-            frame_turn,
-            -q * length**3 / (6 * tube.EI),
-            tolerance=1e-10,
-            unit="rad",
-            source="q L^3 / 6EI",
-            reason="the frame's sections are exact: round-off",
-            measure="rotation",
-        ),
-        judge(
-            "mass",
-            masses[-1],
-            steel.density * tube.area * length,
-            tolerance=section,
-            unit="kg",
-            source="density times volume",
-            reason=f"{turn} parabolic arcs round a turn: twice the area's shortfall",
-            measure="mass",
-            band=bands[2],
-        ),
-    ]
-    rows: list[Any] = [["sag [m]", closed, even, by_frame, by_mesh[-1], bands[0]]]
-    rows.append(
-        ["rotation [rad]", *[-q * length**3 / (6 * tube.EI)] * 2, frame_turn, turns[-1], bands[1]]
+    exact = "the frame's sections are exact: round-off"
+    page.equals(
+        "sag of the tip, frame",
+        of_frame,
+        closed,
+        within=1e-10,
+        why=exact,
+        source="q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966",
+        unit="m",
+        measure="deflection",
     )
-    ratios = RATIOS[:2] if run.quick else RATIOS
-    differences, expected = [], []
-    for ratio in ratios:
-        with run.step("other lengths"):
-            short = Tube(OUTER, 0.0, ratio * OUTER, steel)
-            mesh = solid_shafts.solid(
-                solid_shafts.straight((0.0, short.length), OUTER), 2, size=OUTER
-            )
-            C = solid_shafts.sectional_compliance(mesh, steel, (0.0, short.length))
-        # with the mesh's own mass and I, so that what is left is not the section's error
-        load = float(C.weight_resultant[0]) / short.length
-        rigidity = steel.youngs_modulus * solid_shafts.meshed_moment(mesh) / short.length / 2
-        bend = load * short.length**4 / (8 * rigidity)
-        sag = bend + load * short.length**2 / (2 * short.kGA)
-        other = bend + load * short.length**2 / (2 * evenly_loaded_shear(short))
-        differences.append(100 * (float(C.weight[1, 0]) / sag - 1))
-        expected.append(100 * (other / sag - 1))
-    traces = [
-        trace("solid", ratios, differences, True, marker={"size": 9}),
-        trace("beam, evenly held", ratios, expected),
-    ]
-    return CASE.results(
-        run,
-        summary=[
-            f"An overhang of {RATIO:g} diameters sags {-1e3 * by_mesh[-1]:.4f} mm; by Timoshenko's "
-            f"beam {-1e3 * closed:.4f} mm with Cowper's shear coefficient "
-            f"({100 * (by_mesh[-1] / closed - 1):+.3f} %), {-1e3 * even:.4f} mm with that of an "
-            f"evenly held root ({100 * (by_mesh[-1] / even - 1):+.3f} %).",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Sag",
-                items=[
-                    shaft_inputs.inputs(
-                        ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-                        ("overhang", length, "m", "chosen"),
-                        ("gravity", gravity, "m/s^2", "standard"),
-                        ("density", steel.density, "kg/m^3", "steel, assumed"),
-                        *shaft_inputs.steel_rows(steel),
-                    ),
-                    chart(
-                        "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of "
-                        "the meshed section; the line is the beam with that of an evenly held root",
-                        traces,
-                        "overhang over diameter",
-                        "difference [%]",
-                    ),
-                    Table(
-                        caption="Tip",
-                        columns=[
-                            "quantity",
-                            "beam with shear",
-                            "beam, evenly held",
-                            "frame",
-                            "solid",
-                            "band of the solid",
-                        ],
-                        rows=rows,
-                    ),
-                    Text(
-                        text="A shaft that carries its own weight is also stressed across, since "
-                        "each slice hangs on its neighbours by shear that is not as even as the "
-                        "weight; Poisson's ratio turns that into curvature. An evenly held root "
-                        "turns the other way under its shear force, twice as much at the tip. "
-                        "Together they are as if the shear coefficient were not Cowper's, "
-                        "6 (1 + nu) / (7 + 6 nu), but 6 (1 + nu)^2 / (7 + 12 nu + 4 nu^2)."
-                    ),
-                ],
-            )
-        ],
-        figures={"over_cowper": by_mesh[-1] / closed - 1, "over_even": by_mesh[-1] / even - 1},
+    page.equals(
+        "sag of the tip, solid",
+        of_solid,
+        even,
+        within=section + local / abs(closed),
+        why=f"{arcs}; and the root's reaction enters evenly, {solid_shafts.LOCAL:.0%} of what one "
+        "diameter shears",
+        source="q L^4 / 8EI + q L^2 / 2k'GA, k' of evenly loaded sections (Hutchinson 2001, as "
+        "quoted by Stephen 2001; derived again)",
+        unit="m",
+        measure="deflection",
+        band=bands["sag [m]"],
     )
-
-
-CASE = Case(
-    name="verification/self_weight",
-    title="Sag of an overhung shaft under its own weight",
-    source="Closed form q L^4 / 8EI + q L^2 / 2kGA (Cowper 1966; Hutchinson 2001)",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+    page.equals(
+        "rotation of the tip, solid",
+        turned,
+        ROTATION,
+        within=section,
+        why=arcs,
+        source="q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending",
+        unit="rad",
+        measure="rotation",
+        band=bands["rotation [rad]"],
+    )
+    page.equals(
+        "rotation of the tip, frame",
+        frame_turned,
+        ROTATION,
+        within=1e-10,
+        why=exact,
+        source="q L^3 / 6EI",
+        unit="rad",
+        measure="rotation",
+    )
+    page.equals(
+        "mass",
+        best["mass [kg]"],
+        STEEL.density * TUBE.area * LENGTH,
+        within=section,
+        why=f"{turn} parabolic arcs round a turn: twice the area's shortfall",
+        source="density times volume",
+        unit="kg",
+        measure="mass",
+        band=bands["mass [kg]"],
+    )
+    over_cowper, over_even = of_solid / closed - 1, of_solid / even - 1
+    page.answer(
+        f"An overhang of {RATIO:g} diameters sags {-1e3 * of_solid:.4f} mm; by Timoshenko's beam "
+        f"{-1e3 * closed:.4f} mm with Cowper's shear coefficient ({100 * over_cowper:+.3f} %), "
+        f"{-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
+    )
+    page.section("Sag")
+    show_inputs(
+        page,
+        ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
+        ("overhang", LENGTH, "m", "chosen"),
+        ("gravity", GRAVITY, "m/s^2", "standard"),
+        ("density", STEEL.density, "kg/m^3", "steel, assumed"),
+        *steel_rows(STEEL),
+    )
+    ratios = column(sweep, OVERHANG)
+    page.chart(
+        "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
+        "section; the line is the beam with that of an evenly held root",
+        [
+            trace(FOUND, ratios, column(sweep, FOUND), True, marker={"size": 9}),
+            trace(EVEN, ratios, column(sweep, EVEN)),
+        ],
+        OVERHANG,
+        "difference [%]",
+    )
+    page.table(
+        "Tip",
+        [
+            ("sag [m]", closed, even, of_frame, of_solid, bands["sag [m]"]),
+            ("rotation [rad]", ROTATION, ROTATION, frame_turned, turned, bands["rotation [rad]"]),
+        ],
+        ["quantity", "beam with shear", EVEN, "frame", FOUND, "band of the solid"],
+    )
+    page.text(
+        "A shaft that carries its own weight is also stressed across, since each slice hangs on "
+        "its neighbours by shear that is not as even as the weight; Poisson's ratio turns that "
+        "into curvature. An evenly held root turns the other way under its shear force, twice as "
+        "much at the tip. Together they are as if the shear coefficient were not Cowper's, "
+        "6 (1 + nu) / (7 + 6 nu), but 6 (1 + nu)^2 / (7 + 12 nu + 4 nu^2)."
+    )
+    page.data("over_cowper", over_cowper)
+    page.data("over_even", over_even)
+    page.data("sag beyond Cowper's beam [%]", sweep)

@@ -1,230 +1,222 @@
 """A shaft on two simple supports: closed forms, the frame, and the solid."""
 
-from typing import Any
+import numpy as np
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
-
-OUTER, LENGTH = 0.4, 2.4
-
-
-def run(run: Run) -> Any:
-    """A force at mid span, a moment at an end, and the shaft's weight."""
-    import numpy as np
-
-    from fe_drivetrain.beam import Beam, BeamSection, Support, solve
-    from fe_drivetrain.cases.verification import shaft_inputs
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
-    from fe_drivetrain.validation import (
-        solid_shafts,
-    )
-    from fe_drivetrain.validation.shaft_theory import (
-        Spring,
-        Tube,
-        evenly_loaded_shear,
-        macaulay,
-        parabola_shortfall,
-    )
-
-    steel = MATERIALS["steel"]
-    tube = Tube(OUTER, 0.0, LENGTH, steel)
-    L, EI, kGA = LENGTH, tube.EI, tube.kGA
-    force, moment, gravity = 1e6, 1e6, -9.80665
-    weight = steel.density * tube.area * gravity
-    stations = [0.0, L / 4, L / 2, 3 * L / 4, L]
-    middle = 2
-
-    rigid = np.inf
-    beam = Beam(
-        [BeamSection(L, OUTER)],
-        [
-            Support("upwind", 0.0, (rigid, rigid, rigid, rigid, 0, 0)),
-            Support("downwind", L, (0, rigid, rigid, 0, 0, 0)),
-        ],
-        material=steel,
-    )
-    at_middle, at_end = np.zeros((2, 6)), np.zeros((2, 6))
-    at_middle[0, 2], at_end[1, 4] = force, moment
-    with run.step("frame"):
-        frames = {
-            "force at mid span": solve(beam, [L / 2, L], at_middle, stations),
-            "moment at the end": solve(beam, [L / 2, L], at_end, stations),
-            "own weight": solve(beam, [L / 2, L], np.zeros((2, 6)), stations, (0.0, 0.0, gravity)),
-        }
-    # of the deflection at mid span
-    closed = {
-        "force at mid span": force * (L**3 / (48 * EI) + L / (4 * kGA)),
-        "moment at the end": moment * L**2 / (16 * EI),
-        "own weight": weight * (5 * L**4 / (384 * EI) + L**2 / (8 * kGA)),
-    }
-    refinements = (1, 2) if run.quick else (1, 2, 3)
-    shaft = solid_shafts.straight(stations, OUTER)
-    stiffness = np.zeros((len(stations), 2))
-    stiffness[[0, -1], 0] = rigid
-    solids: dict[str, list[Any]] = {name: [] for name in closed}
-    for refinement in refinements:
-        with run.step("mesh and solve"):
-            mesh = solid_shafts.solid(shaft, refinement)
-            C = solid_shafts.sectional_compliance(mesh, steel, stations)
-        loads = np.zeros((len(stations), 2))
-        loads[middle, 0] = force
-        solids["force at mid span"].append(solid_shafts.on_springs(C, stiffness, loads))
-        loads = np.zeros((len(stations), 2))
-        loads[-1, 1] = moment
-        solids["moment at the end"].append(solid_shafts.on_springs(C, stiffness, loads))
-        solids["own weight"].append(
-            solid_shafts.on_springs(C, stiffness, np.zeros((len(stations), 2)), gravity)
-        )
-    turn = mesh.per_turn
-    section = 2 * 4 * parabola_shortfall(turn)
-    local = solid_shafts.local_compliance(tube)
-    # of the force and of its two reactions; a moment's reactions move both ends alike, and the
-    # weight's are half of it each
-    slack = {
-        "force at mid span": force * local * 1.5,
-        "moment at the end": moment / L * local,
-        "own weight": abs(weight) * L / 2 * local,
-    }
-    ends = [Spring(0.0, np.inf), Spring(L, np.inf)]
-    cases = {
-        "force at mid span": ([(L / 2, force, 0.0)], 0.0),
-        "moment at the end": ([(L, 0.0, -moment)], 0.0),
-        "own weight": ([], weight),
-    }
-    even = {
-        name: float(
-            macaulay(L, EI, evenly_loaded_shear(tube), ends, *_at(case, L / 2)).deflection[0]
-        )
-        for name, case in cases.items()
-    }
-    verdicts = []
-    rows: list[Any] = []
-    for name, value in closed.items():
-        frame = frames[name]
-        by_frame = float(frame.displacements[middle, 2])
-        by_mesh = [float(s.motions[middle, 0]) for s in solids[name]]
-        band = solid_shafts.mesh_band(refinements, by_mesh)
-        rows.append([name, value, by_frame, even[name], by_mesh[-1], band])
-        verdicts += [
-            judge(
-                f"{name}: deflection at mid span, frame",
-                by_frame,
-                value,
-                tolerance=1e-10,
-                unit="m",
-                source="closed form with shear",
-                reason="the frame's sections are exact: round-off",
-                measure="deflection",
-            ),
-            judge(
-                f"{name}: deflection at mid span, solid",
-                by_mesh[-1],
-                even[name],
-                tolerance=section + slack[name] / abs(value),
-                unit="m",
-                source="Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001)",
-                reason=f"{turn} parabolic arcs round a turn; and loads that enter evenly over a "
-                f"section, {solid_shafts.LOCAL:.0%} of what one diameter shears",
-                measure="deflection",
-                band=band,
-            ),
-            judge(
-                f"{name}: reaction of the downwind support, solid",
-                float(solids[name][-1].reactions[-1, 0]),
-                -float(frame.reaction("downwind")[2]),
-                tolerance=section if name == "own weight" else 1e-7,
-                unit="N",
-                source="Timoshenko frame of the library",
-                reason="statically determinate: the meshed section's weight"
-                if name == "own weight"
-                else "statically determinate: round-off of the solver",
-                measure="reaction",
-                band=section * abs(weight) * L / 2
-                if name == "own weight"
-                else 1e-7 * abs(float(frame.reaction("downwind")[2])),
-            ),
-        ]
-    fine = np.linspace(0.0, L, 81)
-    traces = []
-    for name, case in cases.items():
-        curve = macaulay(L, EI, kGA, ends, *_at(case, fine)).deflection
-        size = np.abs(curve).max()
-        traces += [
-            trace(f"{name}, beam", fine, curve / size),
-            trace(f"{name}, solid", stations, solids[name][-1].motions[:, 0] / size, True),
-        ]
-    return CASE.results(
-        run,
-        summary=[
-            "The frame meets the closed forms with shear to round-off. The solid, held and loaded "
-            "through the mean motions of its sections, differs from it by "
-            + ", ".join(f"{100 * (r[4] / r[2] - 1):+.3f} % ({r[0]})" for r in rows)
-            + f" at L = {L / OUTER:g} D.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Simple supports",
-                items=[
-                    shaft_inputs.inputs(
-                        ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-                        ("span", LENGTH, "m", "chosen"),
-                        ("force at mid span", force / 1e6, "MN", "chosen"),
-                        ("moment at the downwind end", moment / 1e6, "MN m", "chosen"),
-                        ("gravity", gravity, "m/s^2", "standard"),
-                        ("density", steel.density, "kg/m^3", "steel, assumed"),
-                        *shaft_inputs.steel_rows(steel),
-                    ),
-                    chart(
-                        "Deflection over its largest: Macaulay's beam with shear, and the means of "
-                        "the solid's sections",
-                        traces,
-                        "x [m]",
-                        "deflection over the largest",
-                    ),
-                    Table(
-                        caption="Deflection at mid span [m]",
-                        columns=[
-                            "load",
-                            "closed form",
-                            "frame",
-                            "beam, evenly loaded",
-                            "solid",
-                            "band of the solid",
-                        ],
-                        rows=rows,
-                    ),
-                    Text(
-                        text="The solid's sections keep their freedom to warp: supports and loads "
-                        "act on their mean displacement, evenly. The shear "
-                        "coefficient for that is not Cowper's, 6 (1 + nu) / (7 + 6 nu), but 6 (1 + "
-                        "nu)^2 / (7 + 12 nu + 4 nu^2): 4 % less shear deflection. A support on the "
-                        "skin, as of a bearing, "
-                        "adds the local yielding of the skin, which no beam has."
-                    ),
-                ],
-            )
-        ],
-        figures={r[0]: r[4] / r[2] - 1 for r in rows},
-    )
-
-
-def _at(case: Any, x: Any) -> Any:
-    """Arguments of `macaulay`: loads, stations, load per length."""
-    loads, per_length = case
-    return loads, x, per_length
-
-
-CASE = Case(
-    name="verification/simply_supported",
-    title="Shaft on two simple supports: closed forms, frame and solid",
-    source="Closed forms with shear: F L^3 / 48EI + F L / 4kGA, M L^2 / 16EI, "
-    "5 q L^4 / 384EI + q L^2 / 8kGA",
-    run=run,
+from fe_drivetrain.beam import Beam, BeamSection, BeamSolution, Support, solve
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.common import Floats
+from fe_drivetrain.report import trace
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation import solid_shafts
+from fe_drivetrain.validation.shaft_theory import (
+    Spring,
+    Tube,
+    evenly_loaded_shear,
+    macaulay,
+    parabola_shortfall,
 )
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
+STEEL = MATERIALS["steel"]
+OUTER, LENGTH = 0.4, 2.4
+TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
+FORCE, MOMENT, GRAVITY = 1e6, 1e6, -9.80665  # N, N m, m/s^2
+WEIGHT = STEEL.density * TUBE.area * GRAVITY  # N/m
+STATIONS = [0.0, LENGTH / 4, LENGTH / 2, 3 * LENGTH / 4, LENGTH]
+MIDDLE = 2
 
-    main_of_case(CASE)
+AT_MIDDLE, AT_END, OWN = "force at mid span", "moment at the end", "own weight"
+#: For `macaulay`: station, force and moment of the load, and load per length.
+LOADS: dict[str, tuple[list[tuple[float, float, float]], float]] = {
+    AT_MIDDLE: ([(LENGTH / 2, FORCE, 0.0)], 0.0),
+    AT_END: ([(LENGTH, 0.0, -MOMENT)], 0.0),
+    OWN: ([], WEIGHT),
+}
+
+FRAME, EVEN, SOLID = "frame", "beam, evenly loaded", "solid"
+
+
+def closed_forms() -> dict[str, float]:
+    """Deflection at mid span, with shear [m]."""
+    L, EI, kGA = LENGTH, TUBE.EI, TUBE.kGA
+    return {
+        AT_MIDDLE: FORCE * (L**3 / (48 * EI) + L / (4 * kGA)),
+        AT_END: MOMENT * L**2 / (16 * EI),
+        OWN: WEIGHT * (5 * L**4 / (384 * EI) + L**2 / (8 * kGA)),
+    }
+
+
+def macaulay_deflection(name: str, kGA: float, at: float | Floats) -> Floats:
+    """Deflection [m] of the beam by Macaulay's brackets."""
+    loads, per_length = LOADS[name]
+    ends = [Spring(0.0, np.inf), Spring(LENGTH, np.inf)]
+    return macaulay(LENGTH, TUBE.EI, kGA, ends, loads, at, per_length).deflection
+
+
+def by_frame() -> dict[str, BeamSolution]:
+    """The library's frame under each load."""
+    rigid, at = np.inf, [LENGTH / 2, LENGTH]
+    beam = Beam(
+        [BeamSection(LENGTH, OUTER)],
+        [
+            Support("upwind", 0.0, (rigid, rigid, rigid, rigid, 0, 0)),
+            Support("downwind", LENGTH, (0, rigid, rigid, 0, 0, 0)),
+        ],
+        material=STEEL,
+    )
+    force, moment, none = np.zeros((3, 2, 6))
+    force[0, 2], moment[1, 4] = FORCE, MOMENT
+    return {
+        AT_MIDDLE: solve(beam, at, force, STATIONS),
+        AT_END: solve(beam, at, moment, STATIONS),
+        OWN: solve(beam, at, none, STATIONS, (0.0, 0.0, GRAVITY)),
+    }
+
+
+def by_solid(refinement: int) -> tuple[int, dict[str, solid_shafts.Supported]]:
+    """Elements round a turn of a mesh, and the solid under each load."""
+    mesh = solid_shafts.solid(solid_shafts.straight(STATIONS, OUTER), refinement)
+    C = solid_shafts.sectional_compliance(mesh, STEEL, STATIONS)
+    stiffness, force, moment, none = np.zeros((4, len(STATIONS), 2))
+    stiffness[[0, -1], 0] = np.inf
+    force[MIDDLE, 0], moment[-1, 1] = FORCE, MOMENT
+    return mesh.per_turn, {
+        AT_MIDDLE: solid_shafts.on_springs(C, stiffness, force),
+        AT_END: solid_shafts.on_springs(C, stiffness, moment),
+        OWN: solid_shafts.on_springs(C, stiffness, none, GRAVITY),
+    }
+
+
+@case(
+    "Shaft on two simple supports: closed forms, frame and solid",
+    source="Closed forms with shear: F L^3 / 48EI + F L / 4kGA, M L^2 / 16EI, "
+    "5 q L^4 / 384EI + q L^2 / 8kGA",
+)
+def run(run: Run, page: Page) -> None:
+    """A force at mid span, a moment at an end, and the shaft's weight."""
+    frames = run.timed("frame", by_frame)
+    refinements = (1, 2) if run.quick else (1, 2, 3)
+    with run.step("mesh and solve"):
+        meshes = [by_solid(refinement) for refinement in refinements]
+    turn = meshes[-1][0]
+    rows = []
+    for name, closed in closed_forms().items():
+        series = [solids[name] for _, solids in meshes]
+        rows.append(check(page, name, closed, frames[name], series, refinements, turn))
+    differences = {row["load"]: row[SOLID] / row[FRAME] - 1 for row in rows}
+    page.answer(
+        "The frame meets the closed forms with shear to round-off. The solid, held and loaded "
+        "through the mean motions of its sections, differs from it by "
+        + ", ".join(f"{100 * d:+.3f} % ({name})" for name, d in differences.items())
+        + f" at L = {LENGTH / OUTER:g} D."
+    )
+    page.section("Simple supports")
+    show_inputs(
+        page,
+        ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
+        ("span", LENGTH, "m", "chosen"),
+        ("force at mid span", FORCE / 1e6, "MN", "chosen"),
+        ("moment at the downwind end", MOMENT / 1e6, "MN m", "chosen"),
+        ("gravity", GRAVITY, "m/s^2", "standard"),
+        ("density", STEEL.density, "kg/m^3", "steel, assumed"),
+        *steel_rows(STEEL),
+    )
+    fine = np.linspace(0.0, LENGTH, 81)
+    traces = []
+    for name in LOADS:
+        curve = macaulay_deflection(name, TUBE.kGA, fine)
+        size = np.abs(curve).max()
+        found = meshes[-1][1][name].motions[:, 0]
+        traces += [
+            trace(f"{name}, beam", fine, curve / size),
+            trace(f"{name}, solid", STATIONS, found / size, True),
+        ]
+    page.chart(
+        "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
+        "sections",
+        traces,
+        "x [m]",
+        "deflection over the largest",
+    )
+    page.table("Deflection at mid span [m]", rows)
+    page.text(
+        "The solid's sections keep their freedom to warp: supports and loads act on their mean "
+        "displacement, evenly. The shear coefficient for that is not Cowper's, "
+        "6 (1 + nu) / (7 + 6 nu), but 6 (1 + nu)^2 / (7 + 12 nu + 4 nu^2): 4 % less shear "
+        "deflection. A support on the skin, as of a bearing, adds the local yielding of the skin, "
+        "which no beam has."
+    )
+    for name, difference in differences.items():
+        page.data(name, difference)
+
+
+def check(
+    page: Page,
+    name: str,
+    closed: float,
+    frame: BeamSolution,
+    solids: list[solid_shafts.Supported],
+    refinements: tuple[int, ...],
+    turn: int,
+) -> Record:
+    """Deflection of frame and solid, and the reaction, under one load."""
+    section = 2 * 4 * parabola_shortfall(turn)
+    local = solid_shafts.local_compliance(TUBE)
+    # of the force and of its two reactions; a moment's reactions move both ends by the same
+    # amount, and the weight's are half of it each
+    slack = {
+        AT_MIDDLE: FORCE * local * 1.5,
+        AT_END: MOMENT / LENGTH * local,
+        OWN: abs(WEIGHT) * LENGTH / 2 * local,
+    }[name]
+    of_frame = float(frame.displacements[MIDDLE, 2])
+    even = float(macaulay_deflection(name, evenly_loaded_shear(TUBE), LENGTH / 2)[0])
+    by_mesh = [float(s.motions[MIDDLE, 0]) for s in solids]
+    band = solid_shafts.mesh_band(refinements, by_mesh)
+    page.equals(
+        f"{name}: deflection at mid span, frame",
+        of_frame,
+        closed,
+        within=1e-10,
+        why="the frame's sections are exact: round-off",
+        source="closed form with shear",
+        unit="m",
+        measure="deflection",
+    )
+    page.equals(
+        f"{name}: deflection at mid span, solid",
+        by_mesh[-1],
+        even,
+        within=section + slack / abs(closed),
+        why=f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
+        f"{solid_shafts.LOCAL:.0%} of what one diameter shears",
+        source="Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, "
+        "as quoted by Stephen 2001; derived again)",
+        unit="m",
+        measure="deflection",
+        band=band,
+    )
+    reactions = [float(s.reactions[-1, 0]) for s in solids]
+    of_mesh = name == OWN
+    page.equals(
+        f"{name}: reaction of the downwind support, solid",
+        reactions[-1],
+        -float(frame.reaction("downwind")[2]),
+        within=section if of_mesh else 1e-7,
+        why="statically determinate: "
+        + ("the meshed section's weight" if of_mesh else "round-off of the solver"),
+        source="Timoshenko frame of the library",
+        unit="N",
+        measure="reaction",
+        # the mesh enters the reaction by its weight only
+        band=solid_shafts.mesh_band(refinements, reactions) if of_mesh else None,
+    )
+    return {
+        "load": name,
+        "closed form": closed,
+        FRAME: of_frame,
+        EVEN: even,
+        SOLID: by_mesh[-1],
+        "band of the solid": band,
+    }

@@ -1,238 +1,182 @@
 """What a spherical joint of a main bearing carries: forces through its centre, and nothing else."""
 
-from typing import Any
+import numpy as np
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.beam import main_bearing_beam, pinned_model
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.mesh import Mesh
+from fe_drivetrain.report import trace
+from fe_drivetrain.response import (
+    LOADS,
+    Model,
+    Response,
+    build_model,
+    mesh_scene,
+    unit_load_response,
+)
+from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.suite import Page, Record, Run, column
 
-FORMS = ("sliding", "averaged", "rigid")
+#: Forms of the spherical joint, and a bonded bearing beside them, with their colours.
+COLOURS = {"sliding": "#0072b2", "averaged": "#009e73", "rigid": "#d55e00", "bonded": "#1f2933"}
 
 #: Coarsening of the library's mesh: forces are exact on any mesh.
 FACTOR, QUICK_FACTOR = 3.0, 4.0
 
-BENDING = ("hub.Fy", "hub.Fz", "hub.My", "hub.Mz")
+HUB = [LOADS.index(load) for load in LOADS if load.startswith("hub")]
+#: Gravity along x is no load of a drivetrain, and its lever arm is the mesh's asymmetry.
+JUDGED = [k for k, load in enumerate(LOADS) if load != "gravity.x"]
+
+MOMENT, DISTANCE = "largest moment [N m]", "largest distance [m]"
+#: Axis of the force through the joint, and load, of the table.
+SHARES = {
+    "Fy per Fy [N/N]": (1, "hub.Fy"),
+    "Fz per Fz [N/N]": (2, "hub.Fz"),
+    "Fz per My [N/N m]": (2, "hub.My"),
+}
 
 
-def run(run: Run) -> Any:
-    """Solve the three forms, and a bonded bearing beside them."""
-    import numpy as np
-
-    from fe_drivetrain.beam import main_bearing_beam, pinned_model
-    from fe_drivetrain.report import Chart, Section, Table, Text, judge, trace
-    from fe_drivetrain.response import LOADS, build_model, mesh_scene, unit_load_response
-    from fe_drivetrain.scene import change_scene, library_scene
-
-    factor = QUICK_FACTOR if run.quick else FACTOR
-    scenes, meshes, responses, models = {}, {}, {}, {}
-    for form in (*FORMS, "bonded"):
-        kind = "bonded" if form == "bonded" else "spherical"
-        scene = library_scene(f"main_bearing_{kind}")
-        sizes = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": 8})
-        scene = scene.model_copy(update={"mesh": sizes})
-        if kind not in meshes:
-            with run.step(f"mesh ({kind})"):
-                meshes[kind] = mesh_scene(scene)
-        if kind == "spherical":
-            scene = change_scene(scene, {"bearing_units.0.interface": form})
-        with run.step(f"ten unit loads ({form})"):
-            scenes[form] = scene
-            models[form] = build_model(scene, meshes[kind])
-            # a direct solver: nothing but round-off is to be seen
-            responses[form] = unit_load_response(models[form], "superlu")
-
-    unit = scenes["sliding"].bearing_units[0]
-    name = unit.bearing.name
-    radius = 0.5 * unit.bearing.raceway_diameter
-    exact = _statics(models["sliding"], main_bearing_beam(scenes["sliding"]), pinned_model)
-    hub = [LOADS.index(load) for load in LOADS if load.startswith("hub")]
-    verdicts = []
-    rows: list[list[Any]] = []
-    moments: dict[str, Any] = {}
-    for form, response in responses.items():
-        joint = response.reactions[f"{name}.outer"]
-        moments[form] = np.linalg.norm(joint[3:], axis=0)
-        if form == "bonded":
-            continue
-        size = np.linalg.norm(joint[:3], axis=0)
-        radial = [LOADS.index(load) for load in BENDING]
-        worst = float(moments[form][hub].max())
-        loaded = size > 1e-6
-        offset = float((moments[form][loaded] / size[loaded]).max())
-        verdicts += [
-            judge(
-                f"{form}: moment about the joint's centre, largest of six unit hub loads",
-                worst,
-                0.0,
-                tolerance=1e-9,
-                relative=False,
-                unit="N m",
-                source="a sphere without friction carries no moment",
-                reason="each form passes its forces on through the centre exactly: round-off of a "
-                "direct solver, of nodal forces of some 1 N",
-                measure="identity",
-                band=0.0,
-            ),
-            judge(
-                f"{form}: distance of the line of the force from the joint's centre, over the "
-                "joint's radius",
-                offset / radius,
-                0.0,
-                tolerance=1e-9,
-                relative=False,
-                source="a force that carries no moment about a point passes through it",
-                reason="as for the moment",
-                measure="identity",
-                band=0.0,
-            ),
-            judge(
-                f"{form}: radial reactions of unit hub loads, self-weight and gearbox weight "
-                "against statics",
-                float(_difference(response.reactions[name], exact)),
-                0.0,
-                tolerance=1e-9,
-                relative=False,
-                source="Stirling 2023, Eq 3.1, for hub loads and gearbox weight; moment balance "
-                "about the gearbox for self-weight",
-                reason="the shaft is determinate: round-off of a direct solver, relative to the "
-                "largest reaction to each load",
-                measure="identity",
-                band=0.0,
-            ),
-            judge(
-                f"{form}: joint and base of the housing carry the same force and moment, hub loads",
-                float(
-                    np.abs((response.reactions[name] - joint)[:, hub]).max()
-                    / np.abs(joint[:, hub]).max()
-                ),
-                0.0,
-                tolerance=1e-9,
-                relative=False,
-                source="equilibrium of the housing, on which no load acts in between",
-                reason="round-off of a direct solver",
-                measure="identity",
-                band=0.0,
-            ),
-        ]
-        rows.append(
-            [
-                form,
-                *(float(joint[c, k]) for c, k in ((1, radial[0]), (2, radial[1]), (2, radial[2]))),
-                worst,
-                offset,
-            ]
-        )
-    held = float(np.abs(responses["bonded"].reactions[f"{name}.outer"][4, LOADS.index("hub.My")]))
-    colours = {"sliding": "#0072b2", "averaged": "#009e73", "rigid": "#d55e00", "bonded": "#1f2933"}
-    figure = Chart(
-        caption="Moment that the interface carries about the joint's centre",
-        figure={
-            "data": [
-                trace(form, [], [], points=True, marker={"color": colour, "size": 9})
-                | {"x": list(LOADS), "y": [float(f"{max(m, 1e-18):.3g}") for m in moments[form]]}
-                for form, colour in colours.items()
-            ],
-            "layout": {
-                "xaxis": {"title": {"text": "unit load"}},
-                "yaxis": {
-                    "title": {"text": "moment [N m]"},
-                    "type": "log",
-                    "exponentformat": "power",
-                },
-            },
-        },
-    )
-    mesh = meshes["spherical"]
-    return CASE.results(
-        run,
-        summary=[
-            "All three forms of the spherical joint carry forces through the centre and nothing "
-            f"else: at most {max(row[-2] for row in rows):.1e} N m over the unit hub loads, where "
-            f"a bonded bearing takes {held:.2f} N m of 1 N m at the hub.",
-            "Reactions are those of statics (Eq 3.1) to round-off, and say nothing about the mesh.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="What the joint carries",
-                items=[
-                    figure,
-                    Table(
-                        caption="Force through the joint for unit hub loads, its moment, and the "
-                        "distance of its line from the centre",
-                        columns=[
-                            "form",
-                            "Fy per Fy [N/N]",
-                            "Fz per Fz [N/N]",
-                            "Fz per My [N/N m]",
-                            "largest moment [N m]",
-                            "largest distance [m]",
-                        ],
-                        rows=rows,
-                    ),
-                    Text(
-                        text="Sliding: each pair of nodes passes a force along its normal, and all "
-                        "normals meet in the centre. Averaged: one force, spread over each face "
-                        "with weights whose centroid is the centre. Rigid: two rigid spheres that "
-                        "share their centre's displacement. The chart shows no point below "
-                        "1e-18 N m."
-                    ),
-                    Text(
-                        text=f"Mesh: {len(mesh.cells):,} curved ten-node tetrahedra, "
-                        f"{len(mesh.points):,} nodes. Bonded, for comparison, on a mesh of its own."
-                    ),
-                ],
-            )
-        ],
-        figures={form: {"moments": m.tolist()} for form, m in moments.items()},
-    )
+def scene_of(form: str, factor: float) -> Scene:
+    """The library's main bearing with an interface of that form, on a coarse mesh."""
+    scene = library_scene(f"main_bearing_{'bonded' if form == 'bonded' else 'spherical'}")
+    sizes = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": 8})
+    scene = scene.model_copy(update={"mesh": sizes})
+    return scene if form == "bonded" else change_scene(scene, {"bearing_units.0.interface": form})
 
 
-def _statics(model: Any, beam: Any, pinned_model: Any) -> Any:
+def statics(model: Model) -> Floats:
     """(2, 10): Fy and Fz at the bearing by statics; gravity along x is left out.
 
     Self-weight by the moments of shaft and bearing about the gearbox, and the housing's own weight.
     """
-    import numpy as np
-
-    from fe_drivetrain.response import LOADS
-
     exact = np.zeros((6, len(LOADS)))
-    exact[:, :6] = pinned_model(np.eye(6), beam).T
-    points = model.mesh.points
-    gearbox, bearing = (
-        model.points[key].position[0]
-        for key in ("gearbox", f"{model.scene.bearing_units[0].bearing.name}.seat")
-    )
+    exact[:, :6] = pinned_model(np.eye(6), main_bearing_beam(model.scene)).T
     name = model.scene.bearing_units[0].bearing.name
+    gearbox, bearing = (model.points[key].position[0] for key in ("gearbox", f"{name}.seat"))
     turning = model.part_mass["shaft"] + model.part_mass[name]
-    lever = float(turning @ (gearbox - points[:, 0])) / (gearbox - bearing)
+    lever = float(turning @ (gearbox - model.mesh.points[:, 0])) / (gearbox - bearing)
     for axis in (1, 2):
         exact[axis, 6 + axis] = lever + model.part_mass[f"{name}.housing"].sum()
     # the gearbox's weight stands on its own springs
     return exact[1:3]
 
 
-def _difference(reaction: Any, exact: Any) -> float:
+def difference(reaction: Floats, exact: Floats) -> float:
     """Largest difference of Fy and Fz, relative to the largest of a load, or to 1 N."""
-    import numpy as np
-
-    from fe_drivetrain.response import LOADS
-
-    # gravity along x is no load of a drivetrain, and its lever arm is the mesh's asymmetry
-    loads = [k for k, load in enumerate(LOADS) if load != "gravity.x"]
-    difference = np.abs(reaction[1:3] - exact)[:, loads].max(axis=0)
-    return float((difference / np.maximum(1.0, np.abs(exact)[:, loads].max(axis=0))).max())
+    apart = np.abs(reaction[1:3] - exact)[:, JUDGED].max(axis=0)
+    return float((apart / np.maximum(1.0, np.abs(exact)[:, JUDGED].max(axis=0))).max())
 
 
-CASE = Case(
-    name="verification/spherical_joint_moment",
-    title="Spherical joint of a main bearing: no moment about its centre, reactions by statics",
+@case(
+    "Spherical joint of a main bearing: no moment about its centre, reactions by statics",
     source="Stirling 2023, PhD thesis, section 3.1 (Eq 3.1) and section 3.2 (DSRB: three forces, "
     "rotation free)",
-    run=run,
 )
+def run(run: Run, page: Page) -> None:
+    """Solve the three forms, and a bonded bearing beside them."""
+    meshes: dict[bool, Mesh] = {}
+    rows: list[Record] = []
+    moments: dict[str, Floats] = {}
+    for form in COLOURS:
+        bonded = form == "bonded"
+        scene = scene_of(form, QUICK_FACTOR if run.quick else FACTOR)
+        if bonded not in meshes:
+            with run.step(f"mesh ({'bonded' if bonded else 'spherical'})"):
+                meshes[bonded] = mesh_scene(scene)
+        with run.step(f"ten unit loads ({form})"):
+            model = build_model(scene, meshes[bonded])
+            # a direct solver: nothing but round-off is to be seen
+            response = unit_load_response(model, "superlu")
+        joint = response.reactions[f"{scene.bearing_units[0].bearing.name}.outer"]
+        moments[form] = np.linalg.norm(joint[3:], axis=0)
+        if bonded:
+            held = float(np.abs(joint[4, LOADS.index("hub.My")]))
+        else:
+            rows.append(check(page, form, model, response))
+    page.answer(
+        "All three forms of the spherical joint carry forces through the centre and nothing else: "
+        f"at most {max(column(rows, MOMENT)):.1e} N m over the unit hub loads, where a bonded "
+        f"bearing takes {held:.2f} N m of 1 N m at the hub.",
+        "Reactions are those of statics (Eq 3.1) to round-off, and say nothing about the mesh.",
+    )
+    page.section("What the joint carries")
+    page.chart(
+        "Moment that the interface carries about the joint's centre",
+        [
+            trace(form, [], np.maximum(of, 1e-18), True, marker={"color": COLOURS[form], "size": 9})
+            | {"x": list(LOADS)}
+            for form, of in moments.items()
+        ],
+        "unit load",
+        "moment [N m]",
+        "y",
+    )
+    page.table(
+        "Force through the joint for unit hub loads, its moment, and the distance of its line from "
+        "the centre",
+        rows,
+    )
+    page.text(
+        "Sliding: each pair of nodes passes a force along its normal, and all normals meet in the "
+        "centre. Averaged: one force, spread over each face with weights whose centroid is the "
+        "centre. Rigid: two rigid spheres that share their centre's displacement. The chart shows "
+        "no point below 1e-18 N m."
+    )
+    mesh = meshes[False]
+    page.text(
+        f"Mesh: {len(mesh.cells):,} curved ten-node tetrahedra, {len(mesh.points):,} nodes. "
+        "Bonded, for comparison, on a mesh of its own."
+    )
+    for form, of in moments.items():
+        page.data(form, {"moments": of})
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def check(page: Page, form: str, model: Model, response: Response) -> Record:
+    """Moments, lines of force and reactions of one form; its row of the table."""
+    bearing = model.scene.bearing_units[0].bearing
+    joint, base = (response.reactions[name] for name in (f"{bearing.name}.outer", bearing.name))
+    moment, size = np.linalg.norm(joint[3:], axis=0), np.linalg.norm(joint[:3], axis=0)
+    worst = float(moment[HUB].max())
+    loaded = size > 1e-6
+    distance = float((moment[loaded] / size[loaded]).max())
+    page.vanishes(
+        f"{form}: moment about the joint's centre, largest of six unit hub loads",
+        worst,
+        within=1e-9,
+        why="each form passes its forces on through the centre exactly: round-off of a direct "
+        "solver, of nodal forces of some 1 N",
+        source="a sphere without friction carries no moment",
+        unit="N m",
+        band=0.0,
+    )
+    page.vanishes(
+        f"{form}: distance of the line of the force from the joint's centre, over the joint's "
+        "radius",
+        distance / (0.5 * bearing.raceway_diameter),
+        within=1e-9,
+        why="as for the moment",
+        source="a force that carries no moment about a point passes through it",
+        band=0.0,
+    )
+    page.vanishes(
+        f"{form}: radial reactions of unit hub loads, self-weight and gearbox weight against "
+        "statics",
+        difference(base, statics(model)),
+        within=1e-9,
+        why="the shaft is determinate: round-off of a direct solver, relative to the largest "
+        "reaction to each load",
+        source="Stirling 2023, Eq 3.1, for hub loads and gearbox weight; moment balance about the "
+        "gearbox for self-weight",
+        band=0.0,
+    )
+    page.vanishes(
+        f"{form}: joint and base of the housing carry the same force and moment, hub loads",
+        float(np.abs((base - joint)[:, HUB]).max() / np.abs(joint[:, HUB]).max()),
+        within=1e-9,
+        why="round-off of a direct solver",
+        source="equilibrium of the housing, on which no load acts in between",
+        band=0.0,
+    )
+    shares = {name: float(joint[c, LOADS.index(load)]) for name, (c, load) in SHARES.items()}
+    return {"form": form, **shares, MOMENT: worst, DISTANCE: distance}

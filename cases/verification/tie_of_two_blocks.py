@@ -1,366 +1,268 @@
 """A square bar cut by a plane tie of meshes that do not match: twisted, bent and loaded across."""
 
-from typing import Any
+from dataclasses import dataclass
+from typing import Literal
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
 
-LENGTH = 3.0  # m, of a bar of section 1 m x 1 m, cut in its middle
-E, NU = 210e9, 0.3
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import GridConvergence, grid_convergence
+from fe_drivetrain.interfaces import eliminate, mortar_tie
+from fe_drivetrain.mesh import brick
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation import tied_bars, two_bodies
+from fe_drivetrain.validation.tied_bars import TIES, Stiffnesses, TieKind
 
 #: Divisions of the section's sides: of the slave, of the master.
 RATIOS = ((2, 4), (2, 3), (2, 2), (3, 2), (4, 2))
 QUICK_RATIOS = ((2, 3), (2, 2), (3, 2))
-TIES = ("dual", "standard", "node by node")
 UNCUT = (2, 3, 4)
 QUICK_UNCUT = (1, 2, 3)
+MORTAR: tuple[Literal["dual", "standard"], ...] = ("dual", "standard")
+
+TITLES = {"twist": "torsion", "bend": "pure bending", "across": "force across a clamped bar"}
+WORST = "worst of all ratios"
 
 
-def run(run: Run) -> Any:
-    """Stiffness of the tied bar beside that of the whole one."""
-    import numpy as np
+@dataclass(frozen=True)
+class Found:
+    """Stiffnesses of whole and tied bars.
 
-    from fe_drivetrain.compare import grid_convergence
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
+    Attributes
+    ----------
+    ratios
+        Divisions of slave and master.
+    tied
+        By kind of tie, one for each ratio.
+    entries
+        Of a row of the tie, mean; likewise.
+    whole
+        By divisions.
+    across
+        Convergence of the whole bar's stiffness across [N/m].
+    exact
+        References by quantity [N m/rad, N m/rad, N/m].
+    """
 
+    ratios: tuple[tuple[int, int], ...]
+    tied: dict[TieKind, list[Stiffnesses]]
+    entries: dict[TieKind, list[int]]
+    whole: dict[int, Stiffnesses]
+    across: GridConvergence
+    exact: dict[str, float]
+
+    @property
+    def labels(self) -> list[str]:
+        """Of the ratios."""
+        return [f"{own} on {other}" for own, other in self.ratios]
+
+    @property
+    def coarse(self) -> dict[str, float]:
+        """Relative errors of the whole bar of the coarser mesh."""
+        bar = self.whole[2]
+        return {q: abs(getattr(bar, q) / exact - 1.0) for q, exact in self.exact.items()}
+
+    def errors(self, kind: TieKind, quantity: str) -> Floats:
+        """Relative, by ratio."""
+        exact = self.exact[quantity]
+        return np.abs([getattr(k, quantity) / exact - 1.0 for k in self.tied[kind]])
+
+
+def solved(run: Run) -> Found:
+    """All bars."""
     ratios = QUICK_RATIOS if run.quick else RATIOS
+    meshes = QUICK_UNCUT if run.quick else UNCUT
     with run.step("uncut bar"):
-        meshes = QUICK_UNCUT if run.quick else UNCUT
-        uncut = {n: stiffnesses(bar(n)) for n in meshes}
-        across = grid_convergence(
-            [1.0 / n for n in meshes], [float(uncut[n]["across"]) for n in meshes]
-        )
+        whole = {n: tied_bars.stiffnesses(tied_bars.whole(n)) for n in meshes}
+        across = grid_convergence([1.0 / n for n in meshes], [k.across for k in whole.values()])
+    tied: dict[TieKind, list[Stiffnesses]] = {kind: [] for kind in TIES}
+    entries: dict[TieKind, list[int]] = {kind: [] for kind in TIES}
     with run.step("tied bars"):
-        tied: dict[str, list[dict[str, Any]]] = {
-            kind: [stiffnesses(*tied_bar(own, other, kind)) for own, other in ratios]
-            for kind in TIES
-        }
+        for kind in TIES:
+            for ratio in ratios:
+                bodies, tie = tied_bars.tied(*ratio, kind)
+                tied[kind].append(tied_bars.stiffnesses(bodies, tie))
+                entries[kind].append(int(tie.rows.nnz / tie.rows.shape[0]))
     exact = {
-        "twist": torsion_stiffness(),
-        "bend": E / 12.0 / LENGTH,
+        "twist": tied_bars.torsion_stiffness(),
+        "bend": tied_bars.bending_stiffness(),
         "across": across.extrapolated,
     }
-    titles = {"twist": "torsion", "bend": "pure bending", "across": "force across a clamped bar"}
-    coarse = {q: abs(uncut[2][q] / exact[q] - 1.0) for q in exact}
-
-    def errors(kind: str, quantity: str) -> Any:
-        return np.abs([found[quantity] / exact[quantity] - 1.0 for found in tied[kind]])
-
-    verdicts = []
-    for quantity, reason in (
-        (
-            "twist",
-            "twice the error of the whole bar of the coarser mesh: a tie of optimal order adds no "
-            "more than the elements' own error",
-        ),
-        (
-            "across",
-            "twice the error of the whole bar of the coarser mesh, and the band of the reference",
-        ),
-    ):
-        extra = across.extrapolated_uncertainty / exact[quantity] if quantity == "across" else 0.0
-        for kind in ("dual", "standard"):
-            worst = int(np.argmax(errors(kind, quantity)))
-            own, other = ratios[worst]
-            computed = float(tied[kind][worst][quantity])
-            verdicts.append(
-                judge(
-                    f"{titles[quantity]}: stiffness, {kind} multipliers, worst of all ratios "
-                    f"({own} on {other})",
-                    computed,
-                    float(exact[quantity]),
-                    tolerance=2.0 * coarse[quantity] + extra,
-                    unit="N/m" if quantity == "across" else "N m/rad",
-                    source="St Venant's series for the square bar (Timoshenko and Goodier art 109)"
-                    if quantity == "twist"
-                    else f"whole bar, {across.sentence('N/m')}",
-                    reason=reason,
-                    measure="stiffness",
-                    band=coarse[quantity] * exact[quantity],
-                )
-            )
-    verdicts.append(
-        judge(
-            "pure bending: stiffness, standard multipliers, worst of all ratios",
-            1.0 + float(errors("standard", "bend").max()),
-            1.0,
-            tolerance=1e-10,
-            source="E I / L; displacements are quadratic, tractions linear",
-            reason="elements and multipliers hold both exactly; round-off times the condition",
-            measure="identity",
-        )
-    )
-    verdicts.append(
-        judge(
-            "pure bending: stiffness, dual multipliers, worst of all ratios",
-            float(tied["dual"][int(np.argmax(errors("dual", "bend")))]["bend"]),
-            float(exact["bend"]),
-            tolerance=2.0 * coarse["twist"],
-            unit="N m/rad",
-            source="E I / L",
-            reason="twice the error of torsion of the coarser mesh: dual multipliers hold only "
-            "constant tractions; their error with linear ones is to stay below the elements'",
-            measure="stiffness",
-            band=float(errors("dual", "bend").max()) * exact["bend"],
-        )
-    )
-    for name, key in (("forces", "unbalanced force"), ("moments", "unbalanced moment")):
-        verdicts.append(
-            judge(
-                f"{name} on both sides of the tie, of the end's, worst of all",
-                max(found[key] for kind in ("dual", "standard") for found in tied[kind]),
-                0.0,
-                tolerance=1e-10,
-                relative=False,
-                source="equilibrium: the rows of the tie hold every rigid motion",
-                reason="round-off times the bar's condition",
-                measure="identity",
-            )
-        )
-
-    labels = [f"{own} on {other}" for own, other in ratios]
-    charts = []
-    for quantity, title in titles.items():
-        traces = []
-        for kind in TIES:
-            line = trace(kind, [], np.maximum(errors(kind, quantity), 1e-15))
-            traces.append(line | {"x": labels, "mode": "lines+markers"})
-        if coarse[quantity] > 1e-9:
-            line = trace("whole bar, 2 divisions", [], [coarse[quantity]] * len(labels))
-            traces.append(line | {"x": labels, "line": {"dash": "dot"}})
-        charts.append(
-            chart(
-                f"Error of the stiffness: {title}",
-                traces,
-                "divisions of the slave on those of the master",
-                "relative error",
-                logarithmic="y",
-            )
-        )
-    entries: list[list[Any]] = [[label] for label in labels]
-    for kind in TIES:
-        for row, found in zip(entries, tied[kind], strict=True):
-            row.append(int(found["row"]))
-    with run.step("fill"):
-        fill = fill_in(4 if run.quick else 8)
-    largest = max(
-        float(errors(kind, q).max()) for kind in ("dual", "standard") for q in ("twist", "across")
-    )
-    return CASE.results(
-        run,
-        summary=[
-            f"A bar cut in two and tied with meshes of ratios up to "
-            f"{max(max(r) / min(r) for r in ratios):g} to 1 is within {100 * largest:.2g} % of the "
-            "whole bar, whichever side is the slave; the coarser half alone accounts for "
-            f"{100 * max(coarse['twist'], coarse['across']):.2g} %.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Stiffness against mesh ratio",
-                items=[
-                    *charts,
-                    Text(
-                        text="In torsion ends turn rigidly in their plane and are free to warp, so "
-                        "St Venant's solution is exact in the whole bar. In pure bending the "
-                        "displacements are quadratic and the tractions on the tie linear: "
-                        "elements and standard multipliers hold both exactly, dual multipliers "
-                        "hold constant tractions only. The clamped bar, loaded across its end, "
-                        "has no closed form: the reference is the whole bar, extrapolated."
-                    ),
-                ],
-            ),
-            Section(
-                title="Standard and dual multipliers",
-                items=[
-                    Text(
-                        text="Standard multipliers are the more accurate ones, as pure bending "
-                        "shows. With them every node of the slave follows all nodes of the master: "
-                        "on large faces the stiffness fills up, and dual multipliers, which are "
-                        "local, are the better bargain."
-                    ),
-                    Table(
-                        caption="Faces that do not match, n on n - 1 divisions: entries of a row "
-                        "of the tie (mean), and of the stiffness that is factorised",
-                        columns=[
-                            "divisions",
-                            "slave nodes",
-                            "row, dual",
-                            "row, standard",
-                            "stiffness, dual",
-                            "stiffness, standard",
-                        ],
-                        rows=fill,
-                    ),
-                    Table(
-                        caption="Entries of a row of the tie in the bars above (mean)",
-                        columns=["slave on master", *TIES],
-                        rows=entries,
-                    ),
-                ],
-            ),
-        ],
-        figures={
-            "ratios": labels,
-            "errors": {q: {k: errors(k, q).tolist() for k in TIES} for q in exact},
-            "whole bar": {q: [float(uncut[n][q]) for n in meshes] for q in exact},
-        },
-    )
+    return Found(ratios, tied, entries, whole, across, exact)
 
 
-def lame() -> tuple[float, float]:
-    return E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), E / (2.0 * (1.0 + NU))
-
-
-def torsion_stiffness() -> float:
-    """G J / L of the square section, side 1 m: J = 1/3 - 64/pi^5 sum tanh(k pi/2) / k^5, k odd."""
-    import math
-
-    series = sum(math.tanh(0.5 * k * math.pi) / k**5 for k in range(1, 40, 2))
-    return E / (2.0 * (1.0 + NU)) * (1.0 / 3.0 - 64.0 / math.pi**5 * series) / LENGTH
-
-
-def part(n: int, start: float, stop: float) -> Any:
-    """The bar between two stations, its axis on x, n divisions across."""
-    from fe_drivetrain.mesh import brick
-
-    def shape(x: Any) -> Any:
-        return x * [stop - start, 1.0, 1.0] + [start, -0.5, -0.5]
-
-    return brick((max(round(n * (stop - start)), 1), n, n), 10, shape)
-
-
-def bar(n: int) -> Any:
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
-    return two_bodies.together(part(n, 0.0, LENGTH))
-
-
-def tied_bar(own: int, other: int, kind: Any) -> tuple[Any, Any]:
-    """Both halves, and the tie between them; the slave is the first."""
-    from fe_drivetrain.interfaces import mortar_tie, node_tie
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
-    # The slave's inner nodes are moved: the same number of divisions does not match either.
-    half = 0.5 * LENGTH
-    bodies = two_bodies.together(moved(part(own, 0.0, half)), part(other, half, LENGTH))
-    faces = bodies.faces[0]["x1"], bodies.faces[1]["x0"]
-    n = bodies.points.size
-    if kind == "node by node":
-        return bodies, node_tie("tie", bodies.points, *faces, n)
-    return bodies, mortar_tie("tie", bodies.points, *faces, n, kind)
-
-
-def moved(block: Any) -> Any:
-    """The half with the inner nodes of its section moved along y and z."""
-    from dataclasses import replace
-
-    from fe_drivetrain.mesh import straightened
-
-    points = block.points.copy()
-    points[:, 1:] += 0.2 * (0.25 - points[:, 1:] ** 2)
-    return replace(block, points=straightened(points, block.cells))
-
-
-def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
-    """Stiffness in torsion, pure bending and across; what is out of balance between the halves."""
-    import numpy as np
-
-    from fe_drivetrain.common import rigid_motions
-    from fe_drivetrain.interfaces import held_freedoms, held_nodes
-    from fe_drivetrain.operator import traction_loads
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
-    points, n = bodies.points, bodies.points.size
-    K = bodies.stiffness(lame())
-    ties = [] if tie is None else [tie]
-    front, rear = np.unique(bodies.faces[0]["x0"]), bodies.faces[-1]["x1"]
-    ends = np.concatenate([front, np.unique(rear)])
-    y, z = points[ends, 1], points[ends, 2]
-
-    # Ends turned by half a radian either way, free to warp.
-    across = (3 * ends[:, None] + [1, 2]).ravel()
-    turned = np.where(points[ends, 0] > 0.5 * LENGTH, 0.5, -0.5)
-    g = np.column_stack([-turned * z, turned * y]).ravel()
-    centre = front[np.argmin(np.abs(points[front, 1:]).sum(axis=1))]
-    supports = [
-        held_freedoms("ends", across, n),
-        held_nodes("axial", np.array([centre]), (0,), n),
-    ]
-    twisted = two_bodies.solve(K, [*ties, *supports], np.zeros((n, 1)), {"ends": g[:, None]})
-    twist = float(twisted.u[:, 0] @ (K @ twisted.u[:, 0]))
-
-    def bending(positions: Any, normals: Any) -> Any:
-        return positions[:, [2]] * normals
-
-    bend_load = traction_loads(points, bodies.faces[0]["x0"], bending, n)
-    bend_load = (bend_load + traction_loads(points, rear, bending, n))[:, None]
-    bent = two_bodies.solve(K, [*ties, two_bodies.isostatic(points, front, n)], bend_load)
-    moment = 1.0 / 12.0
-    bend = moment**2 / (bend_load[:, 0] @ bent.u[:, 0])
-
-    force = traction_loads(points, rear, np.array([0.0, 0.0, 1.0]), n)[:, None]
-    clamped = two_bodies.solve(K, [*ties, held_nodes("clamp", front, (0, 1, 2), n)], force)
-    found = {
-        "twist": twist,
-        "bend": float(bend),
-        "across": float(1.0 / (force.T @ clamped.u)[0, 0]),
-    }
-    if tie is not None:
-        unbalanced = []
-        for state, sizes in ((twisted, (1.0, twist)), (bent, (1.0, moment)), (clamped, (1.0, 1.5))):
-            resultant = np.abs(rigid_motions(points).T @ state.carried("tie"))[:, 0]
-            unbalanced.append((resultant[:3].max() / sizes[1], resultant[3:].max() / sizes[1]))
-        found["unbalanced force"] = float(max(force for force, _ in unbalanced))
-        found["unbalanced moment"] = float(max(moment for _, moment in unbalanced))
-        found["row"] = tie.rows.nnz / tie.rows.shape[0]
-    return found
-
-
-def fill_in(largest: int) -> list[list[Any]]:
-    """Rows of ties and entries of stiffnesses on ever finer faces."""
-    import numpy as np
-
-    from fe_drivetrain.interfaces import eliminate, mortar_tie
-    from fe_drivetrain.mesh import brick
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
-    rows = []
-    n = 4
-    while n <= largest:
-        bodies = two_bodies.together(
-            brick((1, n, n), 10), brick((1, n - 1, n - 1), 10, lambda x: x + np.eye(3)[0])
-        )
-        K = bodies.stiffness(lame())
-        faces = bodies.faces[0]["x1"], bodies.faces[1]["x0"]
-        lengths, entries = [], []
-        for kind in ("dual", "standard"):
-            tie = mortar_tie("tie", bodies.points, *faces, bodies.points.size, kind)
-            elimination = eliminate([tie], bodies.points.size)
-            T = elimination.T[:, elimination.free]
-            lengths.append(tie.rows.nnz / tie.rows.shape[0])
-            entries.append(int((T.T @ K @ T).nnz))
-        rows.append([n, tie.rows.shape[0] // 3, *lengths, *entries])
-        n *= 2
-    return rows
-
-
-CASE = Case(
-    name="verification/tie_of_two_blocks",
-    title="A bar cut in two and tied: stiffness against mesh ratio",
+@case(
+    "A bar cut in two and tied: stiffness against mesh ratio",
     source="St Venant's torsion and bending of a square bar; the whole bar",
-    run=run,
 )
+def run(run: Run, page: Page) -> None:
+    """Stiffness of the tied bar beside that of the whole one."""
+    found = solved(run)
+    for kind in MORTAR:
+        check_twist(page, found, kind)
+    for kind in MORTAR:
+        check_across(page, found, kind)
+    check_bending(page, found)
+    check_balance(page, found)
+    largest = max(
+        float(found.errors(kind, q).max()) for kind in MORTAR for q in ("twist", "across")
+    )
+    coarse = found.coarse
+    page.answer(
+        "A bar cut in two and tied with meshes of ratios up to "
+        f"{max(max(r) / min(r) for r in found.ratios):g} to 1 is within {100 * largest:.2g} % of "
+        "the whole bar, whichever side is the slave; the coarser half alone accounts for "
+        f"{100 * max(coarse['twist'], coarse['across']):.2g} %."
+    )
+    page.section("Stiffness against mesh ratio")
+    for quantity in TITLES:
+        add_chart(page, found, quantity)
+    page.text(
+        "In torsion ends turn rigidly in their plane and are free to warp, so St Venant's solution "
+        "is exact in the whole bar. In pure bending the displacements are quadratic and the "
+        "tractions on the tie linear: elements and standard multipliers hold both exactly, dual "
+        "multipliers hold constant tractions only. The clamped bar, loaded across its end, has no "
+        "closed form: the reference is the whole bar, extrapolated."
+    )
+    page.section("Standard and dual multipliers")
+    page.text(
+        "Standard multipliers are the more accurate ones, as pure bending shows. With them every "
+        "node of the slave follows all nodes of the master: on large faces the stiffness fills up, "
+        "and dual multipliers, which are local, are the better choice."
+    )
+    with run.step("fill"):
+        fill = [fill_in(n) for n in ((4,) if run.quick else (4, 8))]
+    page.table(
+        "Faces that do not match, n on n - 1 divisions: entries of a row of the tie (mean), and of "
+        "the stiffness that is factorised",
+        fill,
+    )
+    page.table(
+        "Entries of a row of the tie in the bars above (mean)",
+        list(zip(found.labels, *found.entries.values(), strict=True)),
+        ["slave on master", *TIES],
+    )
+    page.data("ratios", found.labels)
+    page.data("errors", {q: {kind: found.errors(kind, q) for kind in TIES} for q in TITLES})
+    whole = found.whole.values()
+    page.data("whole bar", {q: [getattr(bar, q) for bar in whole] for q in TITLES})
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def worst(found: Found, kind: TieKind, quantity: str) -> tuple[str, float]:
+    """Name of the ratio with the largest error, and the stiffness there."""
+    at = int(np.argmax(found.errors(kind, quantity)))
+    own, other = found.ratios[at]
+    return f"{WORST} ({own} on {other})", getattr(found.tied[kind][at], quantity)
+
+
+def check_twist(page: Page, found: Found, kind: TieKind) -> None:
+    """Torsion against St Venant."""
+    where, stiffness = worst(found, kind, "twist")
+    exact, coarse = found.exact["twist"], found.coarse["twist"]
+    page.equals(
+        f"{TITLES['twist']}: stiffness, {kind} multipliers, {where}",
+        stiffness,
+        exact,
+        within=2.0 * coarse,
+        why="twice the error of the whole bar of the coarser mesh: a tie of optimal order adds no "
+        "more than the elements' own error",
+        source="St Venant's series for the square bar (Timoshenko and Goodier art 109)",
+        unit="N m/rad",
+        measure="stiffness",
+        band=coarse * exact,
+    )
+
+
+def check_across(page: Page, found: Found, kind: TieKind) -> None:
+    """The clamped bar against the whole one."""
+    where, stiffness = worst(found, kind, "across")
+    exact, coarse = found.exact["across"], found.coarse["across"]
+    page.equals(
+        f"{TITLES['across']}: stiffness, {kind} multipliers, {where}",
+        stiffness,
+        exact,
+        within=2.0 * coarse + found.across.extrapolated_uncertainty / exact,
+        why="twice the error of the whole bar of the coarser mesh, and the band of the reference",
+        source=f"whole bar, {found.across.sentence('N/m')}",
+        unit="N/m",
+        measure="stiffness",
+        band=coarse * exact,
+    )
+
+
+def check_bending(page: Page, found: Found) -> None:
+    """Pure bending: exact with standard multipliers, close with dual ones."""
+    page.vanishes(
+        f"pure bending: relative error of the stiffness, standard multipliers, {WORST}",
+        float(found.errors("standard", "bend").max()),
+        within=1e-10,
+        why="elements and multipliers hold both exactly; round-off times the condition",
+        source="E I / L; displacements are quadratic, tractions linear",
+    )
+    page.equals(
+        f"pure bending: stiffness, dual multipliers, {WORST}",
+        worst(found, "dual", "bend")[1],
+        found.exact["bend"],
+        within=2.0 * found.coarse["twist"],
+        why="twice the error of torsion of the coarser mesh: dual multipliers hold only constant "
+        "tractions; their error with linear ones is to stay below the elements'",
+        source="E I / L",
+        unit="N m/rad",
+        measure="stiffness",
+    )
+
+
+def check_balance(page: Page, found: Found) -> None:
+    """The tie takes from one half what it gives to the other."""
+    bars = [bar for kind in MORTAR for bar in found.tied[kind]]
+    for name, largest in (
+        ("forces", max(bar.unbalanced_force for bar in bars)),
+        ("moments", max(bar.unbalanced_moment for bar in bars)),
+    ):
+        page.vanishes(
+            f"{name} on both sides of the tie, of the end's, worst of all",
+            largest,
+            within=1e-10,
+            why="round-off times the bar's condition",
+            source="equilibrium: the rows of the tie hold every rigid motion",
+        )
+
+
+def add_chart(page: Page, found: Found, quantity: str) -> None:
+    """Errors of one stiffness by ratio."""
+    labels, coarse = found.labels, found.coarse[quantity]
+    traces = [
+        trace(kind, [], np.maximum(found.errors(kind, quantity), 1e-15), mode="lines+markers")
+        | {"x": labels}
+        for kind in TIES
+    ]
+    if coarse > 1e-9:
+        line = trace("whole bar, 2 divisions", [], [coarse] * len(labels), line={"dash": "dot"})
+        traces.append(line | {"x": labels})
+    page.chart(
+        f"Error of the stiffness: {TITLES[quantity]}",
+        traces,
+        "divisions of the slave on those of the master",
+        "relative error",
+        "y",
+    )
+
+
+def fill_in(divisions: int) -> Record:
+    """Entries of a row of the tie, and of the stiffness, with either multipliers."""
+    n = divisions
+    bodies = two_bodies.together(
+        brick((1, n, n), 10), brick((1, n - 1, n - 1), 10, lambda x: x + np.eye(3)[0])
+    )
+    K = bodies.stiffness(tied_bars.MATERIAL.lame)
+    faces = bodies.faces[0]["x1"], bodies.faces[1]["x0"]
+    lengths, entries = {}, {}
+    for kind in MORTAR:
+        tie = mortar_tie("tie", bodies.points, *faces, bodies.points.size, kind)
+        elimination = eliminate([tie], bodies.points.size)
+        T = elimination.T[:, elimination.free]
+        lengths[f"row, {kind}"] = tie.rows.nnz / tie.rows.shape[0]
+        entries[f"stiffness, {kind}"] = int((T.T @ K @ T).nnz)
+    return {"divisions": n, "slave nodes": tie.rows.shape[0] // 3, **lengths, **entries}

@@ -1,13 +1,23 @@
 """Two rings, one in the other, meshed apart and tied on the cylinder between them."""
 
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
 
-RADII = 0.5, 1.0, 1.5  # m: bore, tied cylinder, outer surface
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats, rigid_motions
+from fe_drivetrain.compare import grid_convergence
+from fe_drivetrain.interfaces import Constraint, freedoms, held_freedoms, mortar_tie, settled
+from fe_drivetrain.mesh import Block
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.validation import tied_rings, two_bodies
+from fe_drivetrain.validation.tied_rings import BORE, LAME, OUTSIDE, TIED
+from fe_drivetrain.validation.two_bodies import Bodies
+
 WIDTH = 1.0  # m
-E, NU = 210e9, 0.3
 
 #: Elements round the turn: of the inner ring, of the outer.
 PAIRS = ((10, 8), (16, 13), (20, 16))
@@ -20,291 +30,42 @@ QUICK_SHARED = (8, 12, 16)
 PATCH = (8, 16, 32)
 QUICK_PATCH = (8, 16)
 
-
-def run(run: Run) -> Any:
-    """Torsion and radial stiffness of tied rings, and stress through the curved tie."""
-    import numpy as np
-
-    from fe_drivetrain.compare import grid_convergence
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-
-    pairs = QUICK_PAIRS if run.quick else PAIRS
-    ratios = QUICK_RATIOS if run.quick else RATIOS
-    shared_turns = QUICK_SHARED if run.quick else SHARED
-    exact = torsion_stiffness()
-    with run.step("shared nodes"):
-        shared = [stiffnesses(one_ring(turn)) for turn in shared_turns]
-    radial = grid_convergence(
-        [1.0 / turn for turn in shared_turns], [found["radial"] for found in shared]
-    )
-    with run.step("tied"):
-        tied = [stiffnesses(*tied_rings(own, other)) for own, other in (*pairs, *ratios)]
-    with run.step("stress through the tie"):
-        turns = QUICK_PATCH if run.quick else PATCH
-        patches = {
-            name: [traction_error(turn, *how) for turn in turns]
-            for name, how in (
-                ("standard, settled", ("standard", True)),
-                ("standard, as meshed", ("standard", False)),
-                ("dual, settled", ("dual", True)),
-            )
-        }
-        loose = rigid_energy(*as_meshed(*pairs[0]))
-    references = {"torsion": exact, "radial": radial.extrapolated}
-    doubt = {"torsion": 0.0, "radial": radial.extrapolated_uncertainty}
-    labels = [f"{own} on {other}" for own, other in (*pairs, *ratios)]
-
-    def errors(found: Any, quantity: str) -> Any:
-        return np.abs([each[quantity] / references[quantity] - 1.0 for each in found])
-
-    verdicts = []
-    # what the reference is in doubt by may be in them too
-    of_shared = {q: errors(shared, q) + doubt[q] / references[q] for q in references}
-    for quantity, unit, source in (
-        (
-            "torsion",
-            "N m/rad",
-            "closed form: shear stress falls with r^-2, ends stay free of stress",
-        ),
-        ("radial", "N/m", f"rings that share their nodes, {radial.sentence('N/m')}"),
-    ):
-        for label, found, (own, other) in zip(labels, tied, (*pairs, *ratios), strict=True):
-            # Error of the shared mesh as coarse as the coarser ring, by its order of convergence.
-            coarse = error_of(min(own, other), shared_turns, of_shared[quantity])
-            verdicts.append(
-                judge(
-                    f"{quantity} stiffness, {label} elements round",
-                    found[quantity],
-                    references[quantity],
-                    tolerance=2.0 * coarse,
-                    unit=unit,
-                    source=source,
-                    reason="twice the error of shared nodes on a mesh as coarse as the coarser "
-                    "ring: a tie of optimal order adds no more than the elements' own error"
-                    + (", and the band of the reference" if doubt[quantity] else ""),
-                    measure="stiffness",
-                    band=coarse * references[quantity],
-                )
-            )
-    verdicts.append(
-        judge(
-            "rigid motions: strain energy beside that of unit strain, worst of all",
-            max(found["rigid"] for found in tied),
-            0.0,
-            tolerance=1e-12,
-            relative=False,
-            source="a rigid motion strains nothing",
-            reason="settled nodes fulfil the tie by their positions, so only round-off is left",
-            measure="identity",
-        )
-    )
-    settled_errors = patches["standard, settled"]
-    order = float(np.log2(settled_errors[-2] / settled_errors[-1]))
-    verdicts.append(
-        judge(
-            "traction through the cylinder: order that its error lacks to two",
-            max(2.0 - order, 0.0),
-            0.0,
-            tolerance=0.1,
-            relative=False,
-            source="interpolation: normals of quadratic facets are of second order",
-            reason="the traction's error cannot be of lower order than that of the facets' "
-            "normals; a tenth for an order seen on few meshes",
-            measure="order",
-            band=0.1,
-        )
-    )
-    worst = max(float(errors(tied, q).max()) for q in references)
-    charts = []
-    for quantity, title in (("torsion", "torsion"), ("radial", "radial")):
-        lines = [
-            trace("shared nodes", shared_turns, of_shared[quantity], mode="lines+markers"),
-            trace(
-                "tied",
-                [min(pair) for pair in pairs],
-                errors(tied[: len(pairs)], quantity),
-                mode="lines+markers",
-            ),
-            trace(
-                "tied, " + " and ".join(labels[len(pairs) :]),
-                [min(pair) for pair in ratios],
-                errors(tied[len(pairs) :], quantity),
-                points=True,
-            ),
-        ]
-        charts.append(
-            chart(
-                f"Error of the {title} stiffness",
-                lines,
-                "elements round the turn, of the coarser ring",
-                "relative error",
-                logarithmic="xy",
-            )
-        )
-    charts.append(
-        chart(
-            "Error of a uniform stress passed through the tie, as nodal forces on the master",
-            [trace(name, turns, errors, mode="lines+markers") for name, errors in patches.items()],
-            "elements round the turn",
-            "relative error of the forces",
-            logarithmic="xy",
-        )
-    )
-    return CASE.results(
-        run,
-        summary=[
-            f"Rings tied on a cylinder are within {100 * worst:.2g} % of the closed form in "
-            "torsion and of rings that share their nodes in radial stiffness, and turn freely as "
-            f"one body. Uniform stress passes the curved tie with order {order:.1f}.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Stiffness",
-                items=[
-                    *charts[:2],
-                    Table(
-                        caption="Rings tied, and rings of shared nodes",
-                        columns=[
-                            "elements round, slave on master",
-                            "torsion [N m/rad]",
-                            "error",
-                            "radial [N/m]",
-                            "error",
-                        ],
-                        rows=[
-                            [
-                                label,
-                                found["torsion"],
-                                found["torsion"] / exact - 1.0,
-                                found["radial"],
-                                found["radial"] / references["radial"] - 1.0,
-                            ]
-                            for label, found in zip(
-                                [*labels, *(f"shared, {turn}" for turn in shared_turns)],
-                                [*tied, *shared],
-                                strict=True,
-                            )
-                        ],
-                    ),
-                    Text(
-                        text="The inner ring is the slave. In torsion the bore is held and the "
-                        "outer surface turned; radially the outer surface is moved across as a "
-                        "rigid body."
-                    ),
-                ],
-            ),
-            Section(
-                title="Curvature",
-                items=[
-                    charts[2],
-                    Text(
-                        text="Two meshes of one cylinder lie a little apart. Slave nodes are "
-                        "settled where the tie sees the master face, so that rigid motions pass "
-                        "exactly; with the nodes as meshed, turning the rings as one body about "
-                        f"an axis across costs {loose:.1e} of the energy of unit strain "
-                        f"({labels[0]} elements). Stress passes as well as facets meet the "
-                        "cylinder; with dual multipliers only what is constant in a facet does, "
-                        "and the rest is wrong from node to node, though right in the mean."
-                    ),
-                ],
-            ),
-        ],
-        figures={
-            "torsion": [found["torsion"] for found in tied],
-            "radial": [found["radial"] for found in tied],
-            "exact torsion": exact,
-            "traction errors": patches,
-            "elements round": list(turns),
-        },
-    )
+Multipliers = Literal["dual", "standard"]
+#: How stress is passed through the tie: multipliers, and whether nodes of the slave are settled.
+WAYS: dict[str, tuple[Multipliers, bool]] = {
+    "standard, settled": ("standard", True),
+    "standard, as meshed": ("standard", False),
+    "dual, settled": ("dual", True),
+}
+RINGS, COARSER, RIGID = "elements round, slave on master", "coarser", "energy of rigid motions"
+TORSION, RADIAL = "torsion [N m/rad]", "radial [N/m]"
+UNITS = {TORSION: "N m/rad", RADIAL: "N/m"}
+NAMES = {TORSION: "torsion", RADIAL: "radial"}
 
 
-def error_of(turn: int, turns: Any, errors: Any) -> float:
-    """Error of shared nodes with so many elements round, by a power law through those solved."""
-    import numpy as np
-
-    slope, offset = np.polyfit(np.log(turns), np.log(errors), 1)
-    return float(np.exp(offset + slope * np.log(turn)))
+def ring(inner: float, outer: float, turn: int, twist: float = 0.0, rings: int = 1) -> Block:
+    """A ring, or several with shared nodes, of curved tetrahedra about as wide as long."""
+    layers = max(round(turn / 8), 1)
+    return tied_rings.ring(inner, outer, turn, 10, twist, (rings * layers, layers), WIDTH)
 
 
-def lame() -> tuple[float, float]:
-    return E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), E / (2.0 * (1.0 + NU))
+def as_meshed(own: int, other: int, how: Multipliers = "standard") -> tuple[Bodies, Constraint]:
+    """The inner ring as the slave of the outer, and the tie."""
+    bodies = two_bodies.together(ring(BORE, TIED, own), ring(TIED, OUTSIDE, other, 0.3 / other))
+    faces = bodies.faces[0]["x1"], bodies.faces[1]["x0"]
+    return bodies, mortar_tie("tie", bodies.points, *faces, bodies.points.size, how)
 
 
-def torsion_stiffness() -> float:
-    """tau = T / (2 pi r^2 b) from bore to surface: T / theta = 4 pi G b / (1/r0^2 - 1/r2^2)."""
-    import math
-
-    G = E / (2.0 * (1.0 + NU))
-    return 4.0 * math.pi * G * WIDTH / (1.0 / RADII[0] ** 2 - 1.0 / RADII[2] ** 2)
-
-
-def ring(inner: float, outer: float, turn: int, across: int, twist: float = 0.0) -> Any:
-    """A closed ring of curved tetrahedra, its axis on x."""
-    import numpy as np
-
-    from fe_drivetrain.mesh import brick, joined
-
-    def shape(x: Any) -> Any:
-        r = inner + x[:, 0] * (outer - inner)
-        angle = 2.0 * np.pi * (x[:, 1] + twist)
-        return np.column_stack([WIDTH * x[:, 2], r * np.cos(angle), r * np.sin(angle)])
-
-    along = max(round(turn * WIDTH / 8.0), 1)
-    return joined(brick((across, turn, along), 10, shape))
-
-
-def layers(turn: int) -> int:
-    """Elements across one ring."""
-    return max(round(turn / 8), 1)
-
-
-def one_ring(turn: int) -> Any:
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
-    return two_bodies.together(ring(RADII[0], RADII[2], turn, 2 * layers(turn)))
-
-
-def tied_rings(own: int, other: int, multipliers: Any = "standard") -> tuple[Any, Any]:
-    """The inner ring as the slave of the outer, settled, and the tie."""
-    from dataclasses import replace
-
-    from fe_drivetrain.interfaces import settled
-
-    bodies, tie = as_meshed(own, other, multipliers)
+def tied(own: int, other: int, how: Multipliers = "standard") -> tuple[Bodies, Constraint]:
+    """The same with the nodes of the slave settled."""
+    bodies, tie = as_meshed(own, other, how)
     return replace(bodies, points=settled(bodies.points, tie)), tie
 
 
-def as_meshed(own: int, other: int, multipliers: Any = "standard") -> tuple[Any, Any]:
-    from fe_drivetrain.interfaces import mortar_tie
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
-    bodies = two_bodies.together(
-        ring(RADII[0], RADII[1], own, layers(own)),
-        ring(RADII[1], RADII[2], other, layers(other), 0.3 / other),
-    )
-    faces = bodies.faces[0]["x1"], bodies.faces[1]["x0"]
-    return bodies, mortar_tie("tie", bodies.points, *faces, bodies.points.size, multipliers)
-
-
-def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
-    """Stiffness in torsion and radially; energy of rigid motions beside that of unit strain."""
-    import numpy as np
-
-    from fe_drivetrain.common import rigid_motions
-    from fe_drivetrain.interfaces import freedoms, held_freedoms
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
+def stiffnesses(bodies: Bodies, ties: Sequence[Constraint] = ()) -> Record:
+    """In torsion the bore is held and the outer surface turned; radially it is moved across."""
     points, n = bodies.points, bodies.points.size
-    K = bodies.stiffness(lame())
-    ties = [] if tie is None else [tie]
+    K = bodies.stiffness(LAME)
     bore, outside = np.unique(bodies.faces[0]["x0"]), np.unique(bodies.faces[-1]["x1"])
     supports = [
         held_freedoms("bore", freedoms(bore).ravel(), n),
@@ -312,23 +73,16 @@ def stiffnesses(bodies: Any, tie: Any = None) -> dict[str, float]:
     ]
     moved = rigid_motions(points[outside])[:, [3, 1]]
     solved = two_bodies.solve(K, [*ties, *supports], np.zeros((n, 2)), {"outside": moved})
-    energy = np.einsum("nm,nm->m", solved.u, K @ solved.u)
-    found = {"torsion": float(energy[0]), "radial": float(energy[1])}
-    if tie is not None:
-        found["rigid"] = rigid_energy(bodies, tie)
-    return found
+    torsion, radial = np.einsum("nm,nm->m", solved.u, K @ solved.u).tolist()
+    return {TORSION: torsion, RADIAL: radial}
 
 
-def rigid_energy(bodies: Any, tie: Any) -> float:
+def rigid_energy(bodies: Bodies, tie: Constraint) -> float:
     """Largest energy of the six rigid motions, as the tie leaves them, beside that of unit strain.
 
     The rotations are by one radian, so both are of like size.
     """
-    import numpy as np
-
-    from fe_drivetrain.common import rigid_motions
-
-    K = bodies.stiffness(lame())
+    K = bodies.stiffness(LAME)
     motions = rigid_motions(bodies.points)
     motions[tie.pivots] -= tie.rows @ motions
     strained = (bodies.points * [1.0, 0.0, 0.0]).ravel()
@@ -336,18 +90,12 @@ def rigid_energy(bodies: Any, tie: Any) -> float:
     return float(np.abs(energies).max() / (strained @ (K @ strained)))
 
 
-def traction_error(turn: int, multipliers: Any, settle: bool) -> float:
+def traction_error(turn: int, how: Multipliers, settle: bool) -> float:
     """How far the slave's nodal forces of a uniform stress, passed on, are from the master's.
 
     The worst of all states of stress that load the cylinder: all but tension along its axis.
     """
-    import numpy as np
-
-    from fe_drivetrain.validation import (
-        two_bodies,
-    )
-
-    bodies, tie = (tied_rings if settle else as_meshed)(turn, round(0.8 * turn), multipliers)
+    bodies, tie = (tied if settle else as_meshed)(turn, round(0.8 * turn), how)
     error = 0.0
     for stress in two_bodies.unit_stresses()[1:]:
         on_slave = bodies.loads(stress, [(0, "x1")])
@@ -357,14 +105,193 @@ def traction_error(turn: int, multipliers: Any, settle: bool) -> float:
     return error
 
 
-CASE = Case(
-    name="verification/tie_on_cylinder",
-    title="Rings tied on a cylinder: torsion and radial stiffness",
+@dataclass(frozen=True)
+class Reference:
+    """What a stiffness of tied rings is compared with.
+
+    Attributes
+    ----------
+    value
+        In the unit of the stiffness.
+    doubt
+        Its uncertainty.
+    source
+        Where it comes from.
+    """
+
+    value: float
+    doubt: float
+    source: str
+
+    def errors(self, rows: Sequence[Record], quantity: str) -> Floats:
+        """Relative."""
+        return np.abs([row[quantity] / self.value - 1.0 for row in rows])
+
+    def of_shared(self, shared: Sequence[Record], quantity: str) -> Floats:
+        """Errors of shared nodes; the uncertainty of the reference may be in them too."""
+        return np.asarray(self.errors(shared, quantity) + self.doubt / self.value)
+
+
+@case(
+    "Rings tied on a cylinder: torsion and radial stiffness",
     source="closed form of the twisted ring; rings that share their nodes",
-    run=run,
 )
+def run(run: Run, page: Page) -> None:
+    """Torsion and radial stiffness of tied rings, and stress through the curved tie."""
+    pairs = QUICK_PAIRS if run.quick else PAIRS
+    ratios = QUICK_RATIOS if run.quick else RATIOS
+    turns = QUICK_PATCH if run.quick else PATCH
+    shared: list[Record] = []
+    with run.step("shared nodes"):
+        for turn in QUICK_SHARED if run.quick else SHARED:
+            one = two_bodies.together(ring(BORE, OUTSIDE, turn, rings=2))
+            shared.append({RINGS: f"shared, {turn}", COARSER: turn, **stiffnesses(one)})
+    rows: list[Record] = []
+    with run.step("tied"):
+        for own, other in (*pairs, *ratios):
+            bodies, tie = tied(own, other)
+            found = {**stiffnesses(bodies, [tie]), RIGID: rigid_energy(bodies, tie)}
+            rows.append({RINGS: f"{own} on {other}", COARSER: min(own, other), **found})
+    with run.step("stress through the tie"):
+        patches = {name: [traction_error(n, *how) for n in turns] for name, how in WAYS.items()}
+        loose = rigid_energy(*as_meshed(*pairs[0]))
+    references = references_of(shared)
+    for quantity, reference in references.items():
+        check_stiffness(page, quantity, reference, shared, rows)
+    page.vanishes(
+        "rigid motions: strain energy beside that of unit strain, worst of all",
+        max(column(rows, RIGID)),
+        within=1e-12,
+        why="settled nodes fulfil the tie by their positions, so only round-off is left",
+        source="a rigid motion strains nothing",
+    )
+    order = check_order(page, patches["standard, settled"])
+    worst = max(float(of.errors(rows, quantity).max()) for quantity, of in references.items())
+    page.answer(
+        f"Rings tied on a cylinder are within {100 * worst:.2g} % of the closed form in torsion "
+        "and of rings that share their nodes in radial stiffness, and turn freely as one body. "
+        f"Uniform stress passes the curved tie with order {order:.1f}."
+    )
+    page.section("Stiffness")
+    for quantity, reference in references.items():
+        add_chart(page, quantity, reference, shared, rows[: len(pairs)], rows[len(pairs) :])
+    page.table(
+        "Rings tied, and rings of shared nodes",
+        [
+            (
+                row[RINGS],
+                *(x for q, of in references.items() for x in (row[q], row[q] / of.value - 1.0)),
+            )
+            for row in (*rows, *shared)
+        ],
+        [RINGS, TORSION, "error", RADIAL, "error"],
+    )
+    page.text(
+        "The inner ring is the slave. In torsion the bore is held and the outer surface turned; "
+        "radially the outer surface is moved across as a rigid body."
+    )
+    page.section("Curvature")
+    page.chart(
+        "Error of a uniform stress passed through the tie, as nodal forces on the master",
+        [trace(name, turns, errors, mode="lines+markers") for name, errors in patches.items()],
+        "elements round the turn",
+        "relative error of the forces",
+        "xy",
+    )
+    page.text(
+        "Two meshes of one cylinder lie a little apart. Slave nodes are settled where the tie sees "
+        "the master face, so that rigid motions pass exactly; with the nodes as meshed, turning "
+        f"the rings as one body about an axis across costs {loose:.1e} of the energy of unit "
+        f"strain ({rows[0][RINGS]} elements). Stress passes as well as facets meet the cylinder; "
+        "with dual multipliers only what is constant in a facet does, and the rest is wrong from "
+        "node to node, though right in the mean."
+    )
+    page.data("tied", rows)
+    page.data("shared", shared)
+    page.data("exact torsion [N m/rad]", references[TORSION].value)
+    page.data("traction errors", patches)
+    page.data("elements round", turns)
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def references_of(shared: Sequence[Record]) -> dict[str, Reference]:
+    """The closed form in torsion, and shared nodes extrapolated radially."""
+    sizes = [1.0 / turn for turn in column(shared, COARSER)]
+    radial = grid_convergence(sizes, column(shared, RADIAL))
+    closed = "closed form: shear stress falls with r^-2, ends stay free of stress"
+    return {
+        TORSION: Reference(tied_rings.stiffness(WIDTH), 0.0, closed),
+        RADIAL: Reference(
+            radial.extrapolated,
+            radial.extrapolated_uncertainty,
+            f"rings that share their nodes, {radial.sentence('N/m')}",
+        ),
+    }
+
+
+def check_stiffness(
+    page: Page, quantity: str, reference: Reference, shared: list[Record], rows: list[Record]
+) -> None:
+    """Each tied pair against the reference."""
+    # error of the shared mesh as coarse as the coarser ring, by its order of convergence
+    errors = reference.of_shared(shared, quantity)
+    slope, offset = np.polyfit(np.log(column(shared, COARSER)), np.log(errors), 1)
+    for row in rows:
+        coarse = float(np.exp(offset + slope * np.log(row[COARSER])))
+        page.equals(
+            f"{NAMES[quantity]} stiffness, {row[RINGS]} elements round",
+            row[quantity],
+            reference.value,
+            within=2.0 * coarse,
+            why="twice the error of shared nodes on a mesh as coarse as the coarser ring: a tie of "
+            "optimal order adds no more than the elements' own error"
+            + (", and the band of the reference" if reference.doubt else ""),
+            source=reference.source,
+            unit=UNITS[quantity],
+            measure="stiffness",
+            band=coarse * reference.value,
+        )
+
+
+def check_order(page: Page, errors: Sequence[float]) -> float:
+    """Order of the error of a traction, on ever finer meshes; that of the finest two."""
+    orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    order = float(orders[-1])
+    page.at_least(
+        "traction through the cylinder: order of its error",
+        order,
+        1.9,
+        why="the traction's error cannot be of lower order than that of the facets' normals. On "
+        "16 and 32 elements round, the finest, the next term of the error, of the relative size "
+        "t^2, t being the half angle of an element, moves the order by "
+        "log2((1 + t^2) / (1 + t^2 / 4)) = 0.04 either way; rounded up to a tenth",
+        source="interpolation: normals of quadratic facets are of second order",
+        measure="order",
+        band=float(abs(orders[-1] - orders[-2])) if len(orders) > 1 else None,
+    )
+    return order
+
+
+def add_chart(
+    page: Page,
+    quantity: str,
+    reference: Reference,
+    shared: list[Record],
+    pairs: list[Record],
+    ratios: list[Record],
+) -> None:
+    """Errors of one stiffness by the coarser ring."""
+    far_apart = "tied, " + " and ".join(column(ratios, RINGS))
+    page.chart(
+        f"Error of the {NAMES[quantity]} stiffness",
+        [
+            trace(name, column(rows, COARSER), errors, mode=mode)
+            for name, rows, errors, mode in (
+                ("shared nodes", shared, reference.of_shared(shared, quantity), "lines+markers"),
+                ("tied", pairs, reference.errors(pairs, quantity), "lines+markers"),
+                (far_apart, ratios, reference.errors(ratios, quantity), "markers"),
+            )
+        ],
+        "elements round the turn, of the coarser ring",
+        "relative error",
+        "xy",
+    )

@@ -1,189 +1,167 @@
 """Torsion of a uniform shaft, solid and bored, against GJ / L."""
 
-from typing import Any
+import numpy as np
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
-
-#: Outer diameter, bores and length [m].
-OUTER, BORES, LENGTH = 0.4, (0.0, 0.28), 0.8
-REFINEMENTS = (2, 3, 4)
-QUICK_REFINEMENTS = (1, 2, 3)
-
-
-def run(run: Run) -> Any:
-    """Turn the ends by an exact rotation, on three meshes each."""
-    import numpy as np
-
-    from fe_drivetrain.cases.verification import shaft_inputs
-    from fe_drivetrain.compare import grid_convergence
-    from fe_drivetrain.operator import nodal_stresses
-    from fe_drivetrain.report import Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import MATERIALS
-    from fe_drivetrain.validation import (
-        solid_shafts,
-    )
-    from fe_drivetrain.validation.shaft_theory import (
-        Tube,
-        parabola_shortfall,
-        parabola_slope,
-        recovery_error,
-    )
-
-    steel = MATERIALS["steel"]
-    refinements = QUICK_REFINEMENTS if run.quick else REFINEMENTS
-    angle = 1e-3
-    verdicts, traces, errors = [], [], []
-    rows: list[Any] = []
-    for bore in BORES:
-        name = "bored" if bore else "solid"
-        tube = Tube(OUTER, bore, LENGTH, steel)
-        exact = tube.GJ / LENGTH
-        turns, found, stresses = [], [], []
-        for refinement in refinements:
-            with run.step(f"{name}: mesh and solve"):
-                shaft = solid_shafts.straight((0.0, LENGTH), OUTER, bore)
-                mesh = solid_shafts.solid(shaft, refinement, size=LENGTH)
-                solution, by_torque, by_energy = solid_shafts.twist(mesh, steel, angle)
-            meshed = steel.shear_modulus * solid_shafts.meshed_moment(mesh) / LENGTH**2
-            with run.step(f"{name}: stress"):
-                s = nodal_stresses(mesh.points, mesh.cells, solution.u[:, 0], steel.lame)
-            middle = mesh.section_nodes(LENGTH / 2)
-            r = np.hypot(mesh.points[middle, 1], mesh.points[middle, 2])
-            skin = middle[r > 0.5 * OUTER * (1 - 1e-9)]
-            stresses.append(float(np.hypot(s[skin, 3], s[skin, 5]).mean()))
-            turns.append(mesh.per_turn)
-            found.append(by_torque)
-            rows.append([name, mesh.per_turn, mesh.n_unknowns, by_torque, meshed, exact])
-        series = grid_convergence(1.0 / np.array(turns), found, expected_order=4.0)
-        error = np.abs(np.array(found) / exact - 1.0)
-        errors.append(error[-1])
-        turn = turns[-1]
-        shortfall = 4 * parabola_shortfall(turn)
-        verdicts += [
-            judge(
-                f"{name}: torsional stiffness",
-                found[-1],
-                exact,
-                tolerance=2 * shortfall,
-                unit="N m/rad",
-                source="closed form G J / L",
-                reason=f"{turn} parabolic arcs round a turn fall short of the circle: J is "
-                f"{shortfall:.2g} too low by their formula; twice that is allowed",
-                measure="stiffness",
-                band=series.uncertainty,
-            ),
-            judge(
-                f"{name}: torsional stiffness of the meshed section",
-                found[-1],
-                meshed,
-                tolerance=parabola_slope(turn) ** 2,
-                unit="N m/rad",
-                source="G / L^2 times the integral of y^2 + z^2 over the mesh",
-                reason="the exact displacement is one of the element's; the meshed surface leans "
-                f"against the circle by at most {parabola_slope(turn):.2g} rad, and what that "
-                "warps is of second order",
-                measure="stiffness",
-                band=abs(found[-1] - by_energy) + 1e-9 * meshed,
-            ),
-            judge(
-                f"{name}: torque over angle against twice the energy over its square",
-                by_torque / by_energy - 1.0,
-                0.0,
-                tolerance=1e-8,
-                relative=False,
-                source="exact: work done equals energy stored",
-                reason="round-off of the solver",
-                measure="identity",
-            ),
-            judge(
-                f"{name}: order of convergence of the stiffness",
-                float(np.log(error[-2] / error[-1]) / np.log(turns[-1] / turns[-2])),
-                4.0,
-                tolerance=0.2,
-                relative=False,
-                source="the shortfall of parabolic arcs is of fourth order",
-                reason="the next term of the shortfall's series is a few per cent of the first",
-                measure="order",
-            ),
-            judge(
-                f"{name}: shear stress on the surface at mid length, mean round the turn",
-                stresses[-1],
-                steel.shear_modulus * angle * OUTER / 2 / LENGTH,
-                tolerance=recovery_error(turn),
-                unit="Pa",
-                source="G theta R / L",
-                reason="stress is recovered linearly in each element: h^2 / 12 for the arc h of an "
-                "element, and as much for the radius",
-                measure="stress",
-                band=abs(stresses[-1] - stresses[-2]),
-            ),
-        ]
-        traces += [
-            trace(f"{name}, finite elements", turns, error, True, marker={"size": 9}),
-        ]
-    many = range(4, 33)
-    traces.append(
-        trace("shortfall of parabolic arcs", many, [4 * parabola_shortfall(n) for n in many])
-    )
-    return CASE.results(
-        run,
-        summary=[
-            f"G J / L is met to {max(errors):.1g} (relative) with {turns[-1]} elements of 27 nodes "
-            "round a turn, solid and bored; what is left is that they describe the circle by "
-            "parabolas, and follows the formula for that.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Torsional stiffness",
-                items=[
-                    shaft_inputs.inputs(
-                        ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-                        ("bore of the bored shaft", BORES[-1], "m", "chosen"),
-                        ("length", LENGTH, "m", "chosen: the answer does not depend on it"),
-                        *shaft_inputs.steel_rows(steel),
-                    ),
-                    chart(
-                        "Relative error of the stiffness; the line is no fit, but four times the "
-                        "mean shortfall of the radius of as many parabolic arcs",
-                        traces,
-                        "elements round a turn",
-                        "relative error",
-                        ("x", "y"),
-                    ),
-                    Table(
-                        caption="Stiffness between ends that turn as rigid planes",
-                        columns=[
-                            "shaft",
-                            "elements round a turn",
-                            "unknowns",
-                            "finite elements [N m/rad]",
-                            "G J / L of the mesh [N m/rad]",
-                            "G J / L [N m/rad]",
-                        ],
-                        rows=rows,
-                    ),
-                    Text(
-                        text="A rotation that grows along the axis is a product of x with y and z. "
-                        "Elements that are drawn out along x hold it exactly, however curved their "
-                        "section, so the only error left is the section's."
-                    ),
-                ],
-            )
-        ],
-        figures={"relative_error": max(errors)},
-    )
-
-
-CASE = Case(
-    name="verification/torsion_uniform",
-    title="Torsion of a uniform shaft, solid and bored",
-    source="Closed form G J / L (Saint-Venant; Timoshenko and Goodier, Theory of Elasticity)",
-    run=run,
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.compare import grid_convergence
+from fe_drivetrain.operator import nodal_stresses
+from fe_drivetrain.report import trace
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.validation import solid_shafts
+from fe_drivetrain.validation.shaft_theory import (
+    Tube,
+    parabola_shortfall,
+    parabola_slope,
+    recovery_error,
 )
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
+STEEL = MATERIALS["steel"]
+OUTER, BORES, LENGTH = 0.4, (0.0, 0.28), 0.8  # m
+ANGLE = 1e-3  # rad, between the ends
 
-    main_of_case(CASE)
+SHAFT, TURN = "shaft", "elements round a turn"
+STIFFNESS, MESHED = "finite elements [N m/rad]", "G J / L of the mesh [N m/rad]"
+EXACT = "G J / L [N m/rad]"
+SHOWN = (SHAFT, TURN, "unknowns", STIFFNESS, MESHED, EXACT)
+
+
+def twisted(run: Run, tube: Tube, refinement: int) -> Record:
+    """The ends turned by an exact rotation, on one mesh."""
+    name = "bored" if tube.inner else "solid"
+    with run.step(f"{name}: mesh and solve"):
+        shaft = solid_shafts.straight((0.0, LENGTH), OUTER, tube.inner)
+        mesh = solid_shafts.solid(shaft, refinement, size=LENGTH)
+        solution, by_torque, by_energy = solid_shafts.twist(mesh, STEEL, ANGLE)
+    with run.step(f"{name}: stress"):
+        s = nodal_stresses(mesh.points, mesh.cells, solution.u[:, 0], STEEL.lame)
+    middle = mesh.section_nodes(LENGTH / 2)
+    r = np.hypot(mesh.points[middle, 1], mesh.points[middle, 2])
+    skin = middle[r > 0.5 * OUTER * (1 - 1e-9)]
+    exact = tube.GJ / LENGTH
+    return {
+        SHAFT: name,
+        TURN: mesh.per_turn,
+        "unknowns": mesh.n_unknowns,
+        STIFFNESS: by_torque,
+        MESHED: STEEL.shear_modulus * solid_shafts.meshed_moment(mesh) / LENGTH**2,
+        EXACT: exact,
+        "error": float(abs(by_torque / exact - 1.0)),
+        "by energy [N m/rad]": by_energy,
+        "shear stress on the surface [Pa]": float(np.hypot(s[skin, 3], s[skin, 5]).mean()),
+    }
+
+
+@case(
+    "Torsion of a uniform shaft, solid and bored",
+    source="Closed form G J / L (Saint-Venant; Timoshenko and Goodier, Theory of Elasticity)",
+)
+def run(run: Run, page: Page) -> None:
+    """Turn the ends by an exact rotation, on three meshes each."""
+    rows: list[Record] = []
+    for bore in BORES:
+        tube = Tube(OUTER, bore, LENGTH, STEEL)
+        series = [twisted(run, tube, r) for r in ((1, 2, 3) if run.quick else (2, 3, 4))]
+        check(page, series)
+        rows += series
+    by_shaft = grouped(rows, SHAFT)
+    error = max(series[-1]["error"] for _, series in by_shaft)
+    page.answer(
+        f"G J / L is met to {error:.1g} (relative) with {rows[-1][TURN]} elements of 27 nodes "
+        "round a turn, solid and bored; what is left is that they describe the circle by "
+        "parabolas, and follows the formula for that."
+    )
+    page.section("Torsional stiffness")
+    show_inputs(
+        page,
+        ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
+        ("bore of the bored shaft", BORES[-1], "m", "chosen"),
+        ("length", LENGTH, "m", "chosen: the answer does not depend on it"),
+        *steel_rows(STEEL),
+    )
+    many = range(4, 33)
+    points = [
+        trace(f"{name}, finite elements", column(s, TURN), column(s, "error"), True)
+        | {"marker": {"size": 9}}
+        for name, s in by_shaft
+    ]
+    formula = [4 * parabola_shortfall(n) for n in many]
+    page.chart(
+        "Relative error of the stiffness; the line is no fit, but four times the mean shortfall "
+        "of the radius of as many parabolic arcs",
+        [*points, trace("shortfall of parabolic arcs", many, formula)],
+        TURN,
+        "relative error",
+        ("x", "y"),
+    )
+    page.table("Stiffness between ends that turn as rigid planes", rows, SHOWN)
+    page.text(
+        "A rotation that grows along the axis is a product of x with y and z. Elements that are "
+        "drawn out along x hold it exactly, however curved their section, so the only error left "
+        "is the section's."
+    )
+    page.data("relative_error", error)
+
+
+def check(page: Page, series: list[Record]) -> None:
+    """Stiffness, energy, order and stress of one shaft."""
+    before, best = series[-2:]
+    name, turn = best[SHAFT], best[TURN]
+    shortfall = 4 * parabola_shortfall(turn)
+    sizes = 1.0 / np.array(column(series, TURN))
+    page.equals(
+        f"{name}: torsional stiffness",
+        best[STIFFNESS],
+        best[EXACT],
+        within=2 * shortfall,
+        why=f"{turn} parabolic arcs round a turn fall short of the circle: J is {shortfall:.2g} "
+        "too low by their formula; twice that is allowed",
+        source="closed form G J / L",
+        unit="N m/rad",
+        measure="stiffness",
+        band=grid_convergence(sizes, column(series, STIFFNESS), expected_order=4.0).uncertainty,
+    )
+    by_torque, by_energy = best[STIFFNESS], best["by energy [N m/rad]"]
+    page.equals(
+        f"{name}: torsional stiffness of the meshed section",
+        by_torque,
+        best[MESHED],
+        within=parabola_slope(turn) ** 2,
+        why="the exact displacement is one of the element's; the meshed surface leans against the "
+        f"circle by at most {parabola_slope(turn):.2g} rad, and what that warps is of second order",
+        source="G / L^2 times the integral of y^2 + z^2 over the mesh",
+        unit="N m/rad",
+        measure="stiffness",
+        band=abs(by_torque - by_energy) + 1e-9 * best[MESHED],
+    )
+    page.vanishes(
+        f"{name}: torque over angle against twice the energy over its square",
+        by_torque / by_energy - 1.0,
+        within=1e-8,
+        why="round-off of the solver",
+        source="exact: work done equals energy stored",
+    )
+    page.equals(
+        f"{name}: order of convergence of the stiffness",
+        float(np.log(before["error"] / best["error"]) / np.log(turn / before[TURN])),
+        4.0,
+        within=0.2,
+        relative=False,
+        why="the next term of the shortfall's series is a few per cent of the first",
+        source="the shortfall of parabolic arcs is of fourth order",
+        measure="order",
+    )
+    stress, coarser = (row["shear stress on the surface [Pa]"] for row in (best, before))
+    page.equals(
+        f"{name}: shear stress on the surface at mid length, mean round the turn",
+        stress,
+        STEEL.shear_modulus * ANGLE * OUTER / 2 / LENGTH,
+        within=recovery_error(turn),
+        why="stress is recovered linearly in each element: h^2 / 12 for the arc h of an element, "
+        "and as much for the radius",
+        source="G theta R / L",
+        unit="Pa",
+        measure="stress",
+        band=abs(stress - coarser),
+    )

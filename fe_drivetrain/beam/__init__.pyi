@@ -11,6 +11,7 @@ from .sections import BeamSection as BeamSection
 from .sections import cowper_shear_coefficient as cowper_shear_coefficient
 from .sections import element_integrals as element_integrals
 from .shaft import Beam as Beam
+from .shaft import BeamSolution as BeamSolution
 from .shaft import Support as Support
 from .shaft import UnitLoadResponse as UnitLoadResponse
 from .shaft import shaft_stiffness as shaft_stiffness

@@ -9,6 +9,7 @@ from . import faulty_meshes as faulty_meshes
 from . import fillet_factors as fillet_factors
 from . import folded_meshes as folded_meshes
 from . import housing_nodes as housing_nodes
+from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
 from . import layers as layers
 from . import locking_bars as locking_bars
@@ -30,8 +31,11 @@ from . import soft_springs as soft_springs
 from . import solid_fillet as solid_fillet
 from . import solid_shafts as solid_shafts
 from . import spherical_shells as spherical_shells
+from . import squeezed_rings as squeezed_rings
+from . import tied_bars as tied_bars
 from . import tied_rings as tied_rings
 from . import tied_strips as tied_strips
 from . import torsion_meridian as torsion_meridian
 from . import turned_frames as turned_frames
+from . import twisted_tubes as twisted_tubes
 from . import two_bodies as two_bodies

@@ -7,13 +7,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTet
 
 from fe_drivetrain.geometry import LocalSizes, MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
-from fe_drivetrain.mesh import Mesh, generate
+from fe_drivetrain.mesh import Mesh, element_kind, generate, jacobian, shape_functions
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import ErrorEstimate, recovery_estimate, solve_solid
+from fe_drivetrain.validation.shaft_theory import polar_moment
 
 MATERIAL = MATERIALS["steel"]
 
@@ -103,3 +106,22 @@ def exact(shaft: Shaft, size: float, layers: int) -> dict[str, float]:
     K = end_stiffness(shaft, MATERIAL, size, layers=layers)
     compliance = np.linalg.inv(K[:6, :6])
     return {load: float(1.0 / compliance[row, row]) for load, row in LOADS.items()}
+
+
+def polar_moment_error(mesh: Mesh, shaft: Shaft) -> float:
+    """Error of a mesh's shape: of the integral of y^2 + z^2 over it, relative.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Of ten-node tetrahedra.
+    shaft : Shaft
+        What it is a mesh of, of cylinders.
+    """
+    at, weights = get_quadrature(RefTet, 7)
+    values, gradients = shape_functions(element_kind(10).element, at)
+    volumes = np.abs(jacobian(mesh.points, mesh.cells, gradients)[1]) * weights
+    positions = np.einsum("qn,eni->eqi", values, mesh.points[mesh.cells])
+    found = float((volumes * (positions[..., 1] ** 2 + positions[..., 2] ** 2)).sum())
+    exact = sum(polar_moment(p.outer_diameter, p.inner_diameter) * p.length for p in shaft.pieces)
+    return found / float(exact) - 1.0

@@ -219,8 +219,10 @@ def michell_torque(half_angle: float, shear_modulus: float) -> float:
     """Torque [N m] of the field u_t = -r / R^3 on a cone: 2 pi G (2 - 3 cos a + cos^3 a).
 
     u_t / r is constant on spheres about the apex, where R is the distance to it: Michell 1899;
-    Timoshenko and Goodier, article 119 (3rd edition; recalled, not re-read: it solves
-    div(r^3 grad(u_t / r)) = 0, and the torque is the integral of the stress over such a sphere).
+    Timoshenko and Goodier, article 119 (3rd edition). Derived again: -1 / R^3 solves
+    div(r^3 grad(u_t / r)) = 0, the equation of shafts of variable diameter (Sadd, Elasticity,
+    section 9.7, Eq 9.7.3), its gradient is along the cone's surface, which is so free of stress,
+    and the torque is the integral over such a sphere of 3 G r^2 / R^4, the stress times its arm.
     """
     c = np.cos(half_angle)
     return float(2 * np.pi * shear_modulus * (2 - 3 * c + c**3))

@@ -78,20 +78,51 @@ class Tie:
         return Tie(replace(self.bodies, points=points), self.tie, self.messages)
 
 
-def stiffness() -> float:
-    """Exact: tau = T / (2 pi r^2 b), so T / theta = 4 pi G b / (1/r0^2 - 1/r2^2) [N m/rad]."""
-    return float(4.0 * np.pi * G * WIDTH / (1.0 / BORE**2 - 1.0 / OUTSIDE**2))
+def stiffness(width: float = WIDTH) -> float:
+    """Exact: tau = T / (2 pi r^2 b), so T / theta = 4 pi G b / (1/r0^2 - 1/r2^2) [N m/rad].
+
+    Parameters
+    ----------
+    width : float
+        b, along the axis [m].
+    """
+    return float(4.0 * np.pi * G * width / (1.0 / BORE**2 - 1.0 / OUTSIDE**2))
 
 
-def ring(inner: float, outer: float, turn: int, nodes: int, twist: float = 0.0) -> Block:
-    """One element across and along, so many round; turned by a share of the turn."""
+def ring(
+    inner: float,
+    outer: float,
+    turn: int,
+    nodes: int,
+    twist: float = 0.0,
+    layers: tuple[int, int] = (1, 1),
+    width: float = WIDTH,
+) -> Block:
+    """A closed ring, its axis on x.
+
+    Parameters
+    ----------
+    inner, outer : float
+        Radii [m].
+    turn : int
+        Elements round.
+    nodes : int
+        Of an element.
+    twist : float
+        Share of a turn that the mesh is turned by.
+    layers : tuple of int
+        Elements across and along.
+    width : float
+        Along the axis [m].
+    """
 
     def shape(x: Floats) -> Floats:
         r = inner + x[:, 0] * (outer - inner)
         angle = 2.0 * np.pi * (x[:, 1] + twist)
-        return np.column_stack([WIDTH * x[:, 2], r * np.cos(angle), r * np.sin(angle)])
+        return np.column_stack([width * x[:, 2], r * np.cos(angle), r * np.sin(angle)])
 
-    return joined(brick((1, turn, 1), nodes, shape))
+    across, along = layers
+    return joined(brick((across, turn, along), nodes, shape))
 
 
 def tied(own: int, other: int, kind: str, nodes: int = 10) -> Tie:

@@ -1,0 +1,20 @@
+"""What the cases of torsion between two bounds from the meridian share."""
+
+from fe_drivetrain.suite import Page
+from fe_drivetrain.validation.torsion_meridian import Bounds
+
+BOUNDS = "between two bounds from the meridian (displacements; torsion function)"
+"""Where a reference between the bounds comes from."""
+
+
+def check_plane_sections(page: Page, quantity: str, bounds: Bounds, stiffness: float) -> None:
+    """Sections that stay plane are the stiffer: the upper bound is no larger."""
+    page.at_most(
+        quantity,
+        bounds.upper / stiffness - 1.0,
+        1e-9,
+        why="no excess is allowed but round-off",
+        source="plane sections that stay plane are one of the displacements over which the energy "
+        "is least, so that stiffness is no smaller than the bound",
+        measure="identity",
+    )
