@@ -1,8 +1,9 @@
 """Parametric drivetrain parts, built with gmsh's OpenCASCADE kernel; no mechanics in here."""
 
-from .assembly import WIDEST, MeshSizes, build, refuse_millimetres, size_name
+from .assembly import WIDEST, build, refuse_millimetres
 from .bearing import Bearing
 from .body import BodySizes
+from .element_sizes import MeshSizes, size_name
 from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes

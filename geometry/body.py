@@ -11,7 +11,8 @@ from pydantic import Field
 
 from fe_drivetrain.common.errors import InputError
 
-from .assembly import CAD_TOLERANCE, GROWTH, MOST_ELEMENTS
+from .element_sizes import GROWTH, MOST_ELEMENTS
+from .faces import CAD_TOLERANCE
 from .part import Part, dimension
 
 Vector = tuple[float, float, float]

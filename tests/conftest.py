@@ -4,7 +4,8 @@ import os
 import shutil
 import signal
 import sys
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +17,14 @@ from tiny_case import SCRIPT, Result, count
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common import cache, threads
 from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.report.results import Problem, Results, read_results
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.suite import run_cases
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.
@@ -80,6 +83,38 @@ def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[No
         patch.setenv(cache.CACHE_VARIABLE, str(tmp_path_factory.mktemp("cache")))
         patch.setenv(threads.CORES_VARIABLE, "1")
         yield
+
+
+@dataclass(frozen=True)
+class QuickRun:
+    """Results of the quick cases that the marks ``quick`` of all tests name, run in one go."""
+
+    folder: Path
+    problems: Mapping[str, Problem]
+
+    def __call__(self, name: str) -> Results:
+        """Results of a case; the test is skipped where a program is missing that it needs."""
+        problem = self.problems.get(name)
+        if problem is not None and problem.is_missing_tool:
+            pytest.skip(problem.message)
+        assert problem is None, problem
+        return read_results(self.folder.joinpath(*name.split("/")) / "results.json")
+
+
+@pytest.fixture(scope="session")
+def quick_run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> QuickRun:
+    """Every case that a selected test wants, side by side on all cores."""
+    wanted = {
+        name
+        for item in request.session.items
+        for mark in item.iter_markers("quick")
+        for name in mark.args
+    }
+    folder = tmp_path_factory.mktemp("quick")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv(threads.CORES_VARIABLE)
+        cases = [case for name, case in case_module.all_cases().items() if name in wanted]
+        return QuickRun(folder, run_cases(cases, folder, quick=True))
 
 
 @pytest.fixture(scope="session", autouse=True)

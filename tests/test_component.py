@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fe_drivetrain import export
+from fe_drivetrain.beam.beam import Beam
 from fe_drivetrain.beam.frame import (
     CrossSection,
     Follower,
@@ -21,7 +22,7 @@ from fe_drivetrain.beam.frame import (
     sector_centroid,
 )
 from fe_drivetrain.beam.sections import BeamSection
-from fe_drivetrain.beam.shaft import Beam, shaft_stiffness
+from fe_drivetrain.beam.shaft import shaft_stiffness
 from fe_drivetrain.commands.app import app
 from fe_drivetrain.commands.terminal import MISTAKE
 from fe_drivetrain.common.errors import InputError

@@ -24,7 +24,6 @@ from fe_drivetrain.export.formats.elastodyn import (
 )
 from fe_drivetrain.export.formats.statement import commented
 from fe_drivetrain.export.formats.torsion import (
-    series_stiffness,
     torsional_damping,
     torsional_stiffness,
 )
@@ -71,15 +70,6 @@ def test_torsion_needs_a_free_shaft_and_two_points_of_it() -> None:
         torsional_stiffness(twisted_shaft(1.0), "a", "a")
     with pytest.raises(InputError, match="does not resist a twist"):
         torsional_stiffness(twisted_shaft(0.0), "a", "b")
-
-
-def test_shafts_in_series() -> None:
-    """Two shafts of k and k / n^2 at n times the speed share a twist of the low-speed side."""
-    assert series_stiffness([(6e8, 1.0)]) == pytest.approx(6e8, rel=1e-15)
-    assert series_stiffness([(6e8, 1.0), (6e8 / 97**2, 97.0)]) == pytest.approx(3e8, rel=1e-14)
-    for shafts in ([], [(0.0, 1.0)], [(1e8, -1.0)], [(np.nan, 1.0)]):
-        with pytest.raises(InputError, match="must be pairs"):
-            series_stiffness(shafts)
 
 
 def test_damping_of_the_published_5_mw_turbine() -> None:

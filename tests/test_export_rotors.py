@@ -10,8 +10,9 @@ from conftest import coarse_scene
 from scipy import linalg
 from scipy.optimize import brentq
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection, cowper_shear_coefficient
-from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
+from fe_drivetrain.beam.shaft import shaft_stiffness, unit_load_response
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.export.craig_bampton import _Harmonic, craig_bampton_shaft, free_frequencies

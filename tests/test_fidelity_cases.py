@@ -1,6 +1,4 @@
-"""The ladder's cases: the quickest two run; all are found, and their scenes can be built."""
-
-from pathlib import Path
+"""The ladder's cases: all are found, and their scenes can be built."""
 
 import numpy as np
 import pytest
@@ -8,7 +6,7 @@ import pytest
 from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
 from fe_drivetrain.scene.reading import library_scene
-from fe_drivetrain.suite.case import find_cases, run_case
+from fe_drivetrain.suite.case import find_cases
 
 SCENES = (
     "housing_on_bedplate",
@@ -24,40 +22,10 @@ SCENES = (
     "two_bearings",
 )
 
-#: What else belongs to the ladder, each with a case of its own.
-OTHERS = (
-    "bearing_joints",
-    "gearbox_housing",
-    "level_two_seats",
-    "level_two_torsion",
-    "overview",
-    "planet_carrier",
-    "raceway_influence",
-    "uncertain_stiffness",
-)
-
 
 def test_every_scene_has_its_case() -> None:
     found = {case.name for case in find_cases("fidelity")}
-    assert found >= {f"fidelity/{name}" for name in (*SCENES, *OTHERS)}
-
-
-@pytest.mark.parametrize("name", OTHERS)
-def test_its_checks_pass(tmp_path: Path, name: str) -> None:
-    (case,) = find_cases(f"fidelity/{name}")
-    results = run_case(case, tmp_path / "out", quick=True)
-    assert [v.quantity for v in results.verdicts if not v.passed] == []
-
-
-@pytest.mark.parametrize("name", ["main_bearing_spherical", "housing_on_bedplate"])
-def test_a_level_is_found_that_is_enough(tmp_path: Path, name: str) -> None:
-    (case,) = find_cases(f"fidelity/{name}")
-    results = run_case(case, tmp_path / "out", quick=True)
-    assert results.passed
-    rungs = results.figures["rungs"]
-    assert [rung["level"] for rung in rungs] == [0, 1, 1, 2, 3, 4]
-    assert rungs[-1]["error"] == 0.0
-    assert rungs[1]["seconds"] < rungs[-1]["seconds"]
+    assert found >= {f"fidelity/{name}" for name in SCENES}
 
 
 @pytest.mark.parametrize("name", SCENES)

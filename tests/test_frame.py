@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection, RigiditySection, cowper_shear_coefficient
-from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, solve, unit_load_response
+from fe_drivetrain.beam.shaft import shaft_stiffness, solve, unit_load_response
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.scene.materials import Material
@@ -456,7 +457,9 @@ def test_a_coupled_mechanism_is_found():
 
 
 def test_a_support_however_soft_holds():
-    unit_load_response(shaft(2.0, [Support("a", 1.0, (1e-6,) * 6)]), 0.0)
+    unit = unit_load_response(shaft(2.0, [Support("a", 1.0, (1e-6,) * 6)]), 0.0)
+    carried = unit.reaction_matrix("a")
+    assert carried == pytest.approx(wrench_transport([-1.0, 0.0, 0.0]), abs=1e-9)
 
 
 def test_shares_that_statics_cannot_tell_are_refused():

@@ -18,7 +18,7 @@ from fe_drivetrain.geometry import (
     build,
     gmsh_session,
 )
-from fe_drivetrain.geometry.assembly import _elements_beside, _size_limit
+from fe_drivetrain.geometry.element_sizes import _elements_beside, _size_limit
 
 
 def plain_shaft(length=1.0, outer=0.4, inner=0.0):
@@ -382,6 +382,13 @@ def assemble(shaft=None, bearings=None, housings=None, sizes=None, bonded=frozen
     housings = {"main_bearing": Housing()} if housings is None else housings
     with gmsh_session():
         build(shaft, bearings, housings, sizes or MeshSizes(), bonded)
+        return {
+            gmsh.model.getPhysicalName(*group): sum(
+                gmsh.model.occ.getMass(3, tag)
+                for tag in gmsh.model.getEntitiesForPhysicalGroup(*group)
+            )
+            for group in gmsh.model.getPhysicalGroups(3)
+        }
 
 
 SHAFT = plain_shaft(2.0)
@@ -510,7 +517,12 @@ def test_a_pedestal_much_wider_than_its_shell_is_built():
 
 def test_a_housing_just_wide_enough_to_clear_the_shaft_is_built():
     # sqrt(0.3^2 - 0.22^2) = 0.20396 > 0.2
-    assemble(plain_shaft(2.0), housings={"main_bearing": Housing(width=0.44, foot_width=0.44)})
+    wide = {"main_bearing": Housing(width=0.44, foot_width=0.44)}
+    assert assemble(plain_shaft(2.0), housings=wide).keys() == {
+        "shaft",
+        "main_bearing",
+        "main_bearing.housing",
+    }
 
 
 def two_sections(one, two):
@@ -548,7 +560,9 @@ def test_millimetres_are_refused_in_bearings_and_housings_too():
 
 
 def test_lengths_within_the_tolerance_are_one_length_and_no_detail():
-    assemble(two_sections({}, {"outer_diameter": 0.4 + 1e-10}), [], {})
+    shaft = two_sections({}, {"outer_diameter": 0.4 + 1e-10})
+    volume = np.pi / 4 * 0.4**2 * shaft.length
+    assert assemble(shaft, [], {}) == {"shaft": pytest.approx(volume, rel=1e-8)}
 
 
 def test_the_number_of_elements_beside_a_narrow_face_is_foreseen():

@@ -13,8 +13,9 @@ from skfem.models.elasticity import linear_elasticity
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
 from fe_drivetrain.mesh.generation import generate
-from fe_drivetrain.mesh.hexahedra import VTK_LATTICE, Grading, shaft_hexahedra
+from fe_drivetrain.mesh.hexahedra import VTK_LATTICE, shaft_hexahedra
 from fe_drivetrain.mesh.linear import first_order, straightened
+from fe_drivetrain.mesh.shaft_section import Grading
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.scene.materials import MATERIALS

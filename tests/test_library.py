@@ -3,6 +3,7 @@
 import re
 from importlib.resources import files
 
+import gmsh
 import numpy as np
 import pytest
 
@@ -63,6 +64,9 @@ def test_parts_fit(name: str) -> None:
     bonded = frozenset(u.bearing.name for u in scene.bearing_units if u.interface == "bonded")
     with gmsh_session():
         build(scene.shaft, bearings, housings, scene.mesh, bonded)
+        parts = {gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups(3)}
+    names = {bearing.name for bearing in bearings}
+    assert parts == {"shaft", *names, *(f"{name}.housing" for name in names)}
 
 
 @pytest.mark.parametrize("name", DRIVETRAINS)

@@ -9,8 +9,9 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection
-from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
+from fe_drivetrain.beam.shaft import shaft_stiffness, unit_load_response
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces.constraints import fixed

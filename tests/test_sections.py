@@ -7,7 +7,6 @@ from fe_drivetrain.beam.sections import (
     RigiditySection,
     cowper_shear_coefficient,
     element_integrals,
-    sections_from_profile,
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.materials import Material
@@ -108,15 +107,6 @@ def test_rigid_section_does_not_yield_but_weighs():
     assert result.weight[2, 2] == pytest.approx(60.0)
 
 
-def test_profile_makes_tapers_and_steps():
-    sections = sections_from_profile([0.0, 1.0, 1.0, 3.0], [0.4, 0.4, 0.6, 0.8], 0.1)
-    assert sections == (
-        BeamSection(1.0, 0.4, 0.1, 0.4, 0.1),
-        BeamSection(2.0, 0.6, 0.1, 0.8, 0.1),
-    )
-    assert [section.uniform for section in sections] == [True, False]
-
-
 @pytest.mark.parametrize(
     ("make", "says"),
     [
@@ -127,9 +117,6 @@ def test_profile_makes_tapers_and_steps():
         (lambda: BeamSection(1.0, 0.4, 0.2, 0.1), "inner diameter 0.2 m"),
         (lambda: RigiditySection(1.0, 0.0, 1.0, 1.0, 1.0), "axial rigidity 0"),
         (lambda: RigiditySection(1.0, 1.0, 1.0, 1.0, 1.0, -1.0), "mass per length -1"),
-        (lambda: sections_from_profile([1.0, 0.0], 0.4), "ascending"),
-        (lambda: sections_from_profile([0.0], 0.4), "at least 2"),
-        (lambda: sections_from_profile([0.0, 1.0], [0.4] * 3), "each of the 2 stations"),
     ],
 )
 def test_bad_sections_are_named(make, says):

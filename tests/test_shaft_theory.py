@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection
-from fe_drivetrain.beam.shaft import Beam, Support, unit_load_response
+from fe_drivetrain.beam.shaft import unit_load_response
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.validation.shaft_theory import (

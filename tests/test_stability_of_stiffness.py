@@ -9,8 +9,8 @@ from fe_drivetrain.cases.stability import (
 )
 from fe_drivetrain.cases.stability.decades import (
     decades,
+    fitted_exponent,
     safe_range,
-    slope,
 )
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.scene.materials import MATERIALS
@@ -33,12 +33,12 @@ def test_no_safe_point_is_an_error():
         safe_range([1.0, 2.0], [0.5, np.nan], 0.3)
 
 
-def test_slope_of_a_power_within_bounds():
+def test_exponent_of_a_power_within_bounds():
     x = decades(0, 6, 2)
     y = 3.0 * x**-1.5
     y[0], y[-1] = 1e9, 1e-30  # outside of the bounds
-    assert slope(x, y, (1e-20, 1e3)) == pytest.approx(-1.5, rel=1e-12)
-    assert np.isnan(slope([1.0], [1.0]))
+    assert fitted_exponent(x, y, (1e-20, 1e3))[0] == pytest.approx(-1.5, rel=1e-12)
+    assert np.isnan(fitted_exponent([1.0], [1.0])[0])
 
 
 def test_assembly_in_any_precision_is_the_library_s():

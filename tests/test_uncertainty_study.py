@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from fe_drivetrain.commands.app import app
 from fe_drivetrain.commands.terminal import FAILED, MISTAKE, PASSED
-from fe_drivetrain.commands.uncertainty_page import bands, figures, inputs
+from fe_drivetrain.commands.uncertainty_page import bands, inputs
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.export.formats.summary import summary
@@ -36,6 +36,7 @@ from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.uncertainty import resolver as resolver_module
 from fe_drivetrain.uncertainty.input_study import Study, study
+from fe_drivetrain.uncertainty.numbers import figures
 from fe_drivetrain.uncertainty.resolver import Resolver, shaft_content, unit_content
 from fe_drivetrain.uncertainty.response_surface import touching, unit_surface
 from fe_drivetrain.uncertainty.sampling import check_spreads, nominal_value, with_values

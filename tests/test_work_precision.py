@@ -42,8 +42,8 @@ from fe_drivetrain.cases.performance.work_precision import (
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.mesh.hexahedra import Grading
 from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.mesh.shaft_section import Grading
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.bearing_stiffness import PLANES, tilt_stiffness, without_gearbox
 from fe_drivetrain.response.model import Model

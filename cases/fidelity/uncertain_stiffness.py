@@ -18,7 +18,7 @@ from fe_drivetrain.cases.fidelity.moved_meshes import (
     WALL,
     moved,
 )
-from fe_drivetrain.commands import bands, first_order, relative_spread
+from fe_drivetrain.commands import bands
 from fe_drivetrain.common import (
     FORCES,
 )
@@ -47,7 +47,14 @@ from fe_drivetrain.response import (
 )
 from fe_drivetrain.scene import Scene, change_scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.uncertainty import Study, nominal_value, study, with_values
+from fe_drivetrain.uncertainty import (
+    Study,
+    first_order,
+    nominal_value,
+    relative_spread,
+    study,
+    with_values,
+)
 
 SCENE = "main_bearing_bonded_uncertain"
 BEARING, LOAD = "main_bearing", "hub.My"

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.beam import BeamSection, shaft
+from fe_drivetrain.beam import Beam, BeamSection, Support, unit_load_response
 from fe_drivetrain.cases.performance import tilt
 from fe_drivetrain.cases.performance.choices import (
     CURVED,
@@ -254,9 +254,9 @@ def beam_stiffness(repeats: int = 9) -> tuple[Floats, float]:
         sections = [
             BeamSection(p.length, p.outer_diameter, p.inner_diameter) for p in STEPPED.pieces
         ]
-        rear = shaft.Support("rear", STEPPED.rear, [np.inf] * 6)
-        beam = shaft.Beam(sections, [rear], STEPPED.front, MATERIAL)
-        response = shaft.unit_load_response(beam, STEPPED.front, STEPPED.front)
+        rear = Support("rear", STEPPED.rear, [np.inf] * 6)
+        beam = Beam(sections, [rear], STEPPED.front, MATERIAL)
+        response = unit_load_response(beam, STEPPED.front, STEPPED.front)
         compliance = response.displacement.reshape(6, 6)
         seconds.append(time.perf_counter() - start)
     return 1.0 / compliance.diagonal()[[3, 4, 0]], statistics.median(seconds)

@@ -88,11 +88,6 @@ def last_within(x: ArrayLike, error: ArrayLike, criterion: float) -> float | Non
     return float(np.asarray(x, dtype=float)[count - 1]) if count else None
 
 
-def slope(x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)) -> float:
-    """The exponent of `fitted_exponent` alone."""
-    return fitted_exponent(x, y, within)[0]
-
-
 def fitted_exponent(
     x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)
 ) -> tuple[float, float | None]:

@@ -8,10 +8,11 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability import thin_and_slender as bodies
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import multigrid, round_off, schwarz, solvers
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.validation import thin_bodies as bodies
+from fe_drivetrain.validation.solver_trials import compliance, factor_memory
 
 #: Unknowns, about.
 SIZES = (10_000, 100_000, 1_000_000)
@@ -67,7 +68,7 @@ def solve(run: Run, body: str, unknowns: int) -> Record:
             system.K, problem.F, made.precondition, solvers.TOLERANCE
         )
     seconds = time.perf_counter() - start
-    compliance = problem.compliance(solution.x)
+    found = compliance(problem.F, solution.x)
     by_multigrid: int | str = "not tried"
     if n < 1.5 * TRIED:
         with run.step(f"{label}: multigrid"):
@@ -77,19 +78,19 @@ def solve(run: Run, body: str, unknowns: int) -> Record:
         converged = other.energy_error <= solvers.TOLERANCE
         by_multigrid = other.iterations if converged else f"gives up after {other.iterations}"
     with run.step(f"{label}: what a factor would take"):
-        factor = bodies.factor_memory(system.K)
+        factor = factor_memory(system.K)
     return {
         "body": name,
         "unknowns": n,
         "coarse space": made.n_coarse,
         "iterations of patches": solution.iterations,
         "iterations of multigrid": by_multigrid,
-        "error in torsion": compliance[0] / bodies.torsional_compliance(problem) - 1.0,
+        "error in torsion": found[0] / bodies.torsional_compliance(problem) - 1.0,
         "bound of round-off": round_off(system.K, solution.x),
         "seconds, set-up and solve": seconds,
         "memory of patches (GiB)": made.bytes / GIB,
         "memory of a factor (GiB)": None if factor is None else factor / GIB,
-        "second compliance": compliance[1],
+        "second compliance": found[1],
         "converged": solution.energy_error <= solvers.TOLERANCE,
     }
 

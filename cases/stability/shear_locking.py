@@ -1,30 +1,37 @@
 """Bent bars and shafts: where linear elements lock, by theory and measured, and what holds."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability.bent_shafts import (
+    ONE_PERCENT,
+    OVER_DIAMETER,
+    PURE,
+    QUICK_ROUND_LENGTHS,
+    ROUND_LENGTHS,
+    ROUND_OFF,
+    ROUND_OFF_REASON,
+    SHAFT_SLENDERNESS,
+    Assembly,
+    Excesses,
+    round_hexahedra,
+    round_tetrahedra,
+    shear_part,
+)
 from fe_drivetrain.cases.stability.decades import last_within
-from fe_drivetrain.common import Floats
+from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, curve, limit
 from fe_drivetrain.operator import elasticity, incompatible, incompressible
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import recovery_estimate
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation import locking_bars as bars
 
-CRITERION = 0.01  # error of a stiffness
-
-#: Lengths of elements over the depth of the square bar, and over the diameter of the round one.
+#: Lengths of elements over the depth of the square bar.
 LENGTHS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0, 8.0, 16.0)
 QUICK_LENGTHS = (1 / 16, 1 / 8, 2.0, 16.0)
-#: (From a quarter on, all of them have one section: shorter ones are divided more finely across.)
-ROUND_LENGTHS = (1 / 4, 1 / 2, 1.0, 2.0, 4.0)
-QUICK_ROUND_LENGTHS = (1 / 4, 4.0)
-
 ACROSS = (1, 2, 4, 8)
 QUICK_ACROSS = (1, 2)
 
@@ -44,12 +51,6 @@ SLENDERNESS = (5, 10, 20, 50, 100, 200)
 QUICK_SLENDERNESS = (5, 100, 200)
 ALONG = 40
 
-#: Shafts in the program's own tetrahedra: length over diameter, elements across.
-SHAFT_SLENDERNESS = 5
-SHAFT_ACROSS = (2, 4)
-QUICK_SHAFT_ACROSS = (2,)
-
-Assembly = Callable[..., Any]
 PLAIN, MODES, AVERAGED = elasticity.assemble, incompatible.assemble, incompressible.assemble
 REMEDIES: dict[str, tuple[int, Assembly]] = {
     "8 nodes, incompatible modes": (8, MODES),
@@ -57,29 +58,8 @@ REMEDIES: dict[str, tuple[int, Assembly]] = {
     "27 nodes": (27, PLAIN),
     "tetrahedra of 10 nodes": (10, PLAIN),
 }
-#: Round shafts of hexahedra: nodes, refinement of 8 elements round a turn, and assembly.
-SHAFTS: dict[str, tuple[int, int, Assembly]] = {
-    "8 nodes, 8 round a turn": (8, 1, PLAIN),
-    "8 nodes, 16 round a turn": (8, 2, PLAIN),
-    "8 nodes, incompatible modes, 8 round a turn": (8, 1, MODES),
-    "8 nodes, incompatible modes, 16 round a turn": (8, 2, MODES),
-    "20 nodes, 8 round a turn": (20, 1, PLAIN),
-    "27 nodes, 8 round a turn": (27, 1, PLAIN),
-}
-
-PURE = "E I: a prism under end moments, Timoshenko and Goodier 1970, art 102"
-ROUND_OFF = 1e-8
-ROUND_OFF_REASON = (
-    "exact but for round-off: 1e-16 times the condition number, about 1e8 of elements 16 times as "
-    "long as the bar is deep"
-)
-ONE_PERCENT = "1 % is the error of a stiffness that a remedy may leave"
 OVER_DEPTH = "length of an element over the depth of a square bar [-]"
-OVER_DIAMETER = "length of an element over the diameter of the shaft [-]"
 SECOND_ORDER = "elements of second order"
-
-Excesses = dict[str, list[float]]
-"""By name of the elements: stiffness over the exact one, less one, along a sweep."""
 
 
 @dataclass(frozen=True)
@@ -216,14 +196,6 @@ def square_bars(run: Run) -> Square:
     return Square(lengths, linear, held, theory, cubes, across)
 
 
-def shear_part(excess: Sequence[float], lengths: Sequence[float], mesh: Any) -> float:
-    """Stiffness that more length adds, over what theory adds, less one; the worst."""
-    section = bars.area(mesh), bars.second_moment(mesh)
-    expected = np.array([bars.shear_excess(a * bars.SIDE, *section) for a in lengths])
-    found = np.array(excess)
-    return float(np.abs((found - found[0])[1:] / (expected - expected[0])[1:] - 1.0).max())
-
-
 def check_theory(page: Page, square: Square) -> float:
     """Linear hexahedra lock as theory has it; its error with one across."""
     error = float(
@@ -294,75 +266,6 @@ def cantilevers(run: Run, page: Page, most: int, slenderness: Sequence[int]) -> 
     return tip
 
 
-def round_hexahedra(run: Run, page: Page, lengths: Sequence[float]) -> Excesses:
-    """Bend round shafts of hexahedra."""
-    shafts: Excesses = {}
-    with run.step("shafts of hexahedra"):
-        for name, (nodes, refinement, assembly) in SHAFTS.items():
-            run.report(f"shafts of hexahedra: {name}")
-            meshes = [bars.round_hexahedra(nodes, refinement, 2, a * bars.SIDE) for a in lengths]
-            shafts[name] = [bars.bend(mesh, assembly).excess for mesh in meshes]
-            if nodes == 8 and assembly is PLAIN:
-                page.vanishes(
-                    f"round shaft, hexahedra of {name}: stiffness that longer elements add, over "
-                    "G A a^2 / 12, less one, worst of all lengths",
-                    shear_part(shafts[name], lengths, meshes[0]),
-                    within=ROUND_OFF,
-                    why=ROUND_OFF_REASON,
-                    source="parasitic shear of a prism of any section; A and I of the mesh",
-                )
-            if nodes > 8:
-                finer = bars.round_hexahedra(nodes, 2, 2, lengths[-1] * bars.SIDE)
-                page.equals(
-                    f"round shaft, hexahedra of {name}, {lengths[-1]:g} diameters long: stiffness "
-                    "over E I",
-                    1.0 + shafts[name][-1],
-                    1.0,
-                    within=CRITERION,
-                    why=ONE_PERCENT,
-                    source=PURE,
-                    measure="stiffness",
-                    band=2.0 * abs(bars.bend(finer, assembly).excess - shafts[name][-1]),
-                )
-    return shafts
-
-
-def round_tetrahedra(run: Run, page: Page) -> list[Record]:
-    """Bend round shafts of tetrahedra, as the program meshes them and linear ones."""
-    rows: list[Record] = []
-    exact = bars.E * np.pi / 64.0 * bars.SIDE**4
-    quadratic, band = [], 0.0
-    with run.step("shafts of tetrahedra"):
-        for n in QUICK_SHAFT_ACROSS if run.quick else SHAFT_ACROSS:
-            run.report(f"shafts of tetrahedra: {n} across")
-            for nodes, mesh in bars.round_tetrahedra(SHAFT_SLENDERNESS * bars.SIDE, n).items():
-                bent = bars.bend(mesh, PLAIN)
-                rows.append(
-                    {
-                        "nodes": nodes,
-                        "elements across": n,
-                        "unknowns": mesh.unknowns,
-                        "error against E I of the mesh [%]": 100 * bent.excess,
-                        "error against E I of the circle [%]": 100 * (bent.rigidity / exact - 1.0),
-                    }
-                )
-                if nodes == 10:
-                    quadratic.append(bent.excess)
-                    estimate = recovery_estimate(mesh.points, [(mesh.cells, bars.LAME)], bent.u)
-                    band = estimate.band(1.0)
-    page.equals(
-        "round shaft, curved tetrahedra of 10 nodes: stiffness over E I, the coarsest mesh",
-        1.0 + quadratic[0],
-        1.0,
-        within=CRITERION,
-        why=ONE_PERCENT,
-        source=PURE,
-        measure="stiffness",
-        band=abs(quadratic[0] - quadratic[-1]) + band,
-    )
-    return rows
-
-
 def estimated(run: Run, lengths: Sequence[float]) -> Excesses:
     """Error estimated from one mesh over the true one, of the energy, by elements across."""
     found: Excesses = {}
@@ -394,40 +297,37 @@ def state_limits(
         f"estimate is at least {share:.2g} times the error by locking"
     )
 
-    def limit(
-        method: str, parameter: str, at: Sequence[float], values: list[float], remedy: str
-    ) -> None:
-        high, worst = last_within(at, values, CRITERION), np.abs(values).max()
-        if worst > CRITERION and high is not None:
-            page.limit(
-                method,
-                parameter,
-                high=high,
-                criterion=f"stiffness within {100 * CRITERION:g} %",
-                beyond=f"too stiff by {100 * worst:,.0f} % at {at[-1]:g}",
-                program=program,
-                remedy=remedy,
-            )
-
     modes = f"incompatible modes, or {SECOND_ORDER}"
     for n in square.linear[8]:
         for nodes, kind, remedy in ((8, "hexahedra", modes), (4, "tetrahedra", SECOND_ORDER)):
             limit(
+                page,
                 f"{kind} of {nodes} nodes, {n} across",
-                OVER_DEPTH,
                 square.lengths,
                 square.linear[nodes][n],
+                program,
                 remedy,
+                OVER_DEPTH,
             )
     limit(
+        page,
         f"hexahedra of 8 nodes, {square.most} across, cantilever",
-        f"length over depth, {ALONG} elements along [-]",
         slenderness,
         tip[f"8 nodes, {square.most} across"],
+        program,
         modes,
+        f"length over depth, {ALONG} elements along [-]",
     )
     for name, values in shafts.items():
-        limit(f"hexahedra of {name}", OVER_DIAMETER, round_lengths, values, SECOND_ORDER)
+        limit(
+            page,
+            f"hexahedra of {name}",
+            round_lengths,
+            values,
+            program,
+            SECOND_ORDER,
+            OVER_DIAMETER,
+        )
     for name, values in square.cubes.items():
         low, worst = first_within(square.across[name], values), max(values, key=abs)
         if abs(worst) > CRITERION and low is not None:
@@ -436,7 +336,7 @@ def state_limits(
                 f"{kind}{name}, nu = {bars.NU:g}",
                 "cubes across a bent square bar [-]",
                 low=low,
-                criterion=f"stiffness within {100 * CRITERION:g} %",
+                criterion=WITHIN,
                 beyond=f"error up to {100 * worst:+.0f} % with fewer",
                 program=f"averages from nu = {incompressible.AVERAGED_FROM:g} on only, and asks "
                 "for four across"
@@ -457,17 +357,6 @@ def shaded(at: Sequence[float], values: Sequence[float]) -> tuple[None, float] |
     return None if high is None else (None, high)
 
 
-def percent(values: ArrayLike) -> Floats:
-    """For a logarithmic axis."""
-    return np.asarray(100 * np.maximum(np.abs(values), 1e-12))
-
-
-def curve(name: str, x: Sequence[float], values: ArrayLike, dashed: bool = False) -> Any:
-    """Errors without their sign."""
-    line = {"dash": "dash"} if dashed else {}
-    return trace(name, x, percent(values), mode="lines+markers", line=line)
-
-
 def show_square(page: Page, square: Square) -> None:
     """Charts and data of the square bar."""
     lengths, most = square.lengths, square.most
@@ -476,7 +365,7 @@ def show_square(page: Page, square: Square) -> None:
         "Hexahedra: error of the bending stiffness; dashed, the remedies with one across (shaded: "
         f"8 nodes, {most} across, within 1 %)",
         [
-            trace("8 nodes, 1 across, theory", lengths, percent(square.theory)),
+            curve("8 nodes, 1 across, theory", lengths, square.theory),
             *(curve(f"8 nodes, {n} across", lengths, v) for n, v in square.linear[8].items()),
             *(
                 curve(name, lengths, values, dashed=True)

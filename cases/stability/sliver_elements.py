@@ -1,9 +1,15 @@
 """Slivers driven flat, and through to the other side: the condition, the solvers, the answer."""
 
-from typing import Any
+import numpy as np
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability.decades import fitted_exponent
+from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.mesh import FLATTEST, find_faults, flatness
+from fe_drivetrain.report import trace
+from fe_drivetrain.solve import MAX_ITERATIONS
+from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.validation import slivers
 
 #: Heights of the slivers, in cubes.
 HEIGHTS = (0.5, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14)
@@ -15,322 +21,280 @@ ACROSS, QUICK_ACROSS = 4, 2
 #: Six digits of a stiffness are more than any use of it needs.
 CRITERION = 1e-6
 
+FLATNESS = "least height over longest edge of the flattest element [-]"
+EPSILON = float(np.finfo(float).eps)
 
-def run(run: Run) -> Any:
-    """Bend a bar with a layer of slivers."""
-    import numpy as np
-
-    from fe_drivetrain.mesh import FLATTEST, find_faults, flatness
-    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.solve import MAX_ITERATIONS
-    from fe_drivetrain.validation import (
-        slivers,
-    )
-
-    across = QUICK_ACROSS if run.quick else ACROSS
-    heights = QUICK_HEIGHTS if run.quick else HEIGHTS
-    rows: list[list[Any]] = []
-    flat, direct, iterated, linear, mended, refused = [], [], [], [], [], []
-    for height in heights:
-        run.report(f"slivers of height {height:g}")
-        with run.step("bars with slivers"):
-            mesh = slivers.bar(height, across)
-            flat.append(float(flatness(mesh.points, mesh.cells).min()))
-            refused.append(bool(find_faults(mesh)))
-            direct.append(slivers.bent(mesh, "superlu", condition=True))
-            iterated.append(slivers.bent(mesh, "multigrid"))
-            linear.append(slivers.bent(slivers.bar(height, across, 4), "superlu"))
-        with run.step("optimised by gmsh"):
-            mended.append(slivers.bent(slivers.optimised(mesh), "multigrid"))
-        rows.append(
-            [
-                height,
-                flat[-1],
-                direct[-1].condition,
-                direct[-1].bending,
-                iterated[-1].iterations,
-                iterated[-1].solver[:60],
-                refused[-1],
-                mended[-1].iterations,
-                mended[-1].bending,
-            ]
-        )
-    inside_out: list[list[Any]] = []
-    beyond_refused = []
-    with run.step("flat and inside out"):
-        for height in BEYOND:
-            mesh = slivers.bar(height, across)
-            found = slivers.bent(mesh, "multigrid")
-            faults = find_faults(mesh)
-            beyond_refused.append(bool(faults))
-            inside_out.append(
-                [
-                    height,
-                    float(flatness(mesh.points, mesh.cells).min()),
-                    found.bending,
-                    found.shear,
-                    found.solver[:60],
-                    faults[0].sentence if faults else "nothing found",
-                ]
-            )
-
-    x = np.array(flat)
-    error = np.abs([b.bending for b in direct])
-    condition = np.array([b.condition for b in direct])
-    steps = np.array([b.iterations for b in iterated])
-    theory = (x < 1e-2) & (condition < 1e14)
-    slope = float(np.polyfit(np.log10(x[theory]), np.log10(condition[theory]), 1)[0])
-    wrong = ~(error < CRITERION)
-    alone = np.array([b.solver != "multigrid" for b in iterated])
-    # from the roundest on, before the first that fails
-    safe = float(x[: int(wrong.argmax())].min()) if wrong.any() else None
-    safe_steps = float(x[: int(alone.argmax())].min()) if alone.any() else None
-    missed = int(np.count_nonzero(wrong & ~np.array(refused)))
-    missed += beyond_refused.count(False)
-    needless = int(np.count_nonzero(np.array(refused) & (x >= FLATTEST)))
-    worst_mended = max(abs(b.bending) for b in mended)
-    most = max(b.iterations for b in mended)
-    theory_source = "Shewchuk 2002, What is a good linear finite element? (recalled, not re-read)"
-    verdicts = [
-        judge(
-            "order of the condition number in the flatness of the slivers",
-            slope,
-            -1.0,
-            tolerance=0.1,
-            relative=False,
-            source=theory_source,
-            reason="the stiffness of a sliver is its volume over its height squared; a tenth "
-            "for what the sound elements add at the round end",
-            measure="order",
-            band=0.1,
-        ),
-        judge(
-            "the sweep goes on until the answer is wrong: flattest bar that is solved wrong or "
-            "not at all",
-            float(wrong[-1]),
-            1.0,
-            tolerance=0.0,
-            relative=False,
-            source="round-off times the condition number reaches one",
-            reason="yes or no",
-            measure="identity",
-        ),
-        judge(
-            "bars that are solved wrong, flat or inside out, and that the check of the mesh "
-            "lets through",
-            float(missed),
-            0.0,
-            tolerance=0.0,
-            relative=False,
-            source="fe_drivetrain.mesh.checks",
-            reason="none may get through",
-            measure="identity",
-        ),
-        judge(
-            f"bars with slivers less flat than {FLATTEST:g} that the check refuses",
-            float(needless),
-            0.0,
-            tolerance=0.0,
-            relative=False,
-            source="fe_drivetrain.mesh.checks",
-            reason="what is solved right must not be refused",
-            measure="identity",
-        ),
-        judge(
-            "bending stiffness after gmsh has taken the slivers out, worst of all heights, over "
-            "the exact one, less one",
-            worst_mended,
-            0.0,
-            tolerance=1e-8,
-            relative=False,
-            source="Euler-Bernoulli, exact without lateral contraction",
-            reason="quadratic elements hold the solution; iterations end at an energy error of "
-            "1e-9 and round-off is below",
-            measure="stiffness",
-            band=1e-9,
-        ),
-        judge(
-            "most iterations of multigrid after that, over those of the bar with the roundest "
-            "slivers",
-            most / steps[0],
-            1.0,
-            tolerance=0.25,
-            source="this sweep",
-            reason="meshes of one size and about one shape: a quarter more or less",
-        ),
-    ]
-    failed = [k for k, b in enumerate(iterated) if not np.isfinite(b.bending)]
-    floor = np.finfo(float).eps
-    traces = [
-        trace("direct, 10 nodes, bending (held exactly)", x, np.maximum(error, floor)),
-        trace("multigrid, the same", x, np.maximum(np.abs([b.bending for b in iterated]), floor)),
-        trace("direct, 10 nodes, shear", x, np.abs([b.shear for b in direct])),
-        trace("direct, 4 nodes, shear", x, np.abs([b.shear for b in linear])),
-        trace("slivers taken out, bending", x, [max(abs(b.bending), floor) for b in mended]),
-        trace(
-            "no answer",
-            x[failed],
-            [1.0] * len(failed),
-            points=True,
-            marker={"symbol": "x", "size": 11, "color": "#c62828"},
-        ),
-    ]
-    traces = [{**t, "mode": "lines+markers"} if t["mode"] == "lines" else t for t in traces]
-    work = [
-        trace("condition number over 1e6", x, condition / 1e6, mode="lines+markers"),
-        trace(
-            "iterations of multigrid",
-            x[~alone],
-            steps[~alone],
-            mode="lines+markers",
-        ),
-        trace(
-            "multigrid gives up, a direct solver answers",
-            x[alone],
-            [MAX_ITERATIONS] * int(alone.sum()),
-            points=True,
-            marker={"symbol": "x", "size": 11, "color": "#c62828"},
-        ),
-        trace(
-            "iterations after the slivers are taken out",
-            x,
-            [b.iterations for b in mended],
-            mode="lines+markers",
-        ),
-    ]
-    label = "least height over longest edge of the flattest element"
-    worst = max(inside_out, key=lambda row: abs(row[2]) if np.isfinite(row[2]) else 0.0)
-    return CASE.results(
-        run,
-        summary=[
-            f"One layer of slivers makes the condition number grow as their flatness to the "
-            f"power {slope:.2f}. Multigrid alone holds down to a flatness of "
-            f"{_number(safe_steps)}; "
-            f"the stiffness has six digits down to {_number(safe)}; there is no answer at "
-            f"{x[-1]:.1g}.",
-            f"The program refuses a mesh whose flattest element is below {FLATTEST:g}, with "
-            "element and place; all that is solved wrong in this sweep lies beyond. gmsh takes the "
-            f"slivers out: then at most {most} iterations, and {worst_mended:.1e} of error.",
-            f"Elements turned inside out give no sign of themselves: at a height of {worst[0]:g} "
-            f"the solver converges and the bending stiffness is off by {worst[2]:.1e}. Only the "
-            "check of the Jacobian finds them.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="The answer",
-                items=[
-                    chart(
-                        "Error of the stiffness of a bar with a layer of slivers. The elements' "
-                        "own error hardly changes; round-off grows until nothing is left",
-                        traces,
-                        label,
-                        "relative error of the stiffness",
-                        ("x", "y"),
-                        safe=(safe, None),
-                    ),
-                    Text(
-                        text="Bending by couples is held exactly by quadratic elements with "
-                        "straight edges, slivers or not, so that its error is the solver's alone. "
-                        "Shear shows that the slivers cost little accuracy as elements: "
-                        "the layer is thin, and what it forbids, warping of the squares, matters "
-                        "little beside the elements' own error."
-                    ),
-                ],
-            ),
-            Section(
-                title="The solvers",
-                items=[
-                    chart(
-                        "Condition number and iterations. Multigrid stops early where it cannot "
-                        "do it, and a direct solver answers",
-                        work,
-                        label,
-                        "iterations; condition number / 1e6",
-                        ("x", "y"),
-                        safe=(safe_steps, None),
-                    ),
-                    Table(
-                        caption="Slivers driven flat",
-                        columns=[
-                            "height / cube",
-                            "flatness",
-                            "condition number",
-                            "error of bending, direct",
-                            "iterations, multigrid",
-                            "answered by",
-                            "refused by the check",
-                            "iterations, mended",
-                            "error, mended",
-                        ],
-                        rows=rows,
-                    ),
-                ],
-            ),
-            Section(
-                title="Through to the other side",
-                items=[
-                    Table(
-                        caption="Slivers of no height, and inside out: what multigrid says without "
-                        "the check, and what the check says",
-                        columns=[
-                            "height / cube",
-                            "flatness",
-                            "error of bending",
-                            "error of shear",
-                            "answered by",
-                            "the check",
-                        ],
-                        rows=[
-                            [None if isinstance(c, float) and np.isnan(c) else c for c in row]
-                            for row in inside_out
-                        ],
-                    )
-                ],
-            ),
-        ],
-        limits=[
-            Limit(
-                method="stiffness from a mesh with slivers, direct solver",
-                parameter="least height over longest edge of the flattest element [-]",
-                low=safe,
-                high=None,
-                criterion=f"error of round-off below {CRITERION:g}",
-                beyond="digits are lost as 1 / flatness; at 1e-14 the matrix is singular; inside "
-                "out a wrong answer without any sign",
-                program=f"refuses below {FLATTEST:g}, and anything inside out, with element and "
-                "place",
-                remedy=f"optimisation by gmsh: error {worst_mended:.1e}",
-            ),
-            Limit(
-                method="multigrid on a mesh with slivers",
-                parameter="least height over longest edge of the flattest element [-]",
-                low=safe_steps,
-                high=None,
-                criterion=f"converged within {MAX_ITERATIONS} iterations",
-                beyond="the iteration stalls: nodes of a sliver move together more slowly than "
-                "the smoother sees",
-                program="stops early, and a direct solver answers, with the reason",
-                remedy=f"optimisation by gmsh: at most {most} iterations",
-            ),
-        ],
-        figures={"flatness": flat, "condition": condition.tolist()},
-    )
+CROSS = {"symbol": "x", "size": 11, "color": "#c62828"}
 
 
-def _number(value: float | None) -> str:
-    return "the last of the sweep" if value is None else f"{value:.1g}"
+def flattened(run: Run, height: float, across: int) -> Record:
+    """A bar with slivers of this height: solved as it is, and after gmsh has taken them out."""
+    with run.step("bars with slivers"):
+        mesh = slivers.bar(height, across)
+        direct = slivers.bent(mesh, "superlu", condition=True)
+        multigrid = slivers.bent(mesh, "multigrid")
+        linear = slivers.bent(slivers.bar(height, across, 4), "superlu")
+        is_refused = bool(find_faults(mesh))
+    with run.step("optimised by gmsh"):
+        optimised = slivers.bent(slivers.optimised(mesh), "multigrid")
+    return {
+        "height / cube": height,
+        "flatness": float(flatness(mesh.points, mesh.cells).min()),
+        "condition number": direct.condition,
+        "error of bending, direct": direct.bending,
+        "iterations, multigrid": multigrid.iterations,
+        "answered by": multigrid.solver[:60],
+        "refused by the check": is_refused,
+        "iterations, optimised": optimised.iterations,
+        "error, optimised": optimised.bending,
+        "error of bending, multigrid": multigrid.bending,
+        "error of shear, direct": direct.shear,
+        "error of shear, 4 nodes": linear.shear,
+    }
 
 
-CASE = Case(
-    name="stability/sliver_elements",
-    title="Sliver elements driven flat: condition, iterations, error, and what takes them out",
+def inside_out(height: float, across: int) -> Record:
+    """A bar with slivers of no height, or inside out: without the check, and what it reports."""
+    mesh = slivers.bar(height, across)
+    found = slivers.bent(mesh, "multigrid")
+    faults = find_faults(mesh)
+    return {
+        "height / cube": height,
+        "flatness": float(flatness(mesh.points, mesh.cells).min()),
+        "error of bending": found.bending,
+        "error of shear": found.shear,
+        "answered by": found.solver[:60],
+        "the check": faults[0].sentence if faults else "nothing found",
+        "refused": bool(faults),
+    }
+
+
+@case(
+    "Sliver elements driven flat: condition, iterations, error, and what takes them out",
     source="Shewchuk 2002, What is a good linear finite element?; Timoshenko and Goodier 1970, "
     "Theory of Elasticity, art. 21",
-    run=run,
 )
+def run(run: Run, page: Page) -> None:
+    """Bend a bar with a layer of slivers."""
+    across = QUICK_ACROSS if run.quick else ACROSS
+    heights = QUICK_HEIGHTS if run.quick else HEIGHTS
+    rows = [flattened(run, height, across) for height in heights]
+    with run.step("flat and inside out"):
+        beyond = [inside_out(height, across) for height in BEYOND]
+    exponent = check_condition(page, rows)
+    check_protection(page, rows, beyond)
+    check_remedy(page, rows)
+    state_limits(page, rows, beyond, exponent)
+    show_answer(page, rows)
+    show_solvers(page, rows)
+    page.section("Through to the other side")
+    page.table(
+        "Slivers of no height, and inside out: what multigrid reports without the check, and what "
+        "the check reports",
+        [{k: None if v != v else v for k, v in row.items() if k != "refused"} for row in beyond],
+    )
+    page.data("flatness", column(rows, "flatness"))
+    page.data("condition", column(rows, "condition number"))
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def array(rows: list[Record], name: str) -> Floats:
+    """One key of all heights."""
+    return np.array(column(rows, name))
+
+
+def is_wrong(rows: list[Record]) -> Bools:
+    """Where a direct solver has an error above the criterion, or no answer."""
+    return ~(np.abs(array(rows, "error of bending, direct")) < CRITERION)
+
+
+def gives_up(rows: list[Record]) -> Bools:
+    """Where multigrid does not answer by itself."""
+    return np.array([row["answered by"] != "multigrid" for row in rows])
+
+
+def safe_to(rows: list[Record], failed: Bools) -> float | None:
+    """Flatness of the last bar before the first that fails, from the roundest on; None: of all."""
+    x = array(rows, "flatness")
+    return float(x[: int(failed.argmax())].min()) if failed.any() else None
+
+
+def check_condition(page: Page, rows: list[Record]) -> float:
+    """How the condition number grows; its exponent."""
+    x, condition = array(rows, "flatness"), array(rows, "condition number")
+    usable = (x < 1e-2) & (condition < 1e14)
+    exponent, band = fitted_exponent(x[usable], condition[usable])
+    page.equals(
+        "order of the condition number in the flatness of the slivers",
+        exponent,
+        -1.0,
+        within=0.1,
+        relative=False,
+        why="a tenth for the share of the sound elements at the round end",
+        source="the volume of a sliver is as its height, its squared gradients as the height to "
+        "the power of -2: its stiffness, and with it the largest eigenvalue (which Shewchuk 2002 "
+        "treats in general; read in its abstract), as one over the height",
+        measure="order",
+        band=band,
+    )
+    return exponent
+
+
+def check_protection(page: Page, rows: list[Record], beyond: list[Record]) -> None:
+    """What is solved wrong is refused, and nothing else."""
+    wrong, refused = is_wrong(rows), np.array(column(rows, "refused by the check"), dtype=bool)
+    page.holds(
+        "the sweep goes on until the answer is wrong: flattest bar that is solved wrong or not at "
+        "all",
+        bool(wrong[-1]),
+        why="a sweep that never fails finds no limit",
+        source="round-off times the condition number reaches one",
+    )
+    page.vanishes(
+        "bars that are solved wrong, flat or inside out, and that the check of the mesh accepts",
+        int(np.count_nonzero(wrong & ~refused)) + column(beyond, "refused").count(False),
+        within=0.0,
+        why="a wrong stiffness looks like any other",
+        source="fe_drivetrain.mesh.checks",
+    )
+    page.vanishes(
+        f"bars with slivers less flat than {FLATTEST:g} that the check refuses",
+        int(np.count_nonzero(refused & (array(rows, "flatness") >= FLATTEST))),
+        within=0.0,
+        why="what is solved right must not be refused",
+        source="fe_drivetrain.mesh.checks",
+    )
+
+
+def check_remedy(page: Page, rows: list[Record]) -> None:
+    """Without the slivers the bar is solved as any other."""
+    page.vanishes(
+        "bending stiffness after gmsh has taken the slivers out, worst of all heights, over the "
+        "exact one, less one",
+        np.abs(array(rows, "error, optimised")).max(),
+        within=1e-8,
+        why="quadratic elements hold the solution; iterations end at an energy error of 1e-9 and "
+        "round-off is below",
+        source="Euler-Bernoulli, exact without lateral contraction",
+        measure="stiffness",
+    )
+    page.equals(
+        "most iterations of multigrid after that, over those of the bar with the roundest slivers",
+        max(column(rows, "iterations, optimised")) / rows[0]["iterations, multigrid"],
+        1.0,
+        within=0.25,
+        why="meshes of one size and about one shape: a quarter more or less",
+        source="this sweep",
+    )
+
+
+def state_limits(page: Page, rows: list[Record], beyond: list[Record], exponent: float) -> None:
+    """Answer and limits."""
+
+    def shown(value: float | None) -> str:
+        return "the last of the sweep" if value is None else f"{value:.1g}"
+
+    safe, safe_steps = safe_to(rows, is_wrong(rows)), safe_to(rows, gives_up(rows))
+    most = max(column(rows, "iterations, optimised"))
+    remaining = f"{np.abs(array(rows, 'error, optimised')).max():.1e}"
+    worst = beyond[int(np.argmax(np.nan_to_num(np.abs(array(beyond, "error of bending")))))]
+    page.answer(
+        "One layer of slivers makes the condition number grow as their flatness to the power "
+        f"{exponent:.2f}. Multigrid alone holds down to a flatness of {shown(safe_steps)}; the "
+        f"stiffness has six digits down to {shown(safe)}; there is no answer at "
+        f"{rows[-1]['flatness']:.1g}.",
+        f"The program refuses a mesh whose flattest element is below {FLATTEST:g}, with element "
+        "and place; all that is solved wrong in this sweep lies beyond. gmsh takes the slivers "
+        f"out: then at most {most} iterations, and {remaining} of error.",
+        "Elements turned inside out give no sign of themselves: at a height of "
+        f"{worst['height / cube']:g} the solver converges and the error of the bending stiffness "
+        f"is {worst['error of bending']:.1e}. Only the check of the Jacobian finds them.",
+    )
+    page.limit(
+        "stiffness from a mesh with slivers, direct solver",
+        FLATNESS,
+        low=safe,
+        criterion=f"error of round-off below {CRITERION:g}",
+        beyond="digits are lost as 1 / flatness; at 1e-14 the matrix is singular; inside out a "
+        "wrong answer without any sign",
+        program=f"refuses below {FLATTEST:g}, and anything inside out, with element and place",
+        remedy=f"optimisation by gmsh: error {remaining}",
+    )
+    page.limit(
+        "multigrid on a mesh with slivers",
+        FLATNESS,
+        low=safe_steps,
+        criterion=f"converged within {MAX_ITERATIONS} iterations",
+        beyond="the iteration stalls: nodes of a sliver move together more slowly than the "
+        "smoother sees",
+        program="stops early, and a direct solver answers, with the reason",
+        remedy=f"optimisation by gmsh: at most {most} iterations",
+    )
+
+
+def show_answer(page: Page, rows: list[Record]) -> None:
+    """Errors over the flatness."""
+    x, marked = array(rows, "flatness"), "lines+markers"
+    bending, shear = "10 nodes, bending (held exactly)", "error of shear"
+    errors = {
+        f"direct, {bending}": "error of bending, direct",
+        "multigrid, the same": "error of bending, multigrid",
+        "direct, 10 nodes, shear": f"{shear}, direct",
+        "direct, 4 nodes, shear": f"{shear}, 4 nodes",
+        "slivers taken out, bending": "error, optimised",
+    }
+    failed = x[~np.isfinite(array(rows, "error of bending, multigrid"))]
+    page.section("The answer")
+    page.chart(
+        "Error of the stiffness of a bar with a layer of slivers. The elements' own error hardly "
+        "changes; round-off grows until nothing is left",
+        [
+            *(
+                trace(name, x, np.maximum(np.abs(array(rows, key)), EPSILON), mode=marked)
+                for name, key in errors.items()
+            ),
+            trace("no answer", failed, np.ones(len(failed)), True, marker=CROSS),
+        ],
+        FLATNESS.removesuffix(" [-]"),
+        "relative error of the stiffness",
+        "xy",
+        (safe_to(rows, is_wrong(rows)), None),
+    )
+    page.text(
+        "Bending by couples is held exactly by quadratic elements with straight edges, slivers or "
+        "not, so that its error is the solver's alone. Shear shows that the slivers cost little "
+        "accuracy as elements: the layer is thin, and what it forbids, warping of the squares, "
+        "matters little beside the elements' own error."
+    )
+
+
+def show_solvers(page: Page, rows: list[Record]) -> None:
+    """Condition and iterations over the flatness, and the table."""
+    x, alone, marked = array(rows, "flatness"), gives_up(rows), "lines+markers"
+    steps, condition = array(rows, "iterations, multigrid"), array(rows, "condition number")
+    page.section("The solvers")
+    page.chart(
+        "Condition number and iterations. Multigrid stops early where it cannot converge, and a "
+        "direct solver answers",
+        [
+            trace("condition number over 1e6", x, condition / 1e6, mode=marked),
+            trace("iterations of multigrid", x[~alone], steps[~alone], mode=marked),
+            trace(
+                "multigrid gives up, a direct solver answers",
+                x[alone],
+                np.full(int(alone.sum()), MAX_ITERATIONS),
+                True,
+                marker=CROSS,
+            ),
+            trace(
+                "iterations after the slivers are taken out",
+                x,
+                array(rows, "iterations, optimised"),
+                mode=marked,
+            ),
+        ],
+        FLATNESS.removesuffix(" [-]"),
+        "iterations; condition number / 1e6",
+        "xy",
+        (safe_to(rows, alone), None),
+    )
+    page.table("Slivers driven flat", rows, list(rows[0])[:9])

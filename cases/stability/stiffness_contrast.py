@@ -1,367 +1,172 @@
 """Stiffness contrast: a soft or stiff ring, a chain of soft and stiff bodies, many at once."""
 
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
+from pydantic import ValidationError
 
-#: Bodies of the chain.
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability.decades import (
+    FOUR_DIGITS,
+    crosses,
+    decades,
+    fitted_exponent,
+    safe_range,
+    shown,
+)
+from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.report import trace
+from fe_drivetrain.scene import Material
+from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation import layers
+
+#: Bodies of the chain; every other one is stiff.
 COUNT = 12
+STIFF = range(1, COUNT, 2)
 #: Chains of random stiffness at each spread.
 SAMPLES = 4
 
+RING = "modulus of the ring over that of the shaft"
+CHAIN = "modulus of the stiff bodies over that of the soft ones"
 
-def run(run: Run) -> Any:
-    """Sweep the stiffness of some bodies over what others have."""
-    import numpy as np
 
-    from fe_drivetrain.cases.stability.decades import (
-        FOUR_DIGITS,
-        crosses,
-        decades,
-        safe_range,
-        shown,
-        slope,
-    )
-    from fe_drivetrain.report import Limit, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.scene import Material
-    from fe_drivetrain.validation import (
-        layers,
-    )
+@dataclass(frozen=True)
+class Swept:
+    """Relative errors of a compliance over a contrast of moduli.
 
-    per_decade = 1.0 if run.quick else 3.0
-    tolerance = 0.3 if run.quick else 0.15
-    iterated_per_decade = 0.25 if run.quick else 0.5
+    Attributes
+    ----------
+    contrast, error, rigid : (n,) array
+        Contrast; errors of a direct solver with all bodies elastic, NaN where it refuses, and with
+        stiff bodies rigid.
+    tried, iterated : (m,) array
+        Contrasts tried with multigrid alone, and its errors.
+    converged : (m,) array of bool
+        Whether it reported that it converged.
+    iterations : list of int
+        That it took.
+    """
 
-    def errors(answers: list[Any], exact: Any) -> Any:
-        return np.abs(np.array([a.compliance for a in answers]) / exact - 1.0)
+    contrast: Floats
+    error: Floats
+    rigid: Floats
+    tried: Floats
+    iterated: Floats
+    converged: Bools
+    iterations: list[int]
 
-    with run.step("ring about a shaft"):
-        ring = layers.ring()
-        compliance_of_ring = layers.direct(*ring.system((1.0, 1.0), rigid=(1,))).compliance
-        both = layers.direct(*ring.system((1.0, 1.0))).compliance
-        contrasts = decades(-16, 10, per_decade)
-        exact = compliance_of_ring / contrasts + (both - compliance_of_ring)
-        found = [layers.direct(*ring.system((c, 1.0))) for c in contrasts]
-        ring_error = errors(found, exact)
-        remedy = [layers.direct(*ring.system((c, 1.0), rigid=(1,))) for c in contrasts]
-        ring_remedy = errors(remedy, exact)
-        some = decades(-12, 10, iterated_per_decade)
-        iterated = [layers.iterated(*ring.system((c, 1.0))) for c in some]
-        iterated_error = errors(iterated, compliance_of_ring / some + (both - compliance_of_ring))
-        arrived = np.array([a.arrived for a in iterated])
-    low, high = safe_range(contrasts, ring_error, FOUR_DIGITS)
-    m_low, m_high = safe_range(some, np.where(arrived, iterated_error, np.nan), FOUR_DIGITS)
-    soft = contrasts < 1e-4
-    ring_slope = slope(contrasts[soft], ring_error[soft], (1e-12, 0.1))
-    hybrid = np.fmin(ring_error, ring_remedy)
+    @property
+    def refused(self) -> Bools:
+        """Where the direct solver refuses."""
+        return ~np.isfinite(self.error)
 
-    with run.step("chain of soft and stiff bodies"):
-        chain = layers.chain(COUNT)
-        stiffer = decades(0, 18, per_decade)
-        stiff = [k for k in range(COUNT) if k % 2]
-        moduli = [[c if k in stiff else 1.0 for k in range(COUNT)] for c in stiffer]
-        chain_exact = np.array([sum(1.0 / m for m in some_) / layers.E for some_ in moduli])
-        chain_error = errors([layers.direct(*chain.system(m)) for m in moduli], chain_exact)
-        chain_remedy = errors(
-            [layers.direct(*chain.system(m, rigid=stiff)) for m in moduli], chain_exact
-        )
-        some_stiffer = decades(0, 14, iterated_per_decade)
-        some_moduli = [[c if k in stiff else 1.0 for k in range(COUNT)] for c in some_stiffer]
-        chain_iterated = [layers.iterated(*chain.system(m)) for m in some_moduli]
-        chain_iterated_error = errors(
-            chain_iterated, np.array([sum(1.0 / m for m in ms) / layers.E for ms in some_moduli])
-        )
-        chain_arrived = np.array([a.arrived for a in chain_iterated])
-    _, chain_high = safe_range(stiffer, chain_error, FOUR_DIGITS)
-    chain_slope = slope(stiffer, chain_error, (1e-11, 0.1))
-    rigid_slope = slope(stiffer, chain_remedy, (1e-9, 1e-2))
-    rigid_low, _ = safe_range(stiffer, chain_remedy, FOUR_DIGITS)
-    _, chain_m_high = safe_range(
-        some_stiffer, np.where(chain_arrived, chain_iterated_error, np.nan), FOUR_DIGITS
-    )
+    @property
+    def safe(self) -> tuple[float | None, float | None]:
+        """Range with four digits, of the direct solver."""
+        return safe_range(self.contrast, self.error, FOUR_DIGITS)
 
-    with run.step("many contrasts at once"):
-        rng = np.random.default_rng(0)
-        spreads = np.arange(0.0, 9.1, 1.0 if run.quick else 0.5)
-        many_error = []
-        for spread in spreads:
-            worst = 0.0
-            for _ in range(SAMPLES):
-                drawn = 10.0 ** rng.uniform(-spread, spread, COUNT)
-                drawn[rng.permutation(COUNT)[:2]] = 10.0 ** np.array([-spread, spread])
-                answer = layers.direct(*chain.system(list(drawn)))
-                error = abs(answer.compliance * layers.E / (1.0 / drawn).sum() - 1.0)
-                worst = max(worst, error) if np.isfinite(error) else np.nan
-                if np.isnan(worst):
-                    break
-            many_error.append(worst)
-        ratios = 10.0 ** (2.0 * spreads)
-    many = np.array(many_error)
-    _, many_high = safe_range(ratios, many, FOUR_DIGITS)
+    @property
+    def safe_iterated(self) -> tuple[float | None, float | None]:
+        """Range with four digits, of multigrid where it converges."""
+        error = np.where(self.converged, self.iterated, np.nan)
+        return safe_range(self.tried, error, FOUR_DIGITS)
 
-    with run.step("what the program does"):
-        allowed = _allowed(Material)
-        within = float(ring_error[contrasts >= 0.99 / allowed].max())
+    @property
+    def better(self) -> Floats:
+        """Error of the better of elastic and rigid bodies."""
+        return np.asarray(np.fmin(self.error, self.rigid))
 
-    band = max(float(ring_error[np.abs(np.log10(contrasts)) < 0.5].max()), 1e-14)
-    reason = "round-off scatters by about a decade over the decades of the fit"
-    verdicts = [
-        judge(
-            "soft ring, direct solver: error against the ring's stiffness, exponent",
-            ring_slope,
-            -1.0,
-            tolerance=tolerance,
-            source="round-off of the shaft's stiffness acts as springs to ground beside the ring",
-            reason=reason,
-            measure="order",
-            band=tolerance / 2,
-        ),
-        judge(
-            "chain, direct solver: error against the contrast, exponent",
-            chain_slope,
-            1.0,
-            tolerance=tolerance,
-            source="the same, for each stiff body between soft ones",
-            reason=reason,
-            measure="order",
-            band=tolerance / 2,
-        ),
-        judge(
-            "chain, stiff bodies rigid: error against the contrast, exponent",
-            rigid_slope,
-            -1.0,
-            tolerance=0.02,
-            source="bodies in series: what rigid ones do not give is 1 / contrast",
-            reason="exact in the discrete model, too",
-            measure="order",
-            band=0.01,
-        ),
-        judge(
-            "soft ring: the better of elastic and rigid shaft, worst error below a contrast of "
-            "1e-5",
-            float(np.max(hybrid[contrasts < 0.99e-5])),
-            0.0,
-            tolerance=FOUR_DIGITS,
-            relative=False,
-            source="springs in series",
-            reason="four digits of stiffness",
-            measure="identity",
-            band=band,
-        ),
-        judge(
-            "chain: the better of elastic and rigid bodies, worst error at any contrast",
-            float(np.nanmax(np.fmin(chain_error, chain_remedy))),
-            0.0,
-            tolerance=FOUR_DIGITS,
-            relative=False,
-            source="springs in series",
-            reason="four digits of stiffness",
-            measure="identity",
-            band=band,
-        ),
-        judge(
-            f"largest error within the contrast of moduli that a scene may have, {allowed:.0e}",
-            within,
-            0.0,
-            tolerance=FOUR_DIGITS,
-            relative=False,
-            source="springs in series",
-            reason="four digits of stiffness: what a scene may say must be solved right",
-            measure="identity",
-            band=band,
-        ),
-        judge(
-            "multigrid where it is wrong: says that it did not converge",
-            float((~arrived | (iterated_error < FOUR_DIGITS)).all()),
-            1.0,
-            tolerance=0.0,
-            source="its own estimate of the energy error",
-            reason="yes or no",
-            measure="identity",
-        ),
-    ]
-    refused = ~np.isfinite(ring_error)
-    chain_refused = ~np.isfinite(chain_error)
-    program = (
-        f"moduli in a scene are held to a ratio of {allowed:.0e}; a direct solver refuses a "
-        "residual above 1e-2"
-    )
-    limits = [
-        Limit(
-            method="direct solver: ring about a shaft",
-            parameter="modulus of the ring over that of the shaft",
-            low=low,
-            high=high,
-            criterion="error of the compliance below 1e-4",
-            beyond="the error grows tenfold a decade; no answer below "
-            f"{_largest(contrasts, refused)}",
-            program=program,
-            remedy="the shaft rigid: right to "
-            f"{np.max(ring_remedy[contrasts < (low or 0.0)]):.0e} there",
-        ),
-        Limit(
-            method="multigrid: ring about a shaft",
-            parameter="modulus of the ring over that of the shaft",
-            low=m_low,
-            high=m_high,
-            criterion="converged, and error below 1e-4",
-            beyond="the preconditioner is no longer positive in round-off: no convergence",
-            program="says so, and takes a direct factor",
-            remedy="direct factor; further down, the shaft rigid",
-        ),
-        Limit(
-            method="direct solver: chain of soft and stiff bodies",
-            parameter="modulus of the stiff bodies over that of the soft ones",
-            high=chain_high,
-            criterion="error of the compliance below 1e-4",
-            beyond="the error grows tenfold a decade; no answer from "
-            f"{stiffer[chain_refused].min():.0e} on",
-            program=program,
-            remedy=f"stiff bodies rigid: below 1e-4 from {shown(rigid_low)} on",
-        ),
-        Limit(
-            method="multigrid: chain of soft and stiff bodies",
-            parameter="modulus of the stiff bodies over that of the soft ones",
-            high=chain_m_high,
-            criterion="converged, and error below 1e-4",
-            beyond="no convergence: stiff bodies move rigidly against each other in one aggregate",
-            program="says so, and takes a direct factor",
-            remedy="direct factor; further up, stiff bodies rigid",
-        ),
-        Limit(
-            method="direct solver: random stiffness of many bodies",
-            parameter="largest modulus over the least",
-            high=many_high,
-            criterion="error of the compliance below 1e-4",
-            beyond="the error grows tenfold a decade",
-            program=program,
-            remedy="stiff bodies rigid",
-        ),
-    ]
-    return CASE.results(
-        run,
-        summary=[
-            f"Four digits of stiffness survive a ring down to {shown(low)} of the shaft's modulus "
-            f"with a direct factor and {shown(m_low)} with multigrid, stiff bodies up to "
-            f"{shown(chain_high)} and {shown(chain_m_high)} times that of soft ones between them, "
-            f"and {COUNT} bodies of random stiffness a ratio of {shown(many_high)}.",
-            "Beyond, round-off of what is stiff drowns what is soft: the error grows tenfold a "
-            "decade. A ring stiffer than the shaft does no harm, however stiff.",
-            "Made rigid by elimination, the stiff bodies leave the soft ones right: an error of "
-            f"one over the contrast, below 1e-4 from {shown(rigid_low)} on, where elastic bodies "
-            "are still right.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="A ring about a shaft",
-                items=[
-                    Text(
-                        text="The ring is held outside, the shaft in it is twisted from its bore; "
-                        "all nodes of a circle turn alike, so the two are springs in series "
-                        "exactly, on the mesh, too."
-                    ),
-                    chart(
-                        "Error of the compliance against the stiffness of the ring. Shaded: safe "
-                        "with the direct solver. Where its curve ends it refuses",
-                        [
-                            trace("direct", contrasts[~refused], ring_error[~refused]),
-                            trace(
-                                "multigrid, converged", some[arrived], iterated_error[arrived], True
-                            ),
-                            crosses(
-                                "multigrid, not converged", some[~arrived], iterated_error[~arrived]
-                            ),
-                            trace(
-                                "direct, shaft rigid",
-                                contrasts,
-                                np.maximum(ring_remedy, 1e-16),
-                                line={"dash": "dash"},
-                            ),
-                        ],
-                        "modulus of the ring over that of the shaft",
-                        "relative error",
-                        ("x", "y"),
-                        (low, high),
-                    ),
-                ],
-            ),
-            Section(
-                title="A chain of soft and stiff bodies",
-                items=[
-                    chart(
-                        f"Error of the compliance of {COUNT} bodies in a row, every other one "
-                        "stiff, and of as many of random stiffness. Shaded: safe with the direct "
-                        "solver and elastic bodies, every other one stiff",
-                        [
-                            trace(
-                                "direct",
-                                stiffer[~chain_refused],
-                                np.maximum(chain_error[~chain_refused], 1e-16),
-                            ),
-                            trace(
-                                "multigrid, converged",
-                                some_stiffer[chain_arrived],
-                                np.maximum(chain_iterated_error[chain_arrived], 1e-16),
-                                True,
-                            ),
-                            crosses(
-                                "multigrid, not converged",
-                                some_stiffer[~chain_arrived],
-                                chain_iterated_error[~chain_arrived],
-                            ),
-                            trace(
-                                "direct, stiff bodies rigid",
-                                stiffer,
-                                np.maximum(chain_remedy, 1e-16),
-                                line={"dash": "dash"},
-                            ),
-                            trace(
-                                f"direct, random stiffness, worst of {SAMPLES}",
-                                ratios[np.isfinite(many)],
-                                np.maximum(many[np.isfinite(many)], 1e-16),
-                            ),
-                        ],
-                        "largest modulus over the least",
-                        "relative error",
-                        ("x", "y"),
-                        (None, chain_high),
-                    ),
-                    Table(
-                        caption="Iterations of multigrid on the chain",
-                        columns=["contrast", "iterations", "converged", "error"],
-                        rows=[
-                            [float(c), a.iterations, a.arrived, float(e)]
-                            for c, a, e in zip(
-                                some_stiffer, chain_iterated, chain_iterated_error, strict=True
-                            )
-                        ],
-                    ),
-                ],
-            ),
-        ],
-        limits=limits,
-        figures={
-            "ring": {"contrast": contrasts.tolist(), "error": ring_error.tolist()},
-            "chain": {"contrast": stiffer.tolist(), "error": chain_error.tolist()},
-        },
+
+def swept(
+    bodies: layers.Series,
+    moduli: Callable[[float], Sequence[float]],
+    exact: Callable[[Floats], Floats],
+    rigid: Sequence[int],
+    contrast: Floats,
+    tried: Floats,
+) -> Swept:
+    """Solve bodies in series at every contrast: elastic, with some rigid, and by multigrid."""
+
+    def errors(answers: Sequence[layers.Answer], at: Floats) -> Floats:
+        return np.asarray(np.abs(np.array([a.compliance for a in answers]) / exact(at) - 1.0))
+
+    direct = [layers.direct(*bodies.system(moduli(c))) for c in contrast]
+    stiff_rigid = [layers.direct(*bodies.system(moduli(c), rigid=rigid)) for c in contrast]
+    iterated = [layers.iterated(*bodies.system(moduli(c))) for c in tried]
+    return Swept(
+        contrast,
+        errors(direct, contrast),
+        errors(stiff_rigid, contrast),
+        tried,
+        errors(iterated, tried),
+        np.array([a.arrived for a in iterated]),
+        [a.iterations for a in iterated],
     )
 
 
-def _largest(x: Any, chosen: Any) -> str:
-    return f"{x[chosen].max():.0e}" if chosen.any() else "the sweep"
+def ring(quick: bool) -> Swept:
+    """A ring about a shaft, from soft to stiff."""
+    bodies = layers.ring()
+    of_ring = layers.direct(*bodies.system((1.0, 1.0), rigid=(1,))).compliance
+    of_both = layers.direct(*bodies.system((1.0, 1.0))).compliance
+    return swept(
+        bodies,
+        lambda c: (c, 1.0),
+        lambda c: of_ring / c + (of_both - of_ring),
+        (1,),
+        decades(-16, 10, 1.0 if quick else 3.0),
+        decades(-12, 10, 0.25 if quick else 0.5),
+    )
 
 
-def _allowed(material: Any) -> float:
+def chain(quick: bool) -> Swept:
+    """A chain in which every other body is stiff."""
+
+    def moduli(c: float) -> list[float]:
+        return [c if k in STIFF else 1.0 for k in range(COUNT)]
+
+    def exact(contrast: Floats) -> Floats:
+        return np.array([sum(1.0 / m for m in moduli(c)) / layers.E for c in contrast])
+
+    return swept(
+        layers.chain(COUNT),
+        moduli,
+        exact,
+        STIFF,
+        decades(0, 18, 1.0 if quick else 3.0),
+        decades(0, 14, 0.25 if quick else 0.5),
+    )
+
+
+def random_chains(quick: bool) -> tuple[Floats, Floats]:
+    """Ratios of the largest to the least modulus, and the largest error of chains drawn there."""
+    bodies = layers.chain(COUNT)
+    rng = np.random.default_rng(0)
+    spreads = np.arange(0.0, 9.1, 1.0 if quick else 0.5)
+    errors = []
+    for spread in spreads:
+        worst = 0.0
+        for _ in range(SAMPLES):
+            drawn = 10.0 ** rng.uniform(-spread, spread, COUNT)
+            drawn[rng.permutation(COUNT)[:2]] = 10.0 ** np.array([-spread, spread])
+            answer = layers.direct(*bodies.system(list(drawn)))
+            error = abs(answer.compliance * layers.E / (1.0 / drawn).sum() - 1.0)
+            worst = max(worst, error) if np.isfinite(error) else np.nan
+            if np.isnan(worst):
+                break
+        errors.append(worst)
+    return 10.0 ** (2.0 * spreads), np.array(errors)
+
+
+def allowed_ratio() -> float:
     """Ratio of the stiffest modulus that a material may have to the softest."""
-    import math
 
-    from pydantic import ValidationError
-
-    def valid(exponent: float) -> bool:
+    def is_valid(exponent: float) -> bool:
         try:
-            material(youngs_modulus=10.0**exponent, poisson_ratio=0.3, density=0.0)
+            Material(youngs_modulus=10.0**exponent, poisson_ratio=0.3, density=0.0)
         except ValidationError:
             return False
         return True
@@ -370,24 +175,246 @@ def _allowed(material: Any) -> float:
     ends = []
     for outside in (-30.0, 40.0):
         inside, bad = math.log10(200e9), outside
-        if valid(bad):
+        if is_valid(bad):
             ends.append(bad)
             continue
         for _ in range(40):
             middle = 0.5 * (inside + bad)
-            inside, bad = (middle, bad) if valid(middle) else (inside, middle)
+            inside, bad = (middle, bad) if is_valid(middle) else (inside, middle)
         ends.append(inside)
     return float(10.0 ** (ends[1] - ends[0]))
 
 
-CASE = Case(
-    name="stability/stiffness_contrast",
-    title="Stiffness contrast: soft and stiff bodies in series, and rigid ones in their place",
+@case(
+    "Stiffness contrast: soft and stiff bodies in series, and rigid ones in their place",
     source="springs in series; Higham 2002, Accuracy and stability of numerical algorithms, ch. 10",
-    run=run,
 )
+def run(run: Run, page: Page) -> None:
+    """Sweep the stiffness of some bodies over that of others."""
+    of_ring = run.timed("ring about a shaft", ring, run.quick)
+    of_chain = run.timed("chain of soft and stiff bodies", chain, run.quick)
+    ratios, many = run.timed("many contrasts at once", random_chains, run.quick)
+    allowed = run.timed("what the program does", allowed_ratio)
+    check_exponents(page, of_ring, of_chain, tolerance=0.3 if run.quick else 0.15)
+    check_protection(page, of_ring, of_chain, allowed)
+    _, many_high = safe_range(ratios, many, FOUR_DIGITS)
+    state_limits(page, of_ring, of_chain, many_high, allowed)
+    show(page, of_ring, of_chain, ratios, many)
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def check_exponents(page: Page, of_ring: Swept, of_chain: Swept, tolerance: float) -> None:
+    """How fast digits are lost, and gained where stiff bodies are rigid."""
+    scatter = "round-off scatters by about a decade over the decades of the fit"
+    soft = of_ring.contrast < 1e-4
+    of_soft_ring = fitted_exponent(of_ring.contrast[soft], of_ring.error[soft], (1e-12, 0.1))
+    elastic = fitted_exponent(of_chain.contrast, of_chain.error, (1e-11, 0.1))
+    rigid = fitted_exponent(of_chain.contrast, of_chain.rigid, (1e-9, 1e-2))
+    for quantity, (exponent, band), expected, within, why, source in (
+        (
+            "soft ring, direct solver: error against the ring's stiffness, exponent",
+            of_soft_ring,
+            -1.0,
+            tolerance,
+            scatter,
+            "round-off of the shaft's stiffness acts as springs to ground beside the ring",
+        ),
+        (
+            "chain, direct solver: error against the contrast, exponent",
+            elastic,
+            1.0,
+            tolerance,
+            scatter,
+            "round-off of each stiff body acts as springs to ground between soft ones",
+        ),
+        (
+            "chain, stiff bodies rigid: error against the contrast, exponent",
+            rigid,
+            -1.0,
+            0.02,
+            "exact in the discrete model, too: the next order is a hundredth of the largest error "
+            "that is fitted",
+            "bodies in series: the compliance that rigid ones do not have is 1 / contrast",
+        ),
+    ):
+        page.equals(
+            quantity,
+            exponent,
+            expected,
+            within=within,
+            why=why,
+            source=source,
+            measure="order",
+            band=band,
+        )
+
+
+def check_protection(page: Page, of_ring: Swept, of_chain: Swept, allowed: float) -> None:
+    """Elastic or rigid, one of the two is right; what a scene may contain is solved right."""
+    near_one = np.abs(np.log10(of_ring.contrast)) < 0.5
+    band = max(float(of_ring.error[near_one].max()), 1e-14)
+    for quantity, error, why in (
+        (
+            "soft ring: the better of elastic and rigid shaft, worst error below a contrast of "
+            "1e-5",
+            np.max(of_ring.better[of_ring.contrast < 0.99e-5]),
+            "four digits of stiffness",
+        ),
+        (
+            "chain: the better of elastic and rigid bodies, worst error at any contrast",
+            np.nanmax(of_chain.better),
+            "four digits of stiffness",
+        ),
+        (
+            f"largest error within the contrast of moduli that a scene may have, {allowed:.0e}",
+            of_ring.error[of_ring.contrast >= 0.99 / allowed].max(),
+            "four digits of stiffness: every scene that is accepted must be solved right",
+        ),
+    ):
+        page.at_most(
+            quantity,
+            float(error),
+            FOUR_DIGITS,
+            why=why,
+            source="springs in series",
+            measure="identity",
+            band=band,
+        )
+    page.holds(
+        "multigrid where it is wrong: reports that it did not converge",
+        bool((~of_ring.converged | (of_ring.iterated < FOUR_DIGITS)).all()),
+        why="the program takes a direct factor only where it knows that the iteration failed",
+        source="its own estimate of the energy error",
+    )
+
+
+def state_limits(
+    page: Page, of_ring: Swept, of_chain: Swept, many_high: float | None, allowed: float
+) -> None:
+    """Answer and limits."""
+    (low, high), (m_low, m_high) = of_ring.safe, of_ring.safe_iterated
+    (_, chain_high), (_, chain_m_high) = of_chain.safe, of_chain.safe_iterated
+    rigid_low, _ = safe_range(of_chain.contrast, of_chain.rigid, FOUR_DIGITS)
+    page.answer(
+        f"Four digits of stiffness survive a ring down to {shown(low)} of the shaft's modulus "
+        f"with a direct factor and {shown(m_low)} with multigrid, stiff bodies up to "
+        f"{shown(chain_high)} and {shown(chain_m_high)} times that of soft ones between them, "
+        f"and {COUNT} bodies of random stiffness a ratio of {shown(many_high)}.",
+        "Beyond, round-off of the stiff bodies exceeds the stiffness of the soft ones: the error "
+        "grows tenfold a decade. A ring stiffer than the shaft does no harm, however stiff.",
+        "Made rigid by elimination, the stiff bodies leave the soft ones right: an error of one "
+        f"over the contrast, below 1e-4 from {shown(rigid_low)} on, where elastic bodies are still "
+        "right.",
+    )
+    program = (
+        f"moduli in a scene are limited to a ratio of {allowed:.0e}; a direct solver refuses a "
+        "residual above 1e-2"
+    )
+    lost = of_ring.contrast[of_ring.refused]
+    page.limit(
+        "direct solver: ring about a shaft",
+        RING,
+        low=low,
+        high=high,
+        criterion="error of the compliance below 1e-4",
+        beyond="the error grows tenfold a decade; no answer below "
+        + (f"{lost.max():.0e}" if len(lost) else "the sweep"),
+        program=program,
+        remedy="the shaft rigid: right to "
+        f"{np.max(of_ring.rigid[of_ring.contrast < (low or 0.0)]):.0e} there",
+    )
+    page.limit(
+        "multigrid: ring about a shaft",
+        RING,
+        low=m_low,
+        high=m_high,
+        criterion="converged, and error below 1e-4",
+        beyond="the preconditioner is no longer positive in round-off: no convergence",
+        program="says so, and takes a direct factor",
+        remedy="direct factor; further down, the shaft rigid",
+    )
+    page.limit(
+        "direct solver: chain of soft and stiff bodies",
+        CHAIN,
+        high=chain_high,
+        criterion="error of the compliance below 1e-4",
+        beyond="the error grows tenfold a decade; no answer from "
+        f"{of_chain.contrast[of_chain.refused].min():.0e} on",
+        program=program,
+        remedy=f"stiff bodies rigid: below 1e-4 from {shown(rigid_low)} on",
+    )
+    page.limit(
+        "multigrid: chain of soft and stiff bodies",
+        CHAIN,
+        high=chain_m_high,
+        criterion="converged, and error below 1e-4",
+        beyond="no convergence: stiff bodies move rigidly against each other in one aggregate",
+        program="says so, and takes a direct factor",
+        remedy="direct factor; further up, stiff bodies rigid",
+    )
+    page.limit(
+        "direct solver: random stiffness of many bodies",
+        "largest modulus over the least",
+        high=many_high,
+        criterion="error of the compliance below 1e-4",
+        beyond="the error grows tenfold a decade",
+        program=program,
+        remedy="stiff bodies rigid",
+    )
+
+
+def show(page: Page, of_ring: Swept, of_chain: Swept, ratios: Floats, many: Floats) -> None:
+    """Charts of the errors, iterations on the chain."""
+    page.section("A ring about a shaft")
+    page.text(
+        "The ring is held outside, the shaft in it is twisted from its bore; all nodes of a circle "
+        "turn equally, so the two are springs in series exactly, on the mesh, too."
+    )
+    page.chart(
+        "Error of the compliance against the stiffness of the ring. Shaded: safe with the direct "
+        "solver. Where its curve ends it refuses",
+        curves(of_ring, "direct, shaft rigid"),
+        RING,
+        "relative error",
+        "xy",
+        of_ring.safe,
+    )
+    page.section("A chain of soft and stiff bodies")
+    page.chart(
+        f"Error of the compliance of {COUNT} bodies in a row, every other one stiff, and of as "
+        "many of random stiffness. Shaded: safe with the direct solver and elastic bodies, every "
+        "other one stiff",
+        [
+            *curves(of_chain, "direct, stiff bodies rigid"),
+            trace(
+                f"direct, random stiffness, worst of {SAMPLES}",
+                ratios[np.isfinite(many)],
+                np.maximum(many[np.isfinite(many)], 1e-16),
+            ),
+        ],
+        "largest modulus over the least",
+        "relative error",
+        "xy",
+        (None, of_chain.safe[1]),
+    )
+    rows = zip(
+        of_chain.tried, of_chain.iterations, of_chain.converged, of_chain.iterated, strict=True
+    )
+    page.table(
+        "Iterations of multigrid on the chain",
+        list(rows),
+        ["contrast", "iterations", "converged", "error"],
+    )
+    page.data("ring", {"contrast": of_ring.contrast, "error": of_ring.error})
+    page.data("chain", {"contrast": of_chain.contrast, "error": of_chain.error})
+
+
+def curves(found: Swept, rigid: str) -> list[Any]:
+    """Errors by solver, and with stiff bodies rigid."""
+    answered, converged = ~found.refused, found.converged
+    error, iterated = np.maximum(found.error, 1e-16), np.maximum(found.iterated, 1e-16)
+    return [
+        trace("direct", found.contrast[answered], error[answered]),
+        trace("multigrid, converged", found.tried[converged], iterated[converged], True),
+        crosses("multigrid, not converged", found.tried[~converged], found.iterated[~converged]),
+        trace(rigid, found.contrast, np.maximum(found.rigid, 1e-16), line={"dash": "dash"}),
+    ]

@@ -1,7 +1,7 @@
 """Load histories of any length, made chunk by chunk, and the memory that comparing them takes.
 
-Run as a program, ``python -m ... SAMPLES streamed|whole``, it compares one history in a process of
-its own and prints what that took as JSON.
+Run as ``python -m fe_drivetrain.cases.stability.streamed_series SAMPLES streamed|whole``, it
+compares one history in a process of its own and prints time, memory and statistics as JSON.
 """
 
 from __future__ import annotations
@@ -12,31 +12,21 @@ import time
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, run_python
 from fe_drivetrain.compare import Comparison, compare, compare_streamed
+from fe_drivetrain.compare import statistics as by_definition
 
+#: Samples of a chunk.
 CHUNK = 1 << 18
 MEAN, FACTOR, NOISE = 5.0, 1.02, 0.1
 
-STATISTICS = (
-    "reference_rms",
-    "rmse",
-    "bias",
-    "relative_scatter",
-    "relative_error",
-    "mean_percentage_error",
-    "excluded_share",
-    "correlation",
-    "slope",
-    "cov",
-)
-
 
 def chunks(samples: int) -> Iterator[tuple[Floats, Floats]]:
-    """Reference and model (n, 1): r = 5 + u, m = 1.02 r + 0.1 v, u and v even between 0 and 1."""
+    """Reference and model (n, 1): r = 5 + u, m = 1.02 r + 0.1 v, u and v uniform from 0 to 1."""
     for number, start in enumerate(range(0, samples, CHUNK)):
         n = min(CHUNK, samples - start)
         # each chunk has its own numbers, the same whenever it is asked for
@@ -46,7 +36,7 @@ def chunks(samples: int) -> Iterator[tuple[Floats, Floats]]:
 
 
 def expected() -> dict[str, float]:
-    """The statistics of such a history without end."""
+    """The statistics of such a history of infinite length, by name; integrals over u and v."""
     r1, r2 = MEAN + 1 / 2, (MEAN + 1 / 2) ** 2 + 1 / 12
     # the difference is a r + b v, with mean square
     a, b = FACTOR - 1, NOISE
@@ -75,23 +65,51 @@ def streamed(samples: int) -> Comparison:
     return compare_streamed(lambda: chunks(samples), ["Fz"], ["N"])
 
 
-def whole(samples: int) -> Comparison:
-    """Compared in memory."""
-    r, m = np.empty((2, 1, samples, 1))
+def in_memory(samples: int) -> tuple[Floats, Floats]:
+    """Reference and model (n,) of the whole history."""
+    r, m = np.empty((2, samples))
     for k, (one, other) in enumerate(chunks(samples)):
         here = slice(k * CHUNK, k * CHUNK + len(one))
-        r[0, here], m[0, here] = one, other
-    return compare(r, m, ["Fz"], ["N"])
+        r[here], m[here] = one[:, 0], other[:, 0]
+    return r, m
+
+
+def whole(samples: int) -> Comparison:
+    """Compared in memory."""
+    r, m = in_memory(samples)
+    return compare(r[None, :, None], m[None, :, None], ["Fz"], ["N"])
+
+
+def one_by_one(samples: int) -> dict[str, float]:
+    """The statistics of the whole history by name, each by its own function of all samples.
+
+    `compare` sums blocks as `compare_streamed` does: these are independent of both.
+    """
+    r, m = in_memory(samples)
+    slope, cov = by_definition.model_uncertainty(r, m)
+    found = {
+        "reference_rms": np.sqrt((r**2).mean()),
+        "rmse": by_definition.rmse(r, m),
+        "bias": by_definition.bias(r, m),
+        "relative_scatter": by_definition.relative_scatter(r, m),
+        "relative_error": by_definition.relative_error(r, m),
+        "mean_percentage_error": by_definition.mean_percentage_error(r, m),
+        "excluded_share": by_definition.excluded_share(r),
+        "correlation": by_definition.correlation(r, m),
+        "slope": slope,
+        "cov": cov,
+    }
+    return {name: float(value) for name, value in found.items()}
 
 
 def statistics(found: Comparison) -> dict[str, float]:
-    """By name."""
+    """The statistics of a comparison by name."""
     every = asdict(found)
-    return {name: float(every[name][0, 0]) for name in STATISTICS}
+    return {name: float(every[name][0, 0]) for name in expected()}
 
 
 def peak_memory() -> int | None:
-    """Most memory of this process so far [bytes]; None where the system does not tell."""
+    """Most memory of this process so far [bytes]; None where the system does not report it."""
     status = Path("/proc/self/status")
     # not getrusage: its figure outlives exec, and would be that of the process that started us
     lines = status.read_text(encoding="ascii").splitlines() if status.exists() else []
@@ -99,8 +117,16 @@ def peak_memory() -> int | None:
     return 1024 * int(found[0][1]) if found else None
 
 
+def in_own_process(samples: int, way: str) -> dict[str, Any]:
+    """What `main` prints of so many samples, "streamed" or "whole"."""
+    done = run_python("-m", __spec__.name, str(samples), way)
+    done.check_returncode()
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
 def main() -> None:
-    """Compare, and print what that took."""
+    """Compare, and print time [s], memory before and at most [bytes], and statistics."""
     samples, way = int(sys.argv[1]), sys.argv[2]
     before = peak_memory()
     start = time.perf_counter()

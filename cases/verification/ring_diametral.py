@@ -78,7 +78,8 @@ def edges(reach: float, longest: float, level: int) -> Floats:
     coarse = np.concatenate([[0.0], np.cumsum(lengths)])
     # the load ends at a boundary; what follows is stretched to end at the quarter
     coarse[1:] = reach + (coarse[1:] - reach) * (QUARTER - reach) / (coarse[-1] - reach)
-    fine = np.interp(np.arange((len(coarse) - 1) * level + 1) / level, range(len(coarse)), coarse)
+    divided = np.arange((len(coarse) - 1) * level + 1) / level
+    fine = np.asarray(np.interp(divided, range(len(coarse)), coarse))
     fine[-1] = QUARTER
     return fine
 

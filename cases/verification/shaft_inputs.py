@@ -1,6 +1,5 @@
 """Tables of what the cases of shafts start from."""
 
-from fe_drivetrain.report import Table
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page
 
@@ -8,15 +7,6 @@ from fe_drivetrain.suite import Page
 def show_inputs(page: Page, *rows: tuple[str, float | str, str, str]) -> None:
     """Add the table of a case's inputs: name, value, unit, source."""
     page.table("Inputs", rows, ["input", "value", "unit", "source"])
-
-
-def inputs(*rows: tuple[str, float | str, str, str]) -> Table:
-    """The table of a case's inputs: name, value, unit, source."""
-    return Table(
-        caption="Inputs",
-        columns=["input", "value", "unit", "source"],
-        rows=[list(row) for row in rows],
-    )
 
 
 def steel_rows(material: Material) -> list[tuple[str, float | str, str, str]]:

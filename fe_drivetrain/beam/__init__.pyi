@@ -1,3 +1,5 @@
+from .beam import Beam as Beam
+from .beam import Support as Support
 from .closed_forms import MainBearingBeam as MainBearingBeam
 from .closed_forms import pinned_model as pinned_model
 from .closed_forms import pinned_reaction as pinned_reaction
@@ -10,9 +12,7 @@ from .of_scene import main_bearing_beam as main_bearing_beam
 from .sections import BeamSection as BeamSection
 from .sections import cowper_shear_coefficient as cowper_shear_coefficient
 from .sections import element_integrals as element_integrals
-from .shaft import Beam as Beam
 from .shaft import BeamSolution as BeamSolution
-from .shaft import Support as Support
 from .shaft import UnitLoadResponse as UnitLoadResponse
 from .shaft import shaft_stiffness as shaft_stiffness
 from .shaft import solve as solve

@@ -28,8 +28,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.sections import BeamSection
-from fe_drivetrain.beam.shaft import Beam, Support, unit_load_response
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.materials import MATERIALS, Material
@@ -310,47 +310,6 @@ def main_bearing_frame(
         material=parameters.material,
         shear=shear,
     )
-
-
-def frame_model(
-    loads: ArrayLike,
-    parameters: MainBearingBeam,
-    bearing: ArrayLike | None = None,
-    shear: bool = True,
-    gravity: ArrayLike = (0.0, 0.0, 0.0),
-) -> Floats:
-    """Load on the main bearing from the spatial beam `main_bearing_frame`.
-
-    Parameters
-    ----------
-    loads : array_like, (..., 6)
-        Fx, Fy, Fz, Mx, My, Mz on the shaft at the hub, N and N m.
-    parameters, bearing, shear
-        See `main_bearing_frame`; the gearbox weight acts at the gearbox along -z.
-    gravity : array_like, (3,)
-        m/s^2; adds the shaft's own weight, which the closed forms leave out.
-
-    Returns
-    -------
-    ndarray, (..., 6)
-        Load on the main bearing.
-
-    Raises
-    ------
-    InputError
-        If `loads` has another shape or a value that is not finite, or the bearing's stiffness
-        is not one.
-    """
-    load = _hub_loads(loads)
-    beam = main_bearing_frame(parameters, bearing, shear)
-    hub, gearbox = -parameters.overhang, parameters.span
-    weight = np.array([0.0, 0.0, -parameters.gearbox_weight, 0.0, 0.0, 0.0])
-    unit = unit_load_response(beam, [hub, gearbox], at=0.0)
-    # The weight is one constant for all cases: no copy of the history with a second station.
-    constant = unit.solution([np.zeros(6), weight], gravity).reaction("bearing")
-    result = load @ unit.reaction_matrix("bearing")[:, 0, :].T
-    result += constant
-    return np.asarray(result)
 
 
 def _hub_loads(loads: ArrayLike) -> Floats:

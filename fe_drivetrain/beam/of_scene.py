@@ -5,9 +5,9 @@ from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.closed_forms import MainBearingBeam
 from fe_drivetrain.beam.sections import BeamSection
-from fe_drivetrain.beam.shaft import Beam, Support
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Bearing
 from fe_drivetrain.scene.scene import Scene, as_numbers

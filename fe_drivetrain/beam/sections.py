@@ -154,55 +154,6 @@ class RigiditySection:
 Section = BeamSection | RigiditySection
 
 
-def sections_from_profile(
-    x: ArrayLike, outer_diameter: ArrayLike, inner_diameter: ArrayLike = 0.0
-) -> tuple[BeamSection, ...]:
-    """Sections of a shaft given by its diameters at stations, linear between them.
-
-    Parameters
-    ----------
-    x : array_like, (n,)
-        Stations in ascending order, m; a station given twice is a step.
-    outer_diameter, inner_diameter : array_like, (n,) or scalar
-        m.
-
-    Returns
-    -------
-    tuple of BeamSection
-
-    Raises
-    ------
-    InputError
-        If shapes differ, there are fewer than two stations, or x descends.
-    """
-    station = np.asarray(x, dtype=float)
-    if station.ndim != 1 or station.size < 2 or not np.all(np.diff(station) >= 0):
-        raise InputError(
-            f"beam profile stations of shape {station.shape} must be at least 2 values in "
-            "ascending order: sort them."
-        )
-    try:
-        outer = np.broadcast_to(np.asarray(outer_diameter, dtype=float), station.shape)
-        inner = np.broadcast_to(np.asarray(inner_diameter, dtype=float), station.shape)
-    except ValueError:
-        raise InputError(
-            f"beam profile diameters of shapes {np.shape(outer_diameter)} and "
-            f"{np.shape(inner_diameter)} must have one value for each of the {station.size} "
-            "stations, or a single value."
-        ) from None
-    return tuple(
-        BeamSection(
-            float(station[i + 1] - station[i]),
-            float(outer[i]),
-            float(inner[i]),
-            float(outer[i + 1]),
-            float(inner[i + 1]),
-        )
-        for i in range(station.size - 1)
-        if station[i + 1] > station[i]
-    )
-
-
 @dataclass(frozen=True, eq=False)
 class ElementIntegrals:
     """Flexibility and weight of a length of shaft, clamped at its left end.

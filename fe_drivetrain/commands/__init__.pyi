@@ -7,6 +7,4 @@ from .settings import parse_loads as parse_loads
 from .settings import parse_settings as parse_settings
 from .settings import parse_tolerance as parse_tolerance
 from .uncertainty_page import bands as bands
-from .uncertainty_page import first_order as first_order
-from .uncertainty_page import relative_spread as relative_spread
 from .uncertainty_page import uncertain as uncertain

@@ -14,4 +14,5 @@ from .convergence import grid_convergence as grid_convergence
 from .convergence import observed_order as observed_order
 from .convergence import richardson as richardson
 from .moments import moments as moments
+from .statistics import model_uncertainty as model_uncertainty
 from .statistics import resultant as resultant

@@ -10,10 +10,14 @@ from .files import FORMATS as FORMATS
 from .files import format_module as format_module
 from .files import read as read
 from .files import write as write
+from .formats.craig_bampton_json import read_craig_bampton as read_craig_bampton
 from .formats.elastodyn import Torsion as Torsion
+from .formats.extptfm import read_release_4 as read_release_4
 from .formats.nastran import pynastran as pynastran
+from .formats.stiffness_file import read_stiffness_json as read_stiffness_json
 from .formats.stiffness_file import stiffness_matrix as stiffness_matrix
 from .formats.stiffness_file import write_stiffness_json as write_stiffness_json
+from .formats.summary import read_summary as read_summary
 from .formats.torsion import torsional_damping as torsional_damping
 from .formats.torsion import torsional_stiffness as torsional_stiffness
 from .from_component import component_superelement as component_superelement

@@ -13,8 +13,9 @@ from itertools import pairwise
 import numpy as np
 from scipy import sparse
 
+from fe_drivetrain.beam.beam import Beam, Support
 from fe_drivetrain.beam.of_scene import beam_of_scene
-from fe_drivetrain.beam.shaft import Beam, Support, shaft_stiffness, unit_load_response
+from fe_drivetrain.beam.shaft import shaft_stiffness, unit_load_response
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.mesh.cached import cached_mesh

@@ -1,4 +1,5 @@
 from .aero_rotor import assumptions as assumptions
+from .csv_table import write_csv as write_csv
 from .files import read_hub_loads as read_hub_loads
 from .histories import UNITS as UNITS
 from .histories import LoadHistory as LoadHistory

@@ -200,11 +200,6 @@ class OperatingPoint:
     tangential: Floats
     loss: Floats
 
-    @property
-    def blade_frequency(self) -> float:
-        """Turns a second [Hz], called 1P."""
-        return self.rotor_speed / (2.0 * np.pi)
-
 
 def steady_state(
     rotor: Rotor, wind_speed: float, rotor_speed: float, pitch: float

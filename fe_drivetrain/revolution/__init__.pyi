@@ -4,6 +4,7 @@ from .harmonics import element_matrices as element_matrices
 from .harmonics import freedoms as freedoms
 from .harmonics import harmonic_response as harmonic_response
 from .harmonics import harmonic_solver as harmonic_solver
+from .harmonics import stress_at as stress_at
 from .harmonics import stresses as stresses
 from .harmonics import surface_loads as surface_loads
 from .harmonics import turn as turn

@@ -20,7 +20,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.geometry.meridian import HIGHEST_ORDER, meridian_triangles, outline
 from fe_drivetrain.geometry.shaft import Segment
-from fe_drivetrain.mesh.hexahedra import shaft_quadrilaterals
+from fe_drivetrain.mesh.shaft_section import shaft_quadrilaterals
 
 Where = Callable[[Floats, Floats], NDArray[np.bool_]]
 """Of x and radius [m], any shape: whether a place is meant."""

@@ -1,5 +1,7 @@
 from .input_study import Study as Study
 from .input_study import study as study
+from .numbers import first_order as first_order
+from .numbers import relative_spread as relative_spread
 from .sampling import nominal_value as nominal_value
 from .sampling import sample as sample
 from .sampling import sensitivities as sensitivities

@@ -15,6 +15,7 @@ from . import layers as layers
 from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import manufactured as manufactured
+from . import one_norm as one_norm
 from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
@@ -30,8 +31,11 @@ from . import slivers as slivers
 from . import soft_springs as soft_springs
 from . import solid_fillet as solid_fillet
 from . import solid_shafts as solid_shafts
+from . import solver_steps as solver_steps
+from . import solver_trials as solver_trials
 from . import spherical_shells as spherical_shells
 from . import squeezed_rings as squeezed_rings
+from . import thin_bodies as thin_bodies
 from . import tied_bars as tied_bars
 from . import tied_rings as tied_rings
 from . import tied_strips as tied_strips

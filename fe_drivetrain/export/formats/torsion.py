@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
@@ -57,30 +55,6 @@ def torsional_stiffness(element: Superelement, first: str, second: str) -> float
             f"{first}: check its stiffness"
         )
     return 1.0 / twist
-
-
-def series_stiffness(shafts: Iterable[tuple[float, float]]) -> float:
-    """Stiffness of shafts one after another, on the low-speed side [N m/rad].
-
-    Parameters
-    ----------
-    shafts
-        Of each shaft: its own torsional stiffness [N m/rad], and its speed over that of the
-        low-speed shaft, which is 1 of the low-speed shaft itself. A shaft that turns n times as
-        fast seems n^2 times as stiff from there.
-
-    Raises
-    ------
-    InputError
-        There is no shaft, or a figure is not positive and finite.
-    """
-    given = [(float(k), float(ratio)) for k, ratio in shafts]
-    if not given or not all(0 < value < np.inf for pair in given for value in pair):
-        raise InputError(
-            f"the shafts {given} must be pairs of a stiffness and a speed ratio, all positive and "
-            "finite, and one pair at least"
-        )
-    return 1.0 / sum(1.0 / (k * ratio**2) for k, ratio in given)
 
 
 def torsional_damping(

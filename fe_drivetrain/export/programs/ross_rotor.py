@@ -26,9 +26,9 @@ from typing import Any
 import numpy as np
 from scipy import linalg
 
+from fe_drivetrain.beam.beam import Beam
 from fe_drivetrain.beam.of_scene import beam_of_scene
 from fe_drivetrain.beam.sections import BeamSection
-from fe_drivetrain.beam.shaft import Beam
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.scaling import scaled_solve

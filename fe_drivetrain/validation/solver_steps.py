@@ -29,16 +29,16 @@ class Problem:
 
     Attributes
     ----------
-    system, F
-        Reduced system and load (n, 1).
-    x
-        (n, 1) its direct solution.
-    figures
-        Stiffness by name, of a solution (n,).
-    own
+    system : System
+        Constraints eliminated.
+    F : (n, 1) array
+        Load [N, N m].
+    x : (n, 1) array
+        Its direct solution [m, rad].
+    figures : dict
+        Function that reads a stiffness off a solution (n,), by the stiffness's name.
+    own : str
         Name of the one that is the load over its own motion.
-    unknowns
-        Freedoms that are left.
     """
 
     system: System
@@ -49,7 +49,7 @@ class Problem:
 
     @property
     def unknowns(self) -> int:
-        """Freedoms that are left."""
+        """Degrees of freedom that are left."""
         return self.system.n_free
 
 
@@ -135,15 +135,15 @@ PROBLEMS: dict[str, Callable[[bool], Problem]] = {
 
 @dataclass(frozen=True)
 class Steps:
-    """What each step of conjugate gradients came to, (k,) each.
+    """What each of k steps of conjugate gradients gives.
 
     Attributes
     ----------
-    energy_error, estimate
+    energy_error, estimate : (k,) array
         True relative error in the energy norm, and the solver's estimate of it.
-    residual
+    residual : (k,) array
         Relative.
-    error
+    error : dict of (k,) array
         Relative error of each stiffness by its name.
     """
 

@@ -1,0 +1,219 @@
+"""Sizes of the elements: by part, finer on tightly curved and narrow faces, growing away."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+import gmsh
+from pydantic import Field
+
+from fe_drivetrain.common.errors import InputError
+
+from .faces import boundary, parameters, revolved_ranges
+from .part import Part, dimension
+
+GROWTH = 0.4
+"""Growth of the element size with the distance from a tightly curved face, m per m."""
+
+
+MOST_ELEMENTS = 1e6
+"""More elements than this in one part, four million unknowns, are taken for a slip of the pen in
+its mesh size or in a detail."""
+
+
+_PER_VOLUME = 6 * math.sqrt(2)  # regular tetrahedra of edge 1 in a volume of 1
+
+
+SIZE_PER_WALL = 3.0
+"""Largest mesh size, in thicknesses of the thinnest wall: elements flatter than this fold over."""
+
+
+class MeshSizes(Part):
+    """Edge lengths of the elements of each kind of part."""
+
+    shaft: float = dimension(0.12, of="element size in the shaft", gt=0)
+    bearing: float = dimension(0.05, of="element size in the bearings and on their seats", gt=0)
+    housing: float = dimension(0.06, of="element size in the housings", gt=0)
+    bearing_edge: float = dimension(
+        0.03, of="element size along the edges of the bearings, where stress is singular", gt=0
+    )
+    elements_per_turn: int = Field(
+        default=12,
+        ge=6,
+        le=360,
+        description="least number of elements round any cylinder or sphere",
+    )
+
+    def scaled(self, factor: float) -> MeshSizes:
+        """Sizes times a factor: above 1 for a coarser mesh."""
+        return MeshSizes(
+            shaft=self.shaft * factor,
+            bearing=self.bearing * factor,
+            housing=self.housing * factor,
+            bearing_edge=self.bearing_edge * factor,
+            elements_per_turn=self.elements_per_turn,
+        )
+
+    def finer(self, kinds: Iterable[str], factor: float) -> MeshSizes:
+        """Sizes of some kinds of part divided by a factor.
+
+        For the shaft, the elements a turn rise as well: on fillets and bores they set the size.
+
+        Parameters
+        ----------
+        kinds
+            Any of 'shaft', 'bearing', 'housing'.
+        factor
+            Above 1 for a finer mesh.
+        """
+        update: dict[str, float] = {kind: getattr(self, kind) / factor for kind in kinds}
+        if "shaft" in update:
+            update["elements_per_turn"] = math.ceil(self.elements_per_turn * factor)
+        return self.model_copy(update=update)
+
+
+def size_name(part: str) -> str:
+    """Name of the mesh size that applies to a part."""
+    if part == "shaft":
+        return part
+    return "housing" if part.endswith(".housing") else "bearing"
+
+
+def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, set[int]]) -> None:
+    """Set the element sizes: by part, finer on tightly curved faces and growing away from them."""
+    for option, value in (
+        ("Mesh.MeshSizeFromPoints", 0),
+        ("Mesh.MeshSizeFromCurvature", 0),
+        # inside the volumes only: on a face between two fillets, small edges would fill it whole
+        ("Mesh.MeshSizeExtendFromBoundary", -3),
+    ):
+        gmsh.option.setNumber(option, value)
+    field = gmsh.model.mesh.field
+    fields = []
+    for name, tag in parts.items():
+        size = getattr(sizes, size_name(name))
+        elements = near_faces = gmsh.model.occ.getMass(3, tag) * _PER_VOLUME / size**3
+        if elements > MOST_ELEMENTS:
+            raise InputError(
+                f"part {name!r}: mesh size {size_name(name)!r} is {size:g} m, which makes about "
+                f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: choose "
+                f"{size * (elements / MOST_ELEMENTS) ** (1 / 3):.2g} m or more"
+            )
+        fields.append(field.add("Constant"))
+        field.setNumber(fields[-1], "VIn", size)
+        field.setNumber(fields[-1], "VOut", 1e22)
+        field.setNumbers(fields[-1], "VolumesList", [tag])
+        for face in sorted(faces[name]):
+            limit = _size_limit(face, sizes.elements_per_turn)
+            if limit < size:
+                near_faces += _elements_beside(face, limit)
+                _refuse_too_many(name, face, limit, near_faces)
+                fields.append(field.add("MathEval"))
+                field.setString(fields[-1], "F", f"{limit:.9f} + {GROWTH} * {_distance(face)}")
+        if size_name(name) == "bearing":
+            fields.append(_finer_along_edges(tag, sizes.bearing_edge))
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", fields)
+    field.setAsBackgroundMesh(least)
+
+
+def _elements_beside(face: int, size: float) -> float:
+    """About how many elements a face of small ones makes, those that grow away from it included.
+
+    The integral of 6 sqrt(2) / h^3 with h = h0 + g d at the distance d: over one side of a wide
+    face A / (2 g h0^2), over half the space round a narrow one of length L pi L / (2 g^2 h0).
+    """
+    area, meridian = gmsh.model.occ.getMass(2, face), revolved_ranges(face)
+    box = gmsh.model.getBoundingBox(2, face)
+    length = math.dist(box[:3], box[3:])
+    if meridian is not None:
+        x0, x1, r0, r1 = meridian
+        length = max(2 * math.pi * r1, math.hypot(x1 - x0, r1 - r0))
+    wide, narrow = area / (2 * GROWTH * size**2), math.pi * length / (2 * GROWTH**2 * size)
+    return float(_PER_VOLUME * (wide + narrow))
+
+
+def _refuse_too_many(name: str, face: int, size: float, elements: float) -> None:
+    if elements > MOST_ELEMENTS:
+        x0, y0, _, x1, y1, _ = gmsh.model.getBoundingBox(2, face)
+        raise InputError(
+            f"part {name!r}: a bore, fillet or narrow face at x = {x0:.6g} to {x1:.6g} m, "
+            f"y = {y0:.6g} to {y1:.6g} m needs elements of {size:.2g} m, which make about "
+            f"{elements:.1g} elements, but must make at most {MOST_ELEMENTS:.0e}: leave that "
+            "detail out, enlarge it, or lower elements_per_turn"
+        )
+
+
+def _finer_along_edges(tag: int, size: float) -> int:
+    """A field of small elements along the edges of a bearing, growing away from them.
+
+    Where the side of a bearing meets shaft and housing, stress is singular: that is what holds
+    up the convergence of the stiffness.
+    """
+    field = gmsh.model.mesh.field
+    circles = [
+        curve
+        for curve in boundary([(2, face) for face in boundary([(3, tag)])])
+        if gmsh.model.getType(1, curve) != "Line"
+    ]
+    length = math.fsum(gmsh.model.occ.getMass(1, curve) for curve in circles) / 2  # each is twice
+    # a quarter of a turn round each edge, elements growing away from it
+    elements = _PER_VOLUME * length * math.pi / 4 / (GROWTH**2 * size)
+    if elements > MOST_ELEMENTS:
+        raise InputError(
+            f"mesh size 'bearing_edge' is {size:g} m, which makes about {elements:.1g} elements, "
+            f"but must make at most {MOST_ELEMENTS:.0e}: choose "
+            f"{size * elements / MOST_ELEMENTS:.2g} m or more"
+        )
+    distance = field.add("Distance")
+    field.setNumbers(distance, "CurvesList", circles)
+    field.setNumber(distance, "Sampling", 200)
+    growing = field.add("MathEval")
+    field.setString(growing, "F", f"{size:.9f} + {GROWTH} * F{distance}")
+    return int(growing)
+
+
+def _size_limit(face: int, elements_per_turn: int) -> float:
+    """Largest element size that a face allows, whatever its part is given, m.
+
+    A curved face gets its number of elements a turn; a fillet (torus) is allowed elements half as
+    long again, since its arc is a quarter of a turn or less, and small elements all round the
+    shaft are dear. A narrow ring (a low step, the rim beside a bearing) gets chords whose sagitta,
+    size^2 / (8 radius), is at most half its width: the edges on its two sides would cross.
+    """
+    kind, limit = gmsh.model.getType(2, face), math.inf
+    if kind != "Plane":
+        largest, smallest, _, _ = gmsh.model.getPrincipalCurvatures(face, parameters(face)[0])
+        curvature = max(abs(float(largest[0])), abs(float(smallest[0])))
+        if curvature > 0:
+            limit = (1.5 if kind == "Torus" else 1.0) * 2 * math.pi / curvature / elements_per_turn
+    meridian = revolved_ranges(face)
+    if meridian is not None:
+        x0, x1, r0, r1 = meridian
+        limit = min(limit, 2 * math.sqrt(r1 * math.hypot(x1 - x0, r1 - r0)))
+    return limit
+
+
+def _distance(face: int) -> str:
+    """Distance from a face's bounding box, as a formula for gmsh.
+
+    The box is one of (x, radius) where the face goes round the x axis, of (x, y, z) elsewhere.
+    """
+    meridian = revolved_ranges(face)
+    if meridian is not None:
+        low, high = meridian[::2], meridian[1::2]
+        ranges = list(zip(("x", "sqrt(y*y + z*z)"), low, high, strict=True))
+    else:
+        box = gmsh.model.getBoundingBox(2, face)
+        ranges = list(zip(("x", "y", "z"), box[:3], box[3:], strict=True))
+    # |t - a| + |t - b| - (b - a) is twice the distance of t from the interval [a, b]
+    terms = [
+        f"((abs({_less(t, a)}) + abs({_less(t, b)}) - {b - a:.9f}) / 2)^2" for t, a, b in ranges
+    ]
+    return f"sqrt({' + '.join(terms)})"
+
+
+def _less(term: str, number: float) -> str:
+    """`term - number` in gmsh's formulas, which know neither exponents nor a sign after another."""
+    return f"{term} {'-' if number >= 0 else '+'} {abs(number):.9f}"
