@@ -179,8 +179,8 @@ def _size_limit(face: int, elements_per_turn: int) -> float:
 
     A curved face gets its number of elements a turn; a fillet (torus) is allowed elements half as
     long again, since its arc is a quarter of a turn or less, and small elements all round the
-    shaft are dear. A narrow ring (a low step, the rim beside a bearing) gets chords whose sagitta,
-    size^2 / (8 radius), is at most half its width: the edges on its two sides would cross.
+    shaft are expensive. A narrow ring (a low step, the rim beside a bearing) gets chords whose
+    sagitta, size^2 / (8 radius), is at most half its width: the edges on its two sides would cross.
     """
     kind, limit = gmsh.model.getType(2, face), math.inf
     if kind != "Plane":

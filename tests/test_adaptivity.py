@@ -49,7 +49,7 @@ def test_next_mesh_is_finer_where_cells_are_marked():
 
     assert sizes_at(finer, 0.0, 0.2) < 0.7 * sizes_at(mesh, 0.0, 0.2)
     assert sizes_at(finer, 0.7, 1.0) > 0.75 * sizes_at(mesh, 0.7, 1.0)
-    # the shape is meshed anew: curved surfaces are no worse
+    # the shape is meshed again: curved surfaces are no worse
     exact = np.pi / 4 * (0.6**2 - 0.2**2) * 2.0
     assert abs(volume(finer) - exact) <= abs(volume(mesh) - exact)
 

@@ -12,8 +12,8 @@ from fe_drivetrain.geometry.meridian import outline
 from fe_drivetrain.mesh.hexahedra import shaft_hexahedra
 from fe_drivetrain.revolution.harmonics import (
     along_sides,
+    dofs,
     element_matrices,
-    freedoms,
     harmonic_response,
     harmonic_solver,
     rigid_motions,
@@ -177,7 +177,7 @@ def test_rigid_motions_store_no_energy_and_give_no_stress(name, n):
         s = stresses(mesh, STEEL, n, strain * motion.reshape(-1, 3), mesh.element.points)
         assert np.abs(s).max() < 1e-9 * strain * STEEL.youngs_modulus
     held = mesh.where(lambda x, r: x < SHAFTS[name].front + 1e-9)
-    which = np.concatenate([freedoms(held, c) for c in range(3)])
+    which = np.concatenate([dofs(held, c) for c in range(3)])
     motions = rigid_motions(mesh, n)
     response = harmonic_response(mesh, STEEL, n, held=(which, motions[which]))
     np.testing.assert_allclose(response.u.reshape(-1, motions.shape[1]), motions, atol=1e-8)
@@ -211,7 +211,7 @@ def test_bending_by_its_exact_tractions_is_saint_venants(shaft):
     )
     rear = mesh.where(lambda x, r: np.abs(x) < 1e-9)
     outer = rear[mesh.nodes[rear, 1].argmax()]
-    held = np.array([freedoms(outer, 0), freedoms(outer, 1)])
+    held = np.array([dofs(outer, 0), dofs(outer, 1)])
     response = harmonic_response(mesh, STEEL, 1, loads, (held, np.zeros(2)))
     exact = moment**2 * 2.0 / (2 * STEEL.youngs_modulus * inertia(shaft))
     assert response.energy[0] == pytest.approx(exact, rel=1e-10)
@@ -233,7 +233,7 @@ def test_thick_cylinder_under_pressure_is_lames():
         mesh, 0, bore, lambda at, normal: -inside * np.insert(normal, 2, 0.0, axis=1)
     )
     ends = mesh.where(lambda x, r: (x < 1e-9) | (x > 0.1 - 1e-9))
-    held = np.concatenate([freedoms(ends, 0), freedoms(ends[:1], 2)])
+    held = np.concatenate([dofs(ends, 0), dofs(ends[:1], 2)])
     response = harmonic_response(mesh, STEEL, 0, loads, (held, np.zeros(len(held))))
     A = inside * a**2 / (b**2 - a**2)
     B = A * b**2
@@ -278,7 +278,7 @@ def test_oval_ring_is_michells():
     loads = surface_loads(
         mesh, 2, rim, lambda at, normal: -outside * np.insert(normal, 2, 0.0, axis=1)
     )
-    ends = freedoms(mesh.where(lambda x, r: (x < 1e-9) | (x > 0.1 - 1e-9)), 0)
+    ends = dofs(mesh.where(lambda x, r: (x < 1e-9) | (x > 0.1 - 1e-9)), 0)
     response = harmonic_response(mesh, STEEL, 2, loads, (ends, np.zeros(len(ends))))
     for radius in (a, 0.25, b):
         s = stress_at(mesh, STEEL, 2, response.u[..., 0], np.array([[0.05, radius]]))[0]
@@ -301,7 +301,7 @@ def test_twisted_cone_is_exact():
     x, r = mesh.nodes.T
     exact = r / np.hypot(x - apex, r) ** 3
     ends = mesh.where(lambda x, r: (x < 1e-9) | (x > 1 - 1e-9))
-    held = np.concatenate([freedoms(ends, 2), freedoms(ends[:1], 0)])
+    held = np.concatenate([dofs(ends, 2), dofs(ends[:1], 0)])
     values = np.concatenate([exact[ends], [0.0]])
     response = harmonic_response(mesh, STEEL, 0, held=(held, values))
     np.testing.assert_allclose(response.u[:, 2, 0], exact, atol=1e-8 * exact.max())
@@ -468,7 +468,7 @@ def test_stress_on_the_axis_is_the_limit_towards_it():
     rear = mesh.where(lambda x, r: x > FILLETED.rear - 1e-9)
     front = mesh.where(lambda x, r: x < 1e-9)
     for n in (0, 1):
-        which = np.concatenate([freedoms(end, c) for end in (front, rear) for c in range(3)])
+        which = np.concatenate([dofs(end, c) for end in (front, rear) for c in range(3)])
         values = np.zeros(len(which))
         values[-3 * len(rear) :] = 1e-3 * rigid_motions(mesh, n)[which[-3 * len(rear) :]].sum(
             axis=1
@@ -480,10 +480,10 @@ def test_stress_on_the_axis_is_the_limit_towards_it():
 
 @pytest.mark.parametrize("n", [0, 1, 2])
 def test_a_factor_solves_what_a_response_does(n):
-    """On a solid body, whose axis ties freedoms, with what is held moved and not."""
+    """On a solid body, whose axis ties degrees of freedom, with what is held moved and not."""
     mesh = meridian(FILLETED, 0.3, order=3, layers=1, per_fillet=3)
     front = mesh.where(lambda x, r: x < 1e-9)
-    held = np.concatenate([freedoms(front, c) for c in range(3)])
+    held = np.concatenate([dofs(front, c) for c in range(3)])
     loads = np.random.default_rng(n).standard_normal((3 * len(mesh.nodes), 2))
     found = harmonic_solver(mesh, STEEL, n, held)(loads)
     response = harmonic_response(mesh, STEEL, n, loads, (held, np.zeros(len(held))))
@@ -499,7 +499,7 @@ def test_a_factor_solves_what_a_response_does(n):
 def test_what_is_free_is_refused():
     mesh = meridian(TUBE)
     with pytest.raises(InputError, match="free to move along x and about x"):
-        harmonic_response(mesh, STEEL, 0, held=(freedoms(np.array([0]), 0), np.zeros(1)))
+        harmonic_response(mesh, STEEL, 0, held=(dofs(np.array([0]), 0), np.zeros(1)))
     with pytest.raises(InputError, match="free to move sideways"):
         harmonic_response(mesh, STEEL, 1)
     with pytest.raises(InputError, match="harmonic is -1"):
@@ -526,7 +526,7 @@ def test_stiffness_of_a_mesh_is_that_of_its_response():
     front, rear = (
         mesh.where(lambda x, r, end=end: np.abs(x - end) < 1e-9) for end in (WILD.front, WILD.rear)
     )
-    which = np.concatenate([freedoms(end, c) for end in (front, rear) for c in range(3)])
+    which = np.concatenate([dofs(end, c) for end in (front, rear) for c in range(3)])
     for n, rows in ((0, (0, 3)), (1, (1, 5))):
         motions = rigid_motions(mesh, n)
         values = np.zeros((len(which), 2))
@@ -596,7 +596,7 @@ def test_stiffness_of_a_seat_is_that_of_its_response(name):
     seat = mesh.where(
         lambda x, r: (x > low - 1e-9) & (x < high + 1e-9) & (np.abs(r - outer) < 1e-9)
     )
-    which = np.concatenate([freedoms(nodes, c) for nodes in (front, seat) for c in range(3)])
+    which = np.concatenate([dofs(nodes, c) for nodes in (front, seat) for c in range(3)])
     for n, numbers in ((0, (6, 9)), (1, (7, 11))):
         motions = rigid_motions(mesh, n)
         if n:  # about the seat's own middle

@@ -169,12 +169,12 @@ def test_frame_and_closed_form_agree_at_any_bearing_stiffness(loads, stiffness):
 
 
 def test_a_quarter_turn_takes_one_plane_to_the_other(loads):
-    # y to z, z to -y; without the weight and with equal stiffness the planes are alike.
-    alike = replace(TABLE, gearbox_weight=0.0, yaw_stiffness=145e6)
+    # y to z, z to -y; without the weight and with equal stiffness the planes are equal.
+    equal = replace(TABLE, gearbox_weight=0.0, yaw_stiffness=145e6)
     turn = np.kron(np.eye(2), [[1, 0, 0], [0, 0, -1], [0, 1, 0]])
     for model in (pinned_model, torsional_spring_model, frame_reaction):
-        assert model(loads @ turn.T, alike) == pytest.approx(
-            model(loads, alike) @ turn.T, rel=1e-10, abs=1e-6
+        assert model(loads @ turn.T, equal) == pytest.approx(
+            model(loads, equal) @ turn.T, rel=1e-10, abs=1e-6
         )
 
 

@@ -198,7 +198,7 @@ def test_the_variable_moves_the_cache_or_switches_it_off(
 
 
 def same(first: Mesh, second: Mesh) -> None:
-    """Equal to the last bit, and laid out alike in memory."""
+    """Equal to the last bit, and laid out in the same way in memory."""
     assert first.part_names == second.part_names
     assert list(first.faces) == list(second.faces)
     assert first.named_points == second.named_points

@@ -1,4 +1,4 @@
-"""Decks for CalculiX: what stands in them is the model, and ccx, where it is, answers alike."""
+"""Decks for CalculiX: what stands in them is the model, and ccx, where it is, agrees."""
 
 import re
 from pathlib import Path
@@ -73,8 +73,8 @@ class Deck:
                         values += rest.pop(0).split(",")
                     self.equations.append(
                         [
-                            (3 * (int(node) - 1) + int(freedom) - 1, float(value))
-                            for node, freedom, value in zip(*[iter(values)] * 3, strict=True)
+                            (3 * (int(node) - 1) + int(dof) - 1, float(value))
+                            for node, dof, value in zip(*[iter(values)] * 3, strict=True)
                         ]
                     )
         self.held = []
@@ -104,8 +104,8 @@ class Deck:
             column += card == "*STEP"
             if card.startswith("*CLOAD"):
                 for line in lines:
-                    node, freedom, value = line.split(",")
-                    self.loads[3 * (int(node) - 1) + int(freedom) - 1, column] = float(value)
+                    node, dof, value = line.split(",")
+                    self.loads[3 * (int(node) - 1) + int(dof) - 1, column] = float(value)
 
     def solution(self) -> np.ndarray:
         """All displacements, by Lagrange multipliers: no elimination of the project's."""
@@ -115,15 +115,15 @@ class Deck:
             E, nu = self.materials[part]
             lame = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
             K = K + assemble(self.positions, rows[:, 1:] - 1, lame, n).tocsr()
-        for freedom, stiffness in self.springs:
-            K = K + sparse.csr_array(([stiffness], ([freedom], [freedom])), shape=(n, n))
-        rows = [*self.equations, *([(freedom, 1.0)] for freedom in self.held)]
+        for dof, stiffness in self.springs:
+            K = K + sparse.csr_array(([stiffness], ([dof], [dof])), shape=(n, n))
+        rows = [*self.equations, *([(dof, 1.0)] for dof in self.held)]
         C = sparse.csr_array(
             (
                 [value for row in rows for _, value in row],
                 (
                     [k for k, row in enumerate(rows) for _ in row],
-                    [freedom for row in rows for freedom, _ in row],
+                    [dof for row in rows for dof, _ in row],
                 ),
             ),
             shape=(len(rows), n),
@@ -184,7 +184,7 @@ def test_equations_are_not_chained(models, form, tmp_path):
     given = [row[0][0] for row in deck.equations]
     assert len(set(given)) == len(given)
     assert not set(given) & set(deck.held)
-    assert not set(given) & {freedom for row in deck.equations for freedom, _ in row[1:]}
+    assert not set(given) & {dof for row in deck.equations for dof, _ in row[1:]}
     assert all(row[0][1] == 1.0 for row in deck.equations)
 
 
@@ -227,7 +227,7 @@ def test_four_points_change_curved_elements_only(bonded_model):
     four = four_point_model(bonded_model)
     mesh = bonded_model.mesh
     n = len(mesh.points)
-    motions = np.zeros((bonded_model.n_freedoms, 6))
+    motions = np.zeros((bonded_model.n_dofs, 6))
     motions[: 3 * n] = rigid_motions(mesh.points)
     for part, K in four.part_stiffness.items():
         size = np.abs(K.data).max()

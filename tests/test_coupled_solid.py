@@ -35,7 +35,7 @@ def test_the_free_body_held_at_its_rigid_rear_is_the_solid_held_there(mesh: Mesh
     body = condensed_solid(mesh, MATERIAL, [hub, gearbox]).body
     held = supported(body, {"gearbox": np.diag(np.full(6, np.inf))}).motions[:6, :6]
     solid = coupled_solid(mesh, MATERIAL, [hub])
-    rear = fixed("rear", mesh.face_nodes("shaft.rear"), solid.n_freedoms)
+    rear = fixed("rear", mesh.face_nodes("shaft.rear"), solid.n_dofs)
     compliance = point_compliance(solid, [rear])
     size = np.sqrt(compliance.diagonal())
     np.testing.assert_allclose(
@@ -56,7 +56,7 @@ def test_points_that_move_as_one_body_move_all_nodes_so(mesh: Mesh, front: str, 
 def test_a_spring_to_ground_at_a_point_adds_to_its_stiffness(mesh: Mesh):
     hub, _ = attachments("rigid", "rigid")
     solid = coupled_solid(mesh, MATERIAL, [hub])
-    rear = fixed("rear", mesh.face_nodes("shaft.rear"), solid.n_freedoms)
+    rear = fixed("rear", mesh.face_nodes("shaft.rear"), solid.n_dofs)
     bare = np.linalg.inv(point_compliance(solid, [rear]))
     spring = np.diag([1e9, 2e9, 3e9, 4e8, 5e8, 6e8])
     sprung = np.linalg.inv(point_compliance(solid, [rear], [(solid.points[0], spring)]))

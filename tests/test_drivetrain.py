@@ -4,12 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from fe_drivetrain.cases.drivetrain import (
-    from_table,
-    published,
-)
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.case import Run, find_cases
 from fe_drivetrain.torsion.gear_table import (
     GENERATOR,
     ROTOR,
@@ -38,6 +34,7 @@ from fe_drivetrain.torsion.system import (
     response,
     static_stiffness,
 )
+from fe_drivetrain.validation import published_drivetrains as published
 from fe_drivetrain.validation.independent_torsion import (
     certified,
     holzer_frequencies,
@@ -348,7 +345,7 @@ def test_teeth_give_the_ratio_and_gears_turn_without_winding():
 
 def test_number_of_planets_does_not_matter_where_they_share(table):
     # three planets as one of three times the inertia and stiffness: what shafts feel is the same
-    one = published.changed(
+    one = published.with_values(
         table,
         {"stages.0.planets": 1}
         | {
@@ -446,14 +443,15 @@ def test_own_drivetrain_runs_as_a_case(tmp_path):
         "generator: {inertia: 3.0}}",
         "utf-8",
     )
-    results = from_table.CASE.run(Run({"table": str(path)}, True, tmp_path))
+    (case,) = find_cases("drivetrain/from_table")
+    results = case.results(Run({"table": str(path)}, True, tmp_path))
     exact = np.sqrt(80 * (1 / 5 + 1 / 3)) / (2 * np.pi)
     for frequencies in results.figures["frequencies"].values():
         assert_allclose(frequencies, [0.0, exact], rtol=1e-12)
     assert results.figures["static_stiffness"] == pytest.approx(80.0, rel=1e-12)
     assert results.passed
     with pytest.raises(InputError, match="setting 'tabel' is unknown"):
-        from_table.CASE.run(Run({"tabel": "x"}, True, tmp_path))
+        case.results(Run({"tabel": "x"}, True, tmp_path))
 
 
 def test_wrong_systems_say_what_is_wrong():

@@ -61,7 +61,7 @@ def moved_mesh(n_nodes, amount, rng):
 
 
 def generic_assembly(points, cells, lame):
-    """scikit-fem's own form on the same elements, its freedoms numbered as ours."""
+    """scikit-fem's own form on the same elements, its degrees of freedom numbered as ours."""
     kind = element_kind(cells.shape[1])
     order = np.argsort(kind.order)  # VTK's place of each of scikit-fem's nodes
     X, W = get_quadrature(kind.element.refdom, kind.degree)
@@ -91,7 +91,7 @@ def test_equals_scikit_fem(amount, rng):
 
     basis = Basis(as_scikit_fem(points, cells), ElementVector(ElementTetP2()))
     generic = linear_elasticity(*STEEL.lame).assemble(basis)
-    # scikit-fem numbers freedoms its own way: match them by element, node and component.
+    # scikit-fem numbers degrees of freedom its own way: match them by element, node and component.
     local = np.empty(basis.element_dofs.shape, dtype=int)
     for k in range(30):
         node, axis = divmod(k, 3)
@@ -230,7 +230,7 @@ def test_volume_and_face_weights(rng):
     np.testing.assert_allclose(area, [0, 0, 0, 1 / 3, 1 / 3, 1 / 3], atol=1e-14)
 
 
-def test_extra_freedoms_are_left_empty(rng):
+def test_extra_degrees_of_freedom_are_left_empty(rng):
     points, cells = curved_mesh(0.0, rng)
     K = assemble(points, cells, STEEL.lame, points.size + 6)
     assert K.shape == (points.size + 6,) * 2

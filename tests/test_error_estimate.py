@@ -75,7 +75,7 @@ def test_energy_density_is_half_of_stress_times_strain(rng):
 
 
 def test_jump_of_stress_between_materials_is_no_error():
-    """Two bars side by side are stretched alike: each has its own uniform stress."""
+    """Two bars side by side are stretched equally: each has its own uniform stress."""
     block = brick((4, 2, 2), 10)
     first = block.points[block.cells].mean(axis=1)[:, 1] < 0.5
     materials = [(0.0, 1e11), (0.0, 3e11)]

@@ -282,7 +282,7 @@ def test_sixteen_characters_keep_ten_digits(value: float) -> None:
 
 
 def dmig_by_pynastran(path: Path) -> tuple[dict[str, Floats], Floats]:
-    """Matrices with six freedoms of each grid in order, and positions."""
+    """Matrices with six degrees of freedom of each grid in order, and positions."""
     model = nastran.pynastran("bdf.bdf").BDF(debug=None)
     model.read_bdf(str(path), punch=True, xref=False)
     found = {}
@@ -356,7 +356,7 @@ def test_one_triangle_of_a_symmetric_dmig_is_the_whole_matrix(tmp_path: Path) ->
 
 @pytest.mark.needs("pyNastran")
 def test_columns_of_a_dmig_may_stand_in_any_order(tmp_path: Path) -> None:
-    """pyNastran numbers freedoms as they come up."""
+    """pyNastran numbers degrees of freedom as they come up."""
     element = moderate_element(2)
     path = written(tmp_path, element, "dmig")
     text = path.read_text().splitlines()
@@ -484,12 +484,12 @@ def test_two_superelements_stand_in_one_deck(tmp_path: Path) -> None:
     a, b = moderate_element(2, 5), moderate_element(1, 6)
     second = 1000
     lines = [*model_lines(a), *model_lines(b, second, second), "*EQUATION"]
-    for freedom in range(6):
-        node, component = freedom // 3, freedom % 3 + 1
+    for dof in range(6):
+        node, component = dof // 3, dof % 3 + 1
         lines += ["2", f"{second + node},{component},1.,{1 + node},{component},-1."]
-    for freedom in range(12):
+    for dof in range(12):
         lines += ["*STEP", "*STATIC", "*CLOAD, OP=NEW"]
-        lines += [f"{freedom // 3 + 1},{freedom % 3 + 1},1."]
+        lines += [f"{dof // 3 + 1},{dof % 3 + 1},1."]
         lines += ["*NODE PRINT, NSET=FULL_5_POINTS", "U", "*END STEP"]
     deck = tmp_path / "two.inp"
     deck.write_text("".join(f"{line}\n" for line in lines))
@@ -507,19 +507,19 @@ def test_ccx_puts_a_drivetrain_together_from_its_parts(tmp_path: Path, shaft: Su
     second = 1000
     lines = [*model_lines(shaft), *model_lines(unit, second, second), "*EQUATION"]
     seat, gearbox = (1 + 2 * shaft.points.index(name) for name in ("main_bearing", "gearbox"))
-    for freedom in range(6):
-        node, component = freedom // 3, freedom % 3 + 1
+    for dof in range(6):
+        node, component = dof // 3, dof % 3 + 1
         lines += ["2", f"{second + node},{component},1.,{seat + node},{component},-1."]
-    for freedom, k in enumerate(scene.gearbox.stiffness):
-        node, component = gearbox + freedom // 3, freedom % 3 + 1
+    for dof, k in enumerate(scene.gearbox.stiffness):
+        node, component = gearbox + dof // 3, dof % 3 + 1
         if k == "rigid":
             lines += ["*BOUNDARY", f"{node},{component},{component}"]
         elif k:
-            lines += [f"*ELEMENT, TYPE=SPRING1, ELSET=G{freedom}", f"{2000 + freedom},{node}"]
-            lines += [f"*SPRING, ELSET=G{freedom}", f"{component}", f"{k:.13e}"]
-    for freedom in range(6):
+            lines += [f"*ELEMENT, TYPE=SPRING1, ELSET=G{dof}", f"{2000 + dof},{node}"]
+            lines += [f"*SPRING, ELSET=G{dof}", f"{component}", f"{k:.13e}"]
+    for dof in range(6):
         lines += ["*STEP", "*STATIC", "*CLOAD, OP=NEW"]
-        lines += [f"{freedom // 3 + 1},{freedom % 3 + 1},1."]
+        lines += [f"{dof // 3 + 1},{dof % 3 + 1},1."]
         lines += ["*NODE PRINT, NSET=SHAFT_POINTS", "U", "*END STEP"]
     deck = tmp_path / "drivetrain.inp"
     deck.write_text("".join(f"{line}\n" for line in lines))
@@ -529,7 +529,7 @@ def test_ccx_puts_a_drivetrain_together_from_its_parts(tmp_path: Path, shaft: Su
 
 
 def test_too_many_frequencies_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="6 freedoms for each of 3"):
+    with pytest.raises(InputError, match="6 degrees of freedom for each of 3"):
         frequencies_by_calculix(moderate_element(1), tmp_path, 3)
 
 

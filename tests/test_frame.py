@@ -280,7 +280,7 @@ def test_more_stations_change_nothing():
 
 
 def test_turning_the_frame_about_x_turns_the_answer():
-    # A quarter turn takes y to z and z to -y, in forces and in moments alike.
+    # A quarter turn takes y to z and z to -y, in forces and in moments.
     turn = np.kron(np.eye(2), [[1, 0, 0], [0, 0, -1], [0, 1, 0]])
     beam = stepped_beam()
 

@@ -33,7 +33,7 @@ def test_every_element_is_taken_once_and_all_are_joined(across, along):
 
 @pytest.mark.parametrize(("across", "along"), [(1, 1), (1, 7), (3, 5), (6, 2)])
 def test_condensed_is_the_schur_complement(across, along):
-    """Random laws and shares, nodes held at zero, nodes that follow one kept freedom."""
+    """Random laws and shares, nodes held at zero, nodes that follow one kept degree of freedom."""
     rng = np.random.default_rng(across + 10 * along)
     cells, centres, nodes = grid(across, along)
     k, s, m = 2, 3, 4
@@ -71,7 +71,7 @@ def test_condensed_is_the_schur_complement(across, along):
 
 @pytest.mark.parametrize(("across", "along"), [(1, 1), (1, 7), (3, 5), (6, 9)])
 def test_a_factor_solves_the_assembled_system(across, along):
-    """Random laws and shares, one freedom held at zero, two that follow one, one of no element."""
+    """Random laws and shares, one dof held at zero, two that follow one, one of no element."""
     rng = np.random.default_rng(across + 10 * along)
     cells, centres, nodes = grid(across, along)
     k, s, m = 3, 3, 4

@@ -370,7 +370,7 @@ def test_a_wrong_part_is_refused_in_one_sentence(attempt, words):
     message = str(caught.value)
     assert words in message
     assert "\n" not in message
-    assert ": " in message, "the mend follows a colon"
+    assert ": " in message, "the fix follows a colon"
 
 
 def test_unused_bolt_dimensions_do_not_stand_in_the_way():

@@ -82,7 +82,7 @@ def test_same_stiffness_in_any_frame(assemble, nodes, rng):
     assert turned.ravel() == pytest.approx(here @ u.ravel(), rel=1e-9, abs=1e-11 * abs(here).max())
 
 
-def test_freedoms_beyond_the_nodes_stay_empty():
+def test_degrees_of_freedom_beyond_the_nodes_stay_empty():
     block = brick((1, 1, 1), 27)
     n = block.points.size
     K = incompressible.assemble(block.points, block.cells, LAME, n + 6)
@@ -108,8 +108,8 @@ def test_stiffness_of_a_bonded_block_has_a_limit(nodes):
     # Held on two faces, free on four: nearly incompressible, it bulges, and stays finite.
     block = brick((2, 4, 4), nodes, lambda p: p * [0.5, 1.0, 1.0])
     ends = np.concatenate([block.face_nodes("x0"), block.face_nodes("x1")])
-    freedoms = (3 * ends[:, None] + np.arange(3)).ravel()
-    pulled = np.where(np.isin(freedoms, 3 * block.face_nodes("x1")), 1.0, 0.0)
+    dofs = (3 * ends[:, None] + np.arange(3)).ravel()
+    pulled = np.where(np.isin(dofs, 3 * block.face_nodes("x1")), 1.0, 0.0)
 
     def energy(nu: float, assembly) -> float:
         lame = Material(youngs_modulus=1e9, poisson_ratio=nu, density=0.0).lame
@@ -119,7 +119,7 @@ def test_stiffness_of_a_bonded_block_has_a_limit(nodes):
             lame,
             [],
             np.zeros(block.points.size),
-            (freedoms, pulled),
+            (dofs, pulled),
             "superlu",
             assembly,
         )
@@ -226,7 +226,7 @@ def test_a_nearly_incompressible_part_is_averaged_and_warned_of():
         mesh.points,
         mesh.cells[mesh.part_cells(housing)],
         scene.material_of(housing).lame,
-        model.n_freedoms,
+        model.n_dofs,
     )
     assert abs(model.part_stiffness[housing] - expected).max() <= 1e-14 * abs(expected).max()
 
@@ -238,6 +238,6 @@ def test_a_steel_part_stays_plain(bonded_model):
         mesh.points,
         mesh.cells[mesh.part_cells("shaft")],
         scene.material_of("shaft").lame,
-        bonded_model.n_freedoms,
+        bonded_model.n_dofs,
     )
     assert abs(bonded_model.part_stiffness["shaft"] - expected).max() == 0.0

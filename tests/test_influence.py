@@ -5,7 +5,7 @@ import pytest
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.revolution.harmonics import freedoms
+from fe_drivetrain.revolution.harmonics import dofs
 from fe_drivetrain.revolution.influence import Strip, carried, influence_functions, roller_forces
 from fe_drivetrain.revolution.meridian_mesh import meridian
 from fe_drivetrain.scene.materials import MATERIALS, Material
@@ -40,7 +40,7 @@ def free(mesh):
 def test_compliances_of_a_long_ring_are_michells():
     """In plane strain: u_x held everywhere. Sixth order is exact to 1e-8 for 3 waves an element."""
     mesh = meridian(RING, 0.02, layers=0)
-    still = freedoms(np.arange(len(mesh.nodes)), 0)
+    still = dofs(np.arange(len(mesh.nodes)), 0)
     bore = Strip(INNER, 0.0, WIDTH)
     # a strip may end inside an element: in plane strain all strips move as one
     strips = [bore, Strip(OUTER, 0.013, 0.055)]
@@ -75,7 +75,7 @@ def test_equal_pushes_all_round_leave_harmonics_of_their_number(free):
 
 
 def test_a_strip_is_the_mean_of_its_parts(mesh):
-    """Its compliance is that of its two halves, pressed alike."""
+    """Its compliance is that of its two halves, pressed equally."""
     low, middle, high = 0.02, 0.037, 0.06
     parts = [Strip(INNER, low, middle), Strip(INNER, middle, high)]
     found = influence_functions(
@@ -143,7 +143,7 @@ def test_forces_in_balance_do_not_feel_the_anchor(mesh):
 
 def test_a_rigid_housing_stiffens(mesh, free):
     outside = np.flatnonzero(np.abs(mesh.nodes[:, 1] - OUTER) < 1e-9)
-    held = np.concatenate([freedoms(outside, c) for c in range(3)])
+    held = np.concatenate([dofs(outside, c) for c in range(3)])
     housed = influence_functions(mesh, STEEL, LAMINAE, N, 0.15, held=held)
     m = len(LAMINAE)
     softer = free.harmonic_compliances[2:, :m, :m] - housed.harmonic_compliances[2:]
@@ -178,7 +178,7 @@ def test_a_shaft_bends_under_a_push_as_a_cantilever():
     rod = Shaft(front=0.0, sections=[Section(length=length, outer_diameter=diameter)])
     mesh = meridian(rod.cut([length - width]), 0.15, order=5, layers=2)
     front = mesh.where(lambda x, r: x < 1e-9)
-    held = np.concatenate([freedoms(front, c) for c in range(3)])
+    held = np.concatenate([dofs(front, c) for c in range(3)])
     strip = Strip(diameter / 2, length - width, length)
     found = influence_functions(mesh, cork, [strip], 3, 0.1, held=held).harmonic_compliances
     arm = length - width / 2

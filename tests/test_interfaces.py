@@ -69,7 +69,7 @@ def test_sphere_turns_freely_about_its_centre_and_carries_translation(sphere, fo
     points, inner, _, weights = sphere
     joints, n = forms(sphere)
     rigid = np.zeros((n, 6))
-    rigid[constraints.freedoms(inner).ravel()] = rigid_motions(points[inner], CENTRE)
+    rigid[constraints.dofs(inner).ravel()] = rigid_motions(points[inner], CENTRE)
     if form == "averaged":  # its group sums follow the nodes: take the last rows, of the means
         w = constraints.centred_weights(weights, points[inner], CENTRE)
         mean = np.einsum("n,nik->ik", w / w.sum(), rigid[: 3 * 60].reshape(60, 3, 6))

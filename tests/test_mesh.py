@@ -556,9 +556,9 @@ def test_relaxing_mends_a_folded_cell_and_moves_no_other_node():
     points, cells, mids = folded()
     mesh = Mesh(points, cells, np.zeros(2, dtype=int), ("shaft",), {}, {})
     assert len(inverted_cells(mesh)) > 0
-    mended = relax_flat_cells(mesh)
-    assert len(inverted_cells(mended)) == 0
-    moved = np.flatnonzero(np.abs(mended.points - points).max(axis=1) > 1e-15)
+    relaxed = relax_flat_cells(mesh)
+    assert len(inverted_cells(relaxed)) == 0
+    moved = np.flatnonzero(np.abs(relaxed.points - points).max(axis=1) > 1e-15)
     assert list(moved) == [mids[1, 2]]
 
 

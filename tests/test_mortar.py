@@ -55,7 +55,7 @@ def together(slave, master, own_face, other_face):
 
 
 def following(constraint, points):
-    """(n_nodes, n_nodes) P of u_slave = P u_master, from the x freedoms' rows."""
+    """(n_nodes, n_nodes) P of u_slave = P u_master, from the x degrees of freedom's rows."""
     return -constraint.rows[::3][:, : 3 * len(points) : 3]
 
 

@@ -105,7 +105,7 @@ def test_iterations_hardly_grow_with_the_mesh():
 def test_joined_bodies_converge_like_one(spherical_responses):
     """The sliding joint: without modes of its own for each body this takes hundreds of steps."""
     model, _ = spherical_responses["sliding"]
-    elimination = eliminate(model.constraints, model.n_freedoms)
+    elimination = eliminate(model.constraints, model.n_dofs)
     system = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
     F = elimination.T.T @ model.unit_loads()
     hierarchy = multigrid.build(system)

@@ -76,9 +76,9 @@ def test_a_patch_cut_out_is_free_to_move(nodes):
     for patch in range(len(parts)):
         own = parts.blocks_of(patch)
         S = cut_out.stiffness(parts.cells_of(patch), own)
-        freedoms = (3 * own[:, None] + np.arange(3)).ravel()
-        total[np.ix_(freedoms, freedoms)] += S
-        free = system.elements.free[freedoms]
+        dofs = (3 * own[:, None] + np.arange(3)).ravel()
+        total[np.ix_(dofs, dofs)] += S
+        free = system.elements.free[dofs]
         assert np.linalg.eigvalsh(S[np.ix_(free, free)])[0] > -1e-9 * size
         if free.all() and not (block.points[block.cells[parts.cells_of(patch)]][..., 0] == 0).any():
             motions = rigid_motions(block.points[own], block.points[own].mean(axis=0))

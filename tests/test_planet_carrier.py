@@ -1,4 +1,4 @@
-"""A planet carrier: symmetry, closed forms, the twist of its hub, and pins alike."""
+"""A planet carrier: symmetry, closed forms, the twist of its hub, and equal pins."""
 
 import math
 
@@ -102,7 +102,7 @@ def test_pins_on_one_wall_are_cantilevers(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_a_longer_hub_twists_as_theory_says() -> None:
-    """The ends of the hub alike, what another 2 m adds is l / GJ, whatever the cheeks do."""
+    """With equal ends of the hub, what another 2 m adds is l / GJ, whatever the cheeks do."""
     found = []
     for length in (1.0, 3.0):
         component = coarse("planet_carrier", **{"planet_carrier.hub_length": length})

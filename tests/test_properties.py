@@ -27,7 +27,7 @@ ROUNDING = 1e-7
 
 
 def log(low: float, high: float) -> st.SearchStrategy[float]:
-    """Between two powers of ten, each decade alike."""
+    """Between two powers of ten, each decade equally."""
     return st.floats(low, high).map(lambda x: 10.0**x)
 
 
@@ -78,7 +78,7 @@ def compliance(beam: Beam) -> tuple[Floats, Floats]:
 
 
 def scaled(C: Floats, size: Floats | None = None) -> Floats:
-    """With a diagonal of one (or of another's): metres and radians alike."""
+    """With a diagonal of one (or of another's): metres and radians in the same way."""
     root = np.sqrt(np.diag(C) if size is None else size)
     return np.asarray(C / np.outer(root, root))
 

@@ -14,7 +14,7 @@ FORMS = ("sliding", "averaged", "rigid")
 @pytest.fixture(scope="module", params=[*FORMS, "bonded"])
 def reduced(request, spherical_responses, bonded_model):
     model = bonded_model if request.param == "bonded" else spherical_responses[request.param][0]
-    elimination = eliminate(model.constraints, model.n_freedoms)
+    elimination = eliminate(model.constraints, model.n_dofs)
     K = model.stiffness
     return model, K, elimination, reduce(model.mesh.points, model.mesh.cells, K, elimination)
 
@@ -25,10 +25,10 @@ def test_equals_the_triple_product_on_what_is_left(reduced, rng):
     q = rng.standard_normal((len(free), 3)) * free[:, None]
     expected = T.T @ (K @ (T @ q))
     np.testing.assert_allclose(system.K @ q, expected, atol=1e-12 * np.abs(expected).max())
-    assert system.n_free == free.sum() < model.n_freedoms
+    assert system.n_free == free.sum() < model.n_dofs
 
 
-def test_eliminated_freedoms_stand_alone(reduced):
+def test_eliminated_degrees_of_freedom_stand_alone(reduced):
     _, K, elimination, system = reduced
     gone = np.flatnonzero(~elimination.free)
     rows = system.K.tocsr()[gone]
@@ -72,7 +72,7 @@ def test_near_nullspace_of_free_bodies_costs_no_energy(bonded_model):
     """Without supports and springs the rigid motions are exactly the null space."""
     model = bonded_model
     K = sum(model.part_stiffness.values())
-    system = reduce(model.mesh.points, model.mesh.cells, K, eliminate([], model.n_freedoms))
+    system = reduce(model.mesh.points, model.mesh.cells, K, eliminate([], model.n_dofs))
     motions = system.prolongation @ system.near_nullspace
     expected = rigid_motions(model.mesh.points, model.mesh.points.mean(axis=0))
     edge = np.abs(motions - expected).max(axis=1)

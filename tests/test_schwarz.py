@@ -100,7 +100,7 @@ def test_other_elements(nodes):
 
 def test_a_joint_between_bodies(spherical_responses):
     model, _ = spherical_responses["averaged"]
-    elimination = eliminate(model.constraints, model.n_freedoms)
+    elimination = eliminate(model.constraints, model.n_dofs)
     system = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
     found = iterations(system, elimination.T.T @ model.unit_loads()[:, :2])
     assert found.iterations < 100
@@ -135,8 +135,8 @@ def test_patches_are_solved_exactly(tube, rng):
     place = np.full(len(parts.patch), -1)
     place[own] = np.arange(len(own))
     A = dense_part(system.K.indptr, system.K.indices, system.K.data, own, place)
-    freedoms = (3 * own[:, None] + np.arange(3)).ravel()
-    np.testing.assert_allclose(A @ out[freedoms], R[freedoms], atol=1e-7)
+    dofs = (3 * own[:, None] + np.arange(3)).ravel()
+    np.testing.assert_allclose(A @ out[dofs], R[dofs], atol=1e-7)
 
 
 @pytest.mark.parametrize("n_inner", [0, 6])

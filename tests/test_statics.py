@@ -6,8 +6,8 @@ import pytest
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import (
+    dofs,
     fixed,
-    freedoms,
     held_nodes,
     rigid_face,
     rigid_point,
@@ -67,7 +67,7 @@ def test_prescribed_displacements_and_forces_are_one_problem():
     base = fixed("base", block.face_nodes("x0"), n)
     F = traction_loads(block.points, block.faces["x1"], np.array([0.1, 0.0, 0.3]))
     pulled = solve_solid(block.points, block.cells, LAME, [base], F)
-    columns = freedoms(end).ravel()
+    columns = dofs(end).ravel()
     again = solve_solid(
         block.points, block.cells, LAME, [base], np.zeros(n), (columns, pulled.u[columns])
     )
@@ -83,7 +83,7 @@ def test_motion_of_a_reference_point_is_prescribed():
     ends = [rigid_face("end", block.face_nodes("x1"), block.points, point)]
     held = block.face_nodes("x0")
     motion = rigid_motions(block.points[held], point.position)
-    columns = np.concatenate([freedoms(held).ravel(), np.arange(n - 6, n)])
+    columns = np.concatenate([dofs(held).ravel(), np.arange(n - 6, n)])
     values = np.vstack([motion, np.eye(6)])
     static = solve_solid(block.points, block.cells, LAME, ends, np.zeros((n, 6)), (columns, values))
     np.testing.assert_allclose(

@@ -146,7 +146,7 @@ def test_four_nodes_that_agree_are_not_warned_of(free, recwarn):
     arm = np.linalg.norm(model.mesh.points[upper] - model.mesh.points[lower])
     seat = response.motions["main_bearing.seat"][VERTICAL.moment]
     turned[upper, 0] = turned[lower, 0] + arm * seat
-    alike = dataclasses.replace(response, displacements=turned)
-    found = tilt_stiffness(model, alike, "main_bearing", VERTICAL)
+    turned_response = dataclasses.replace(response, displacements=turned)
+    found = tilt_stiffness(model, turned_response, "main_bearing", VERTICAL)
     assert found["four nodes"] == pytest.approx(found["averaged seat"])
     assert not recwarn.list

@@ -72,7 +72,7 @@ def resolver(scene: Scene) -> Resolver:
     return found
 
 
-# what is solved anew
+# what is solved again
 
 
 def test_a_resolved_scene_is_the_level_itself(scene: Scene, resolver: Resolver) -> None:
@@ -142,7 +142,7 @@ def test_all_moduli_of_a_unit_together_scale_it(found: Study) -> None:
         base = unit_numbers(surface(scene))
         for name, k in unit_numbers(surface(with_values(scene, scaled))).items():
             assert k == pytest.approx(1.03 * base[name], rel=2 * surface.error)
-        # no mesh is made anew: what is off is the surface alone
+        # no mesh is made again: the error is of the surface alone
         assert surface.error < 1e-3
 
 

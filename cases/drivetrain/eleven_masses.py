@@ -1,461 +1,320 @@
 """Every gear a mass, meshes as springs: the NREL 750 kW drivetrain with eleven masses."""
 
-from typing import Any
+import itertools
+from collections.abc import Mapping
+from functools import partial
+from typing import NamedTuple
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
+from scipy.optimize import brentq, fsolve
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.drivetrain.printed import (
+    check_count,
+    check_printed,
+    frequency_rows,
+    show_shapes,
+)
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import (
+    GENERATOR,
+    ROTOR,
+    Drivetrain,
+    GeneratorState,
+    Modes,
+    changed,
+    gear_masses,
+    gear_speeds,
+    natural_modes,
+    stage_masses,
+    static_stiffness,
+)
+from fe_drivetrain.validation import published_drivetrains as published
+from fe_drivetrain.validation.independent_torsion import certified
 
 #: Modes of Table 6.1 that do not follow from the inputs of Table 4.2; shown, and restored below.
 ASTRAY = frozenset({3, 4, 5, 6, 8})
 #: Factors on all mesh stiffnesses, as in the thesis's Fig 6.9.
 FACTORS, QUICK_FACTORS = 41, 11
 
+NAME = "nrel_750kw"
+TABLE = published.table(NAME)
+PLANETARY, FIRST, SECOND = published.nrel_stages(TABLE)
+SYSTEMS = {state: gear_masses(TABLE, state) for state in published.STATES}
+PRINTED = published.ELEVEN["fixed"]
+TARGETS = np.array([float(v) for v in PRINTED])
+#: What carrier and planet are solved for: 353 and 748 Hz, of three digits, and the most moved by
+#: each of the two.
+CHOSEN = [4, 5]
+CARRIER, PLANET = "stages.0.carrier", "stages.0.planet"
 
-def run(run: Run) -> Any:
+
+class Restored(NamedTuple):
+    """Inertias that Table 6.1 needs.
+
+    Attributes
+    ----------
+    carrier, planet
+        [kg m^2].
+    spread
+        Half width of the carrier and its three planets, by the last digits of what they are solved
+        for [kg m^2].
+    frequencies
+        Of the table's nine modes [Hz].
+    """
+
+    carrier: float
+    planet: float
+    spread: float
+    frequencies: Floats
+
+    @property
+    def stage(self) -> float:
+        """Carrier, three planets, and the sun on the rotor's side [kg m^2]."""
+        planets = PLANETARY.planets * self.planet
+        return self.carrier + planets + TABLE.stages[0].speed_ratio ** 2 * PLANETARY.sun
+
+
+@case(
+    "NREL 750 kW drivetrain as eleven masses, generator fixed and free",
+    source="Al-Hamadani 2018, Eq 4.36-4.38, Tables 4.2, 6.1 and 6.3",
+)
+def run(run: Run, page: Page) -> None:
     """Frequencies against Table 6.1, the axes that meshes are about, and what restores the rest."""
-    from functools import partial
-
-    import numpy as np
-    from scipy.optimize import brentq, fsolve
-
-    from fe_drivetrain.cases.drivetrain import (
-        published,
-    )
-    from fe_drivetrain.report import AssumptionRow, Section, Table, Text, chart, judge, trace
-    from fe_drivetrain.torsion import (
-        GENERATOR,
-        ROTOR,
-        Drivetrain,
-        changed,
-        gear_masses,
-        gear_speeds,
-        natural_modes,
-        stage_masses,
-        static_stiffness,
-    )
-    from fe_drivetrain.validation import (
-        independent_torsion,
-    )
-
-    name = "nrel_750kw"
-    table = published.table(name)
-    planetary, first, second = published.nrel_stages(table)
-    verdicts: list[Any] = []
-    rows: list[list[Any]] = []
-    systems = {state: gear_masses(table, state) for state in published.STATES}
-    found = {state: natural_modes(system) for state, system in systems.items()}
+    found = {state: natural_modes(system) for state, system in SYSTEMS.items()}
     shown = {state: published.observable(modes) for state, modes in found.items()}
+    f = {state: modes.frequencies for state, modes in found.items()}
     with run.step("frequencies of Table 4.2"):
-        for state, system in systems.items():
-            seen = shown[state]
-            f = found[state].frequencies
-            band = published.rounding_band(name, partial(gear_masses, generator=state))
-            verdicts += published.judge_printed(
-                f"11 masses, generator {state}",
-                f[seen],
-                published.ELEVEN[state],
-                band[seen],
-                published.TABLE_6_1,
-                leave_out=ASTRAY,
-            )
-            verdicts.append(
-                published.judge_count(
-                    f"11 masses, generator {state}", independent_torsion.certified(system, f)
-                )
-            )
-            printed = dict(zip(seen.tolist(), published.ELEVEN[state], strict=True))
-            rows += [
-                [
-                    state,
-                    m + 1,
-                    float(f[m]),
-                    float(band[m]),
-                    printed.get(m, "planets against each other"),
-                ]
-                for m in range(len(f))
-            ]
-        pair = float(
-            np.sqrt((planetary.ring_planet + planetary.sun_planet) / planetary.planet) / (2 * np.pi)
-        )
-        hidden = np.setdiff1d(np.arange(11), shown["fixed"])
-        for m in hidden:
-            verdicts.append(
-                judge(
-                    f"11 masses: planets against each other, the rest still, mode {m + 1}",
-                    float(found["fixed"].frequencies[m]),
-                    pair,
-                    tolerance=1e-9,
-                    unit="Hz",
-                    source="sqrt((K_RP + K_SP) / J_P) / 2 pi",
-                    reason="exact but for rounding",
-                    measure="frequency",
-                )
-            )
-        speeds = gear_speeds(table)
-        turning = np.array([speeds[part] for part in systems["free"].names])
-        largest = float(np.abs(systems["free"].B @ turning).max())
-        verdicts.append(
-            judge(
-                "11 masses: largest winding of a spring while all turn at their ratios",
-                largest,
-                0.0,
-                tolerance=1e-12,
-                relative=False,
-                source="a gearbox without load turns freely",
-                reason="exact but for rounding, of ratios up to 81",
-                measure="identity",
-            )
-        )
-        n1, n2, n3 = (stage.speed_ratio for stage in table.stages)
-        p, count = planetary.planet_over_sun, planetary.planets
-        per_planet = (
-            p / n1
-        ) ** 2 / count  # (torque about a planet / rotor's torque)^2, all planets
-        series = 1 / (
-            1 / table.shafts[0].stiffness
-            + per_planet * (1 / planetary.ring_planet + 1 / planetary.sun_planet)
-            + (1 / table.shafts[1].stiffness + 1 / first.mesh) / n1**2
-            + (1 / table.shafts[2].stiffness + 1 / second.mesh) / (n1 * n2) ** 2
-            + 1 / table.shafts[3].stiffness / (n1 * n2 * n3) ** 2
-        )
-        stiffness = static_stiffness(systems["free"], ROTOR, GENERATOR)
-        verdicts.append(
-            judge(
-                "11 masses: torque on the rotor over its angle, generator held",
-                stiffness,
-                float(series),
-                tolerance=1e-10,
-                unit="N m/rad",
-                source="flow of torque through shafts and meshes, in series",
-                reason="exact but for rounding",
-                measure="stiffness",
-            )
-        )
-        meshes = [e.name for e in systems["fixed"].elements if "stage" in e.name]
-
-        def with_meshes(factor: float, state: Any = "fixed") -> Any:
-            system = systems[state]
-            values = {e.name: e.stiffness * factor for e in system.elements if e.name in meshes}
-            return natural_modes(changed(system, values)).frequencies
-
-        # the five-mass model, and the inertia that Eq 4.9 leaves out
-        spinning = planetary.planets * planetary.planet * planetary.planet_speed**2
-        rigid = stage_masses(table)
-        rigid = changed(rigid, {"stage 1": float(rigid.J[1] + spinning)})
-        limit = natural_modes(rigid).frequencies
-        stiff = with_meshes(1e7)[:5]
-        verdicts.append(
-            judge(
-                "11 masses, meshes 1e7 times as stiff: largest relative distance of the first five "
-                "frequencies from five masses whose planets turn",
-                float(np.abs(stiff / limit - 1).max()),
-                0.0,
-                tolerance=1e-4,
-                relative=False,
-                source="rigid meshes",
-                reason="a mesh's share in a mode falls as its stiffness rises: at 1e7, shafts and "
-                "meshes of like stiffness leave some 1e-7, and the stiffest shafts 1e-5",
-                measure="identity",
-            )
-        )
-
+        rows = [
+            row
+            for state, modes in found.items()
+            for row in against_table_6_1(page, state, modes, shown[state])
+        ]
+        pair = check_planets(page, f["fixed"], shown["fixed"])
+        stiffness = check_statics(page)
+        check_rigid_meshes(page)
     with run.step("axes that the meshes are about"):
-        axes = _readings(table, np)
+        axes = readings()
     with run.step("inputs that restore the table"):
-        targets = np.array([float(v) for v in published.ELEVEN["fixed"]])
-        chosen = [4, 5]  # 353 and 748 Hz: of three digits, and the most moved by each of the two
-
-        def with_parts(carrier: float, planet: float) -> Drivetrain:
-            return published.changed(
-                table, {"stages.0.carrier": carrier, "stages.0.planet": planet}
-            )
-
-        def misses(x: Any) -> Any:
-            modes = natural_modes(
-                gear_masses(with_parts(x[0] * planetary.carrier, x[1] * planetary.planet))
-            )
-            return modes.frequencies[published.observable(modes)][chosen] / targets[chosen] - 1
-
-        solved, _, converged, message = fsolve(misses, [1.6, 1.0], xtol=1e-12, full_output=True)
-        if converged != 1:
-            raise ArithmeticError(message)
-        carrier, planet = float(solved[0] * planetary.carrier), float(solved[1] * planetary.planet)
-        restored = with_parts(carrier, planet)
-        modes = natural_modes(gear_masses(restored))
-        seen = published.observable(modes)
-        restored_f = modes.frequencies[seen]
-        band = published.rounding_band(
-            name,
-            gear_masses,
-            restored,
-            without=frozenset({"stages.0.carrier", "stages.0.planet"}),
-        )
-        verdicts += published.judge_printed(
-            f"11 masses, generator fixed, carrier of {carrier:.1f} and planets of {planet:.2f} "
-            "kg m^2",
-            restored_f,
-            published.ELEVEN["fixed"],
-            band[seen],
-            published.TABLE_6_1,
-            leave_out=frozenset(m + 1 for m in chosen),
-        )
-        # what planets on their pins add: m r_c^2, with J_p = m r_p^2 / 2 (solid) to m r_p^2 (hoop)
-        reach = (1 + p) / p
-        added = carrier - planetary.carrier
-        hoop = planetary.planets * planetary.planet * reach**2
-        disc = 2 * hoop
-        share = (added - hoop) / (disc - hoop)
-        verdicts.append(
-            judge(
-                "what the carrier lacks, between planets as hoops (0) and as solid discs (1) that "
-                "go round with it",
-                float(share),
-                0.5,
-                tolerance=0.5,
-                relative=False,
-                source="parallel axes: m r_c^2 of each planet, of J_P in Table 4.2",
-                reason="a planet is something between the two",
-                measure="mass",
-            )
-        )
-        five = stage_masses(table)
-        fitted = brentq(
-            lambda J: float(
-                natural_modes(changed(five, {"stage 1": J})).frequencies[3]
-                - float(published.FIVE["fixed"][3])
-            ),
-            float(five.J[1]),
-            4 * float(five.J[1]),
-        )
-        stage = carrier + planetary.planets * planet + n1**2 * planetary.sun
-        pair_band = _band_of_fit(misses, solved, targets[chosen], published, chosen, np)
-        spread = float(pair_band[0] * planetary.carrier + 3 * pair_band[1] * planetary.planet)
-        half = published.digit(published.FIVE["fixed"][3]) / 2
-        slope = (
-            natural_modes(changed(five, {"stage 1": fitted * 1.01})).frequencies[3]
-            - float(published.FIVE["fixed"][3])
-        ) / (0.01 * fitted)
-        verdicts.append(
-            judge(
-                "J_2 that five masses need for 402 Hz, from the eleven masses: carrier, three "
-                "planets and N_1^2 times the sun",
-                float(stage),
-                float(fitted),
-                tolerance=spread + abs(half / float(slope)),
-                relative=False,
-                unit="kg m^2",
-                source="Table 6.1, five masses, mode 4",
-                reason="half of the last digit of the three frequencies that either follows from",
-                measure="mass",
-            )
-        )
+        other = restored()
+        check_restored(page, other)
+        fitted = check_stage(page, other)
     with run.step("mesh stiffness"):
         factors = np.geomspace(0.01, 1e4, QUICK_FACTORS if run.quick else FACTORS)
         swept = np.array([with_meshes(float(x)) for x in factors])
-    f = found["fixed"].frequencies
-    rise = float((swept[-1, :2] / f[:2]).max() - 1)
-    by_meshes = float(1 - stiffness * sum(1 / k for k in _shafts_on_rotor(table)))
-    relative = float(np.abs(restored_f / targets - 1).max())
-    return CASE.results(
-        run,
-        summary=[
-            f"From Table 4.2, eleven masses give {f[0]:.3f} and {f[1]:.3f} Hz with the generator "
-            f"fixed, {found['free'].frequencies[1]:.3f} Hz free (Table 6.1: 0.841, 5.859, 2.44), "
-            f"and {f[8]:.0f} and {f[10]:.0f} Hz (1020, 4398). Two more, both at "
-            f"{pair:.1f} Hz, are planets against each other: the table's nine are all that the "
-            "shafts feel.",
-            "Numbers 3 to 6 and 8 of the table do not follow from its inputs; a carrier of "
-            f"{carrier:.0f} kg m^2 instead of {planetary.carrier:g} and planets of {planet:.2f} "
-            f"instead of {planetary.planet:g} give all nine within {100 * relative:.2f} %. The "
-            f"same carrier, with its planets and the sun, makes {stage:.1f} kg m^2: the "
-            f"{fitted:.1f} that Table 6.1's five masses need.",
-            f"Gear meshes make {100 * by_meshes:.1f} % of the drivetrain's torsional compliance.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Frequencies",
-                items=[
-                    Table(
-                        caption="Eleven masses of Eq 4.36-4.37 with the inputs of Table 4.2; 154, "
-                        "307, 353, 748 and 1530 Hz of Table 6.1 lie outside of what rounding "
-                        "explains",
-                        columns=[
-                            "generator",
-                            "mode",
-                            "frequency [Hz]",
-                            "half width by rounding of the inputs [Hz]",
-                            "Table 6.1 [Hz]",
-                        ],
-                        rows=rows,
-                    ),
-                    published.shapes_chart(
-                        "Mode shapes, generator fixed, seen from the rotor's shaft: the first five",
-                        found["fixed"],
-                        speeds,
-                        shown["fixed"][:5],
-                    ),
-                    published.shapes_chart(
-                        "Mode shapes, generator fixed, seen from the rotor's shaft: the others",
-                        found["fixed"],
-                        speeds,
-                        shown["fixed"][5:],
-                    ),
-                    published.shapes_chart(
-                        "Mode shapes, generator free, seen from the rotor's shaft: the first five",
-                        found["free"],
-                        speeds,
-                        shown["free"][:5],
-                    ),
-                ],
-            ),
-            Section(
-                title="The axes that mesh stiffnesses are about",
-                items=[
-                    Table(
-                        caption="Table 4.2 gives mesh stiffnesses in N m/rad and does not say "
-                        "about which axis: the five frequencies that no carrier moves, for the "
-                        "readings closest to Table 6.1 of all "
-                        f"{len(axes)}",
-                        columns=[
-                            "ring-planet about",
-                            "sun-planet about",
-                            "parallel 1 about",
-                            "parallel 2 about",
-                            "mode 1 [Hz]",
-                            "mode 2 [Hz]",
-                            "mode 2, free [Hz]",
-                            "number 7 of the table [Hz]",
-                            "number 9 [Hz]",
-                            "largest difference [%]",
-                        ],
-                        rows=axes[:6],
-                    ),
-                    Text(
-                        text="About the planet and about the gear, the driving wheel as in Eq 4.6, "
-                        "all five agree. That reading is chosen by them, so that they prove it no "
-                        "more than five numbers can one choice in "
-                        f"{len(axes)}; drivetrains A, B and C, read alike, are the test "
-                        "(drivetrain/drivetrains_a_b_c)."
-                    ),
-                ],
-            ),
-            Section(
-                title="What restores the table",
-                items=[
-                    Table(
-                        caption="Table 6.1, generator fixed [Hz]; numbers 5 and 6 are "
-                        "what carrier and planet are solved for",
-                        columns=[
-                            "number in the table",
-                            "as printed",
-                            "by Table 4.2",
-                            f"carrier {carrier:.1f}, planets {planet:.2f} kg m^2",
-                        ],
-                        rows=[
-                            [i + 1, v, float(f[shown["fixed"][i]]), float(restored_f[i])]
-                            for i, v in enumerate(published.ELEVEN["fixed"])
-                        ],
-                    ),
-                    Text(
-                        text=f"The carrier lacks {added:.1f} kg m^2. Three planets that go round "
-                        f"on it at r_c = {reach:.3f} r_p bring {hoop:.1f} as hoops and {disc:.1f} "
-                        "as solid discs of the J_P of Table 4.2: bored planets bring what "
-                        "is missing. "
-                        "Table 4.2's carrier is the bare part; the model behind Table 6.1 has its "
-                        "planets on it. A carrier given for `fe_drivetrain.torsion` must count "
-                        "them as points."
-                    ),
-                ],
-            ),
-            Section(
-                title="Mesh stiffness",
-                items=[
-                    chart(
-                        "Frequencies over a common factor on all mesh stiffnesses (Fig 6.9 of the "
-                        "thesis, which sees no impact on the lowest): above 1 the lowest two rise "
-                        f"by {100 * rise:.1f} % at most, those of the gearbox until the meshes are "
-                        "rigid",
-                        [
-                            trace(f"mode {m + 1}", factors, swept[:, m])
-                            for m in (0, 1, 2, 3, 4, 5, 8, 9)
-                        ],
-                        "factor on the mesh stiffnesses",
-                        "frequency [Hz]",
-                        logarithmic=("x", "y"),
-                    ),
-                ],
-            ),
-        ],
-        assumptions=[
-            AssumptionRow(
-                name="axis of planetary mesh stiffnesses",
-                value="the planet's",
-                unit="",
-                source="not given; of all readings the one that gives Table 6.1",
-            ),
-            AssumptionRow(
-                name="axis of parallel mesh stiffnesses",
-                value="the gear's",
-                unit="",
-                source="Eq 4.6 has the driving gear's radius; gives Table 6.1",
-            ),
-        ],
-        figures={
-            "fixed": [float(v) for v in f],
-            "free": [float(v) for v in found["free"].frequencies],
-            "restored": [float(v) for v in restored_f],
-            "restored_carrier": carrier,
-            "restored_planet": planet,
-            "static_stiffness": stiffness,
-        },
+    on_rotor = (s**2 * shaft.stiffness for shaft, s in zip(TABLE.shafts, TABLE.speeds, strict=True))
+    by_meshes = float(1 - stiffness * sum(1 / k for k in on_rotor))
+    relative = float(np.abs(other.frequencies / TARGETS - 1).max())
+    fixed = f["fixed"]
+    page.answer(
+        f"From Table 4.2, eleven masses give {fixed[0]:.3f} and {fixed[1]:.3f} Hz with the "
+        f"generator fixed, {f['free'][1]:.3f} Hz free (Table 6.1: 0.841, 5.859, 2.44), "
+        f"and {fixed[8]:.0f} and {fixed[10]:.0f} Hz (1020, 4398). Two more, both at "
+        f"{pair:.1f} Hz, are planets against each other: the table's nine are all that the "
+        "shafts feel.",
+        "Numbers 3 to 6 and 8 of the table do not follow from its inputs; a carrier of "
+        f"{other.carrier:.0f} kg m^2 instead of {PLANETARY.carrier:g} and planets of "
+        f"{other.planet:.2f} instead of {PLANETARY.planet:g} give all nine within "
+        f"{100 * relative:.2f} %. The same carrier, with its planets and the sun, makes "
+        f"{other.stage:.1f} kg m^2: the {fitted:.1f} that Table 6.1's five masses need.",
+        f"Gear meshes make {100 * by_meshes:.1f} % of the drivetrain's torsional compliance.",
+    )
+    show_frequencies(page, rows, found, shown)
+    show_readings(page, axes)
+    show_restored(page, fixed[shown["fixed"]], other)
+    rise = float((swept[-1, :2] / fixed[:2]).max() - 1)
+    page.section("Mesh stiffness")
+    page.chart(
+        "Frequencies over a common factor on all mesh stiffnesses (Fig 6.9 of the thesis, which "
+        f"sees no impact on the lowest): above 1 the lowest two rise by {100 * rise:.1f} % at "
+        "most, those of the gearbox until the meshes are rigid",
+        [trace(f"mode {m + 1}", factors, swept[:, m]) for m in (0, 1, 2, 3, 4, 5, 8, 9)],
+        "factor on the mesh stiffnesses",
+        "frequency [Hz]",
+        "xy",
+    )
+    page.assume(
+        "axis of planetary mesh stiffnesses",
+        "the planet's",
+        "",
+        "not given; of all readings the one that gives Table 6.1",
+    )
+    page.assume(
+        "axis of parallel mesh stiffnesses",
+        "the gear's",
+        "",
+        "Eq 4.6 has the driving gear's radius; gives Table 6.1",
+    )
+    page.data("fixed", fixed)
+    page.data("free", f["free"])
+    page.data("restored", other.frequencies)
+    page.data("restored_carrier", other.carrier)
+    page.data("restored_planet", other.planet)
+    page.data("static_stiffness", stiffness)
+
+
+def against_table_6_1(page: Page, state: GeneratorState, modes: Modes, seen: Ints) -> list[Record]:
+    """Check the modes that the table has, and give rows of all."""
+    f = modes.frequencies
+    band = published.rounding_band(NAME, partial(gear_masses, generator=state))
+    label = f"11 masses, generator {state}"
+    values = published.ELEVEN[state]
+    check_printed(page, label, f[seen], values, band[seen], published.TABLE_6_1, ASTRAY)
+    check_count(page, label, certified(SYSTEMS[state], f))
+    printed = dict(zip(seen.tolist(), values, strict=True))
+    beside = [printed.get(m, "planets against each other") for m in range(len(f))]
+    return frequency_rows(state, f, band, beside)
+
+
+def check_planets(page: Page, f: Floats, seen: Ints) -> float:
+    """Planets against each other, a single oscillator: its frequency [Hz]."""
+    pair = float(
+        np.sqrt((PLANETARY.ring_planet + PLANETARY.sun_planet) / PLANETARY.planet) / (2 * np.pi)
+    )
+    for m in np.setdiff1d(np.arange(len(f)), seen):
+        page.equals(
+            f"11 masses: planets against each other, the rest still, mode {m + 1}",
+            float(f[m]),
+            pair,
+            within=1e-9,
+            why="exact but for rounding",
+            source="sqrt((K_RP + K_SP) / J_P) / 2 pi",
+            unit="Hz",
+            measure="frequency",
+        )
+    return pair
+
+
+def check_statics(page: Page) -> float:
+    """Free turning winds nothing; stiffness from rotor to generator in series [N m/rad]."""
+    speeds = gear_speeds(TABLE)
+    turning = np.array([speeds[part] for part in SYSTEMS["free"].names])
+    page.vanishes(
+        "11 masses: largest winding of a spring while all turn at their ratios",
+        float(np.abs(SYSTEMS["free"].B @ turning).max()),
+        within=1e-12,
+        why="exact but for rounding, of ratios up to 81",
+        source="a gearbox without load turns freely",
+    )
+    n1, n2, n3 = (stage.speed_ratio for stage in TABLE.stages)
+    p, count = PLANETARY.planet_over_sun, PLANETARY.planets
+    # (torque about a planet / rotor's torque)^2, all planets
+    per_planet = (p / n1) ** 2 / count
+    shafts = TABLE.shafts
+    series = 1 / (
+        1 / shafts[0].stiffness
+        + per_planet * (1 / PLANETARY.ring_planet + 1 / PLANETARY.sun_planet)
+        + (1 / shafts[1].stiffness + 1 / FIRST.mesh) / n1**2
+        + (1 / shafts[2].stiffness + 1 / SECOND.mesh) / (n1 * n2) ** 2
+        + 1 / shafts[3].stiffness / (n1 * n2 * n3) ** 2
+    )
+    stiffness = static_stiffness(SYSTEMS["free"], ROTOR, GENERATOR)
+    page.equals(
+        "11 masses: torque on the rotor over its angle, generator held",
+        stiffness,
+        float(series),
+        within=1e-10,
+        why="exact but for rounding",
+        source="flow of torque through shafts and meshes, in series",
+        unit="N m/rad",
+        measure="stiffness",
+    )
+    return stiffness
+
+
+def with_meshes(factor: float) -> Floats:
+    """Frequencies [Hz], generator fixed, with a factor on all mesh stiffnesses."""
+    system = SYSTEMS["fixed"]
+    values = {e.name: e.stiffness * factor for e in system.elements if "stage" in e.name}
+    return natural_modes(changed(system, values)).frequencies
+
+
+def check_rigid_meshes(page: Page) -> None:
+    """The five-mass model, with the inertia that Eq 4.9 leaves out."""
+    spinning = PLANETARY.planets * PLANETARY.planet * PLANETARY.planet_speed**2
+    rigid = stage_masses(TABLE)
+    rigid = changed(rigid, {"stage 1": float(rigid.J[1] + spinning)})
+    limit = natural_modes(rigid).frequencies
+    page.vanishes(
+        "11 masses, meshes 1e7 times as stiff: largest relative distance of the first five "
+        "frequencies from five masses whose planets turn",
+        float(np.abs(with_meshes(1e7)[:5] / limit - 1).max()),
+        within=1e-4,
+        why="a mesh's share in a mode falls as its stiffness rises: at 1e7, shafts and meshes of "
+        "like stiffness leave some 1e-7, and the stiffest shafts 1e-5",
+        source="rigid meshes",
     )
 
 
-def _readings(table: Any, np: Any) -> list[list[Any]]:
+def readings() -> list[Record]:
     """Every axis that a mesh stiffness can be about, and what follows; the closest first.
 
     A stiffness about another wheel of the mesh is, about the planet or gear, (r / r_other)^2 times
     as large.
     """
-    import itertools
-
-    from fe_drivetrain.cases.drivetrain import (
-        published,
-    )
-    from fe_drivetrain.torsion import gear_masses, natural_modes
-
-    stage = table.stages[0]
-    p = stage.planet_over_sun
+    p = PLANETARY.planet_over_sun
     ring = {"planet": 1.0, "ring": p / (1 + 2 * p), "carrier": p / (1 + p)}
     sun = {"planet": 1.0, "sun": p, "carrier": p / (1 + p)}
-    parallel = [{"gear": 1.0, "pinion": s.speed_ratio} for s in table.stages[1:]]
-    values = [float(published.ELEVEN["fixed"][i]) for i in (0, 1, 6, 8)]
-    values.insert(2, float(published.ELEVEN["free"][1]))
+    first, second = ({"gear": 1.0, "pinion": s.speed_ratio} for s in (FIRST, SECOND))
+    values = [*TARGETS[:2], float(published.ELEVEN["free"][1]), *TARGETS[[6, 8]]]
     rows = []
-    for a, b, c, d in itertools.product(ring, sun, *parallel):
-        other = published.changed(
-            table,
+    for a, b, c, d in itertools.product(ring, sun, first, second):
+        other = published.with_values(
+            TABLE,
             {
-                "stages.0.ring_planet": stage.ring_planet * ring[a] ** 2,
-                "stages.0.sun_planet": stage.sun_planet * sun[b] ** 2,
-                "stages.1.mesh": table.stages[1].mesh * parallel[0][c] ** 2,
-                "stages.2.mesh": table.stages[2].mesh * parallel[1][d] ** 2,
+                "stages.0.ring_planet": PLANETARY.ring_planet * ring[a] ** 2,
+                "stages.0.sun_planet": PLANETARY.sun_planet * sun[b] ** 2,
+                "stages.1.mesh": FIRST.mesh * first[c] ** 2,
+                "stages.2.mesh": SECOND.mesh * second[d] ** 2,
             },
         )
-        fixed = natural_modes(gear_masses(other))
-        f = fixed.frequencies[published.observable(fixed)]
+        f = seen_of(other)
         free = natural_modes(gear_masses(other, "free")).frequencies[1]
-        five = [f[0], f[1], free, f[6], f[8]]
-        worst = max(abs(x / v - 1) for x, v in zip(five, values, strict=True))
-        rows.append([a, b, c, d, *(float(x) for x in five), float(100 * worst)])
-    return sorted(rows, key=lambda row: row[-1])
+        five = [float(x) for x in (f[0], f[1], free, f[6], f[8])]
+        rows.append(
+            {
+                "ring-planet about": a,
+                "sun-planet about": b,
+                "parallel 1 about": c,
+                "parallel 2 about": d,
+                "mode 1 [Hz]": five[0],
+                "mode 2 [Hz]": five[1],
+                "mode 2, free [Hz]": five[2],
+                "number 7 of the table [Hz]": five[3],
+                "number 9 [Hz]": five[4],
+                "largest difference [%]": 100
+                * max(abs(x / v - 1) for x, v in zip(five, values, strict=True)),
+            }
+        )
+    return sorted(rows, key=lambda row: float(row["largest difference [%]"]))
 
 
-def _band_of_fit(
-    misses: Any, solved: Any, targets: Any, published: Any, chosen: Any, np: Any
-) -> Any:
-    """Half widths of the factors that two frequencies are solved for, by their last digits."""
+def seen_of(table: Drivetrain) -> Floats:
+    """Frequencies of the table's nine modes [Hz], generator fixed."""
+    modes = natural_modes(gear_masses(table))
+    return modes.frequencies[published.observable(modes)]
+
+
+def with_parts(carrier: float, planet: float) -> Drivetrain:
+    """The table with another carrier and planet [kg m^2]."""
+    return published.with_values(TABLE, {CARRIER: carrier, PLANET: planet})
+
+
+def misses(x: Floats) -> Floats:
+    """Relative errors of the chosen frequencies with factors on carrier and planet."""
+    table = with_parts(x[0] * PLANETARY.carrier, x[1] * PLANETARY.planet)
+    return seen_of(table)[CHOSEN] / TARGETS[CHOSEN] - 1
+
+
+def restored() -> Restored:
+    """Carrier and planet that give two of the frequencies that do not follow from Table 4.2."""
+    solved, _, converged, message = fsolve(misses, [1.6, 1.0], xtol=1e-12, full_output=True)
+    if converged != 1:
+        raise ArithmeticError(message)
+    carrier, planet = float(solved[0] * PLANETARY.carrier), float(solved[1] * PLANETARY.planet)
+    # half widths of both factors by the last digits of the two frequencies
     step = 1e-5
     jacobian = np.column_stack(
         [
@@ -463,22 +322,146 @@ def _band_of_fit(
             for unit in np.eye(2)
         ]
     )
-    half = np.array([published.digit(published.ELEVEN["fixed"][m]) / 2 for m in chosen]) / targets
-    return np.abs(np.linalg.inv(jacobian)) @ half
+    half = np.array([published.digit(PRINTED[m]) / 2 for m in CHOSEN]) / TARGETS[CHOSEN]
+    band = np.abs(np.linalg.inv(jacobian)) @ half
+    spread = float(band[0] * PLANETARY.carrier + 3 * band[1] * PLANETARY.planet)
+    return Restored(carrier, planet, spread, seen_of(with_parts(carrier, planet)))
 
 
-def _shafts_on_rotor(table: Any) -> list[float]:
-    return [s**2 * shaft.stiffness for shaft, s in zip(table.shafts, table.speeds, strict=True)]
+def brought_by_planets() -> tuple[float, float]:
+    """What three planets on their pins add to the carrier, as hoops and as solid discs [kg m^2].
+
+    m r_c^2 of each, with J_p = m r_p^2 / 2 (solid) to m r_p^2 (hoop).
+    """
+    hoop = PLANETARY.planets * PLANETARY.planet * reach() ** 2
+    return hoop, 2 * hoop
 
 
-CASE = Case(
-    name="drivetrain/eleven_masses",
-    title="NREL 750 kW drivetrain as eleven masses, generator fixed and free",
-    source="Al-Hamadani 2018, Eq 4.36-4.38, Tables 4.2, 6.1 and 6.3",
-    run=run,
-)
+def reach() -> float:
+    """Radius of the planets' centres over that of the planets."""
+    p = PLANETARY.planet_over_sun
+    return (1 + p) / p
 
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
 
-    main_of_case(CASE)
+def check_restored(page: Page, other: Restored) -> None:
+    """The seven modes that nothing was solved for, and what the carrier's inertia means."""
+    table = with_parts(other.carrier, other.planet)
+    seen = published.observable(natural_modes(gear_masses(table)))
+    band = published.rounding_band(NAME, gear_masses, table, frozenset({CARRIER, PLANET}))
+    check_printed(
+        page,
+        f"11 masses, generator fixed, carrier of {other.carrier:.1f} and planets of "
+        f"{other.planet:.2f} kg m^2",
+        other.frequencies,
+        PRINTED,
+        band[seen],
+        published.TABLE_6_1,
+        leave_out={m + 1 for m in CHOSEN},
+    )
+    hoop, disc = brought_by_planets()
+    page.between(
+        "deficit of the carrier's inertia, between planets as hoops (0) and as solid discs (1) "
+        "that go round with it",
+        (other.carrier - PLANETARY.carrier - hoop) / (disc - hoop),
+        0.0,
+        1.0,
+        why="a planet is something between the two",
+        source="parallel axes: m r_c^2 of each planet, of J_P in Table 4.2",
+        measure="mass",
+    )
+
+
+def check_stage(page: Page, other: Restored) -> float:
+    """The same stage from Table 6.1's five masses: the J_2 that these need [kg m^2]."""
+    five = stage_masses(TABLE)
+    printed = published.FIVE["fixed"][3]
+
+    def miss(J: float) -> float:
+        found = natural_modes(changed(five, {"stage 1": J})).frequencies[3]
+        return float(found - float(printed))
+
+    fitted = float(brentq(miss, float(five.J[1]), 4 * float(five.J[1])))
+    slope = miss(fitted * 1.01) / (0.01 * fitted)
+    page.equals(
+        "J_2 that five masses need for 402 Hz, from the eleven masses: carrier, three planets and "
+        "N_1^2 times the sun",
+        other.stage,
+        fitted,
+        within=other.spread + abs(published.digit(printed) / 2 / slope),
+        relative=False,
+        why="half of the last digit of the three frequencies that either follows from",
+        source="Table 6.1, five masses, mode 4",
+        unit="kg m^2",
+        measure="mass",
+    )
+    return fitted
+
+
+def show_frequencies(
+    page: Page,
+    rows: list[Record],
+    found: Mapping[GeneratorState, Modes],
+    shown: Mapping[GeneratorState, Ints],
+) -> None:
+    """Frequencies and shapes by Table 4.2."""
+    page.section("Frequencies")
+    page.table(
+        "Eleven masses of Eq 4.36-4.37 with the inputs of Table 4.2; 154, 307, 353, 748 and 1530 "
+        "Hz of Table 6.1 lie outside of what rounding explains",
+        rows,
+    )
+    speeds = gear_speeds(TABLE)
+    parts: tuple[tuple[GeneratorState, str, slice], ...] = (
+        ("fixed", "the first five", slice(5)),
+        ("fixed", "the others", slice(5, None)),
+        ("free", "the first five", slice(5)),
+    )
+    for state, which, chosen in parts:
+        show_shapes(
+            page,
+            f"Mode shapes, generator {state}, seen from the rotor's shaft: {which}",
+            found[state],
+            speeds,
+            shown[state][chosen],
+        )
+
+
+def show_readings(page: Page, axes: list[Record]) -> None:
+    """The axes that mesh stiffnesses are about."""
+    page.section("The axes that mesh stiffnesses are about")
+    page.table(
+        "Table 4.2 gives mesh stiffnesses in N m/rad and does not say about which axis: the five "
+        "frequencies that no carrier moves, for the readings closest to Table 6.1 of all "
+        f"{len(axes)}",
+        axes[:6],
+    )
+    page.text(
+        "About the planet and about the gear, the driving wheel as in Eq 4.6, all five agree. That "
+        "reading is chosen by them, so that they prove it no more than five numbers can one choice "
+        f"in {len(axes)}; drivetrains A, B and C, read in the same way, are the test "
+        "(drivetrain/drivetrains_a_b_c)."
+    )
+
+
+def show_restored(page: Page, f: Floats, other: Restored) -> None:
+    """What restores Table 6.1; `f` is by Table 4.2 [Hz]."""
+    page.section("What restores the table")
+    page.table(
+        "Table 6.1, generator fixed [Hz]; numbers 5 and 6 are what carrier and planet are solved "
+        "for",
+        [[i + 1, v, f[i], other.frequencies[i]] for i, v in enumerate(PRINTED)],
+        [
+            "number in the table",
+            "as printed",
+            "by Table 4.2",
+            f"carrier {other.carrier:.1f}, planets {other.planet:.2f} kg m^2",
+        ],
+    )
+    hoop, disc = brought_by_planets()
+    page.text(
+        f"The carrier's inertia is {other.carrier - PLANETARY.carrier:.1f} kg m^2 too small. Three "
+        f"planets that go round on it at r_c = {reach():.3f} r_p bring {hoop:.1f} as hoops and "
+        f"{disc:.1f} as solid discs of the J_P of Table 4.2: bored planets bring what is missing. "
+        "Table 4.2's carrier is the bare part; the model behind Table 6.1 has its planets on it. "
+        "A carrier given for `fe_drivetrain.torsion` must count them as points."
+    )

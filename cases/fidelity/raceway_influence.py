@@ -16,7 +16,7 @@ from fe_drivetrain.revolution import (
     Meridian,
     Strip,
     carried,
-    freedoms,
+    dofs,
     influence_functions,
     meridian,
     roller_forces,
@@ -193,7 +193,7 @@ def _check_plane_strain(page: Page, count: int, orders: tuple[int, int]) -> None
     planes = []
     for order in orders:
         mesh = ring(RACEWAY, OUTSIDE, WIDTH, 0.02, order)
-        still = freedoms(np.arange(len(mesh.nodes)), 0)
+        still = dofs(np.arange(len(mesh.nodes)), 0)
         found = influence_functions(mesh, STEEL, whole, count, HALF, held=still, anchor=whole[1])
         planes.append(found.harmonic_compliances[:, 0, 0])
     for k in (0, 2, 8, count):
@@ -341,7 +341,7 @@ def in_rigid_housing(count: int) -> Floats:
     """(rollers, rollers) compliance of the ring whose outside does not move."""
     mesh = ring(RACEWAY, OUTSIDE, WIDTH, 0.02)
     still = np.flatnonzero(np.abs(mesh.nodes[:, 1] - OUTSIDE) < 1e-9)
-    held = np.concatenate([freedoms(still, c) for c in range(3)])
+    held = np.concatenate([dofs(still, c) for c in range(3)])
     raceway = strips(OUTSIDE)[:1]
     return influence_functions(mesh, STEEL, raceway, count, HALF, held=held).matrix(ANGLES)
 

@@ -186,16 +186,16 @@ def assemble_shaft(shaft: Shaft, material: Material, mesh: SolidShaft) -> Assemb
     1 over its place on the diagonal of the 6x6 compliance.
     """
     n = len(mesh.points)
-    n_freedoms = 3 * n + 6
-    K = assemble(mesh.points, mesh.cells, material.lame, n_freedoms)
+    n_dofs = 3 * n + 6
+    K = assemble(mesh.points, mesh.cells, material.lame, n_dofs)
     centre = np.array([shaft.front, 0.0, 0.0])
-    point = constraints.rigid_point("front", centre, 3 * n, n_freedoms)
+    point = constraints.rigid_point("front", centre, 3 * n, n_dofs)
     elimination = constraints.eliminate(
         [
-            constraints.fixed("rear", mesh.rear, n_freedoms),
+            constraints.fixed("rear", mesh.rear, n_dofs),
             constraints.rigid_face("front", mesh.front, mesh.points, point),
         ],
-        n_freedoms,
+        n_dofs,
     )
     T = elimination.T
 

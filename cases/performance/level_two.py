@@ -17,9 +17,9 @@ from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import trace
 from fe_drivetrain.revolution import (
     Meridian,
+    dofs,
     element_matrices,
     end_stiffness,
-    freedoms,
     harmonic_solver,
     meridian,
 )
@@ -244,7 +244,7 @@ def factors(run: Run, page: Page) -> None:
     mesh = meridian(SHAFTS["stepped"])
     size = 3 * len(mesh.nodes)
     front = mesh.where(lambda x, r: x == x.min())
-    held = np.concatenate([freedoms(front, c) for c in range(3)])
+    held = np.concatenate([dofs(front, c) for c in range(3)])
     free = np.setdiff1d(np.arange(size), held)
     F = np.zeros((size, 12))
     F[free] = np.random.default_rng(0).standard_normal((len(free), 12))

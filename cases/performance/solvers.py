@@ -107,7 +107,7 @@ def bearing_problem(kind: str, scale: float) -> Problem:
     scene = library_scene(f"main_bearing_{kind}")
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(scale)})
     model = build_model(scene, mesh_scene(scene))
-    elimination = eliminate(model.constraints, model.n_freedoms)
+    elimination = eliminate(model.constraints, model.n_dofs)
     system = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
     loads = elimination.T.T @ model.unit_loads()
     loads = np.hstack([loads, loads[:, :2] + loads[:, 2:4]])

@@ -123,21 +123,19 @@ def in_element(mesh: Mesh, bearing: str, element: str) -> TiltMesh:
 def assemble_tilt(scene: Scene, mesh: TiltMesh) -> Assembled:
     """Base fixed, six unit loads at the hub, no gearbox; the quantities are `QUANTITIES`."""
     bearing = scene.bearing_units[0].bearing
-    n_freedoms = mesh.points.size
+    n_dofs = mesh.points.size
     stiffness = {
-        part: assemble(mesh.points, mesh.cells[cells], scene.material_of(part).lame, n_freedoms)
+        part: assemble(mesh.points, mesh.cells[cells], scene.material_of(part).lame, n_dofs)
         for part, cells in mesh.cells_of.items()
     }
     hub, seat = (
-        constraints.averaged_point(name, *face, mesh.points, np.array([x, 0.0, 0.0]), n_freedoms)
+        constraints.averaged_point(name, *face, mesh.points, np.array([x, 0.0, 0.0]), n_dofs)
         for name, face, x in (
             ("hub", mesh.hub, scene.shaft.front),
             ("seat", mesh.seat, bearing.x),
         )
     )
-    elimination = constraints.eliminate(
-        [constraints.fixed("base", mesh.base, n_freedoms)], n_freedoms
-    )
+    elimination = constraints.eliminate([constraints.fixed("base", mesh.base, n_dofs)], n_dofs)
     T = elimination.T
 
     def quantities(x: Floats) -> Floats:

@@ -9,7 +9,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import beam_maps as maps
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
-from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
+from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
@@ -95,7 +95,7 @@ def bent_by_tractions(length: float, ratio: float) -> float:
     ends = mesh.sides(lambda x, r: (x < LENGTH_TOLERANCE) | (x > length - LENGTH_TOLERANCE))
     loads = surface_loads(mesh, 1, ends, traction)
     rim = mesh.where(lambda x, r: (x < LENGTH_TOLERANCE) & (r > ratio / 2 - LENGTH_TOLERANCE))
-    held = (np.concatenate([freedoms(rim, 0), freedoms(rim, 1)]), np.zeros(2))
+    held = (np.concatenate([dofs(rim, 0), dofs(rim, 1)]), np.zeros(2))
     return 2 * float(harmonic_response(mesh, maps.STEEL, 1, loads, held).energy[0])
 
 

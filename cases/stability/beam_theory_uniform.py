@@ -12,7 +12,7 @@ from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.geometry import LENGTH_TOLERANCE
 from fe_drivetrain.revolution import (
     along_sides,
-    freedoms,
+    dofs,
     harmonic_response,
     meridian,
     surface_loads,
@@ -377,7 +377,7 @@ def flexure_tip(tube: Tube, order: int) -> float:
     ends = [mesh.sides(partial(is_at, end)) for end in (0.0, tube.length)]
     loads = surface_loads(mesh, 1, np.vstack(ends), traction)
     rim = mesh.where(lambda x, r: (x < LENGTH_TOLERANCE) & (r > tube.outer / 2 - LENGTH_TOLERANCE))
-    held = (np.concatenate([freedoms(rim, 0), freedoms(rim, 1)]), np.zeros(2))
+    held = (np.concatenate([dofs(rim, 0), dofs(rim, 1)]), np.zeros(2))
     u = harmonic_response(mesh, maps.STEEL, 1, loads, held).u[..., 0]
     means, slopes = [], []
     s, w = np.polynomial.legendre.leggauss(10)

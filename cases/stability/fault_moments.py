@@ -25,7 +25,7 @@ from fe_drivetrain.commands import run_and_print, show_steps
 from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions
 from fe_drivetrain.geometry import MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
-from fe_drivetrain.interfaces import freedoms
+from fe_drivetrain.interfaces import dofs
 from fe_drivetrain.mesh import cached_mesh, write
 from fe_drivetrain.mesh.cached import _content
 from fe_drivetrain.operator import sparsity
@@ -50,7 +50,7 @@ def small(run: Run, page: Page) -> None:
         ends = [mesh.face_nodes(f"shaft.{end}") for end in ("front", "rear")]
         turned = rigid_motions(mesh.points)[:, 3].reshape(-1, 3)
         turned[ends[0]] = 0.0
-        held = np.concatenate([freedoms(nodes).ravel() for nodes in ends])
+        held = np.concatenate([dofs(nodes).ravel() for nodes in ends])
         loads = np.zeros(mesh.points.size)
         prescribed = (held, turned.ravel()[held])
         found = solve_solid(mesh.points, mesh.cells, steel.lame, [], loads, prescribed, "superlu")

@@ -15,7 +15,7 @@ from fe_drivetrain.suite import Page, Record, Run, column
 #: Samples of the histories whose variance is taken, and how many of these.
 SAMPLES, HISTORIES = 20_000, 8
 SEED = 11
-RATIOS = 10.0 ** np.arange(0, 10)
+RATIOS: Floats = np.logspace(0, 9, 10)
 
 #: Samples of histories that are compared in chunks, and of those compared whole.
 LENGTHS = (100_000, 1_000_000, 10_000_000, 100_000_000)

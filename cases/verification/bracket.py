@@ -7,7 +7,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import band_of
-from fe_drivetrain.interfaces import held_freedoms
+from fe_drivetrain.interfaces import held_dofs
 from fe_drivetrain.mesh import brick
 from fe_drivetrain.operator import nodal_stresses, principal, traction_loads
 from fe_drivetrain.report import trace
@@ -55,7 +55,7 @@ def solve(n: int) -> tuple[Record, tuple[Floats, Floats]]:
     points, size = block.points, block.points.size
     inside = node_at(points, [0.0, -FILLET, -LEG])
     base = np.append(3 * block.face_nodes("y1") + 2, 3 * inside + 1)
-    held = [plane_strain_hold(block), held_freedoms("base", base, size)]
+    held = [plane_strain_hold(block), held_dofs("base", base, size)]
     F = traction_loads(points, block.faces["y0"], traction)
     static = solve_solid(points, block.cells, IRON.lame, held, F)
     s = nodal_stresses(points, block.cells, static.u[:, 0], IRON.lame)

@@ -24,7 +24,7 @@ from fe_drivetrain.export import (
     run_calculix,
     write_inp,
 )
-from fe_drivetrain.interfaces import freedoms
+from fe_drivetrain.interfaces import dofs
 from fe_drivetrain.mesh import Mesh
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import (
@@ -199,7 +199,7 @@ def _columns(loads: Sequence[str]) -> list[int]:
 def base_forces(model: Model, response: Response) -> dict[str, Floats]:
     """(n, 3, 10) forces that the support puts on the nodes of each base [N]."""
     n_loads = len(LOADS)
-    u = np.zeros((model.n_freedoms, n_loads))
+    u = np.zeros((model.n_dofs, n_loads))
     u[: response.displacements[..., 0].size] = response.displacements.reshape(-1, n_loads)
     forces = -model.unit_loads()
     for stiffness in model.part_stiffness.values():
@@ -207,7 +207,7 @@ def base_forces(model: Model, response: Response) -> dict[str, Floats]:
     found = {}
     for unit in model.scene.bearing_units:
         nodes = model.mesh.face_nodes(f"{unit.bearing.name}.housing.base")
-        found[unit.bearing.name] = forces[freedoms(nodes)]
+        found[unit.bearing.name] = forces[dofs(nodes)]
     return found
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import band_of, observed_order
-from fe_drivetrain.interfaces import held_freedoms, held_nodes
+from fe_drivetrain.interfaces import held_dofs, held_nodes
 from fe_drivetrain.mesh import FACES, Block, brick
 from fe_drivetrain.operator import traction_loads
 from fe_drivetrain.scene import Material
@@ -99,7 +99,7 @@ def cantilever(nodes: int, n: int) -> float:
     F += traction_loads(points, block.faces["x1"], stress)
     held = [
         held_nodes("plane strain", np.arange(len(points)), [1], size),
-        held_freedoms("support", np.array([3 * top, 3 * bottom, 3 * bottom + 2]), size),
+        held_dofs("support", np.array([3 * top, 3 * bottom, 3 * bottom + 2]), size),
     ]
     static = solve_solid(points, block.cells, IRON.lame, held, F)
     return float(static.energy[0]) / width

@@ -7,7 +7,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import band_of
-from fe_drivetrain.interfaces import Constraint, held_freedoms
+from fe_drivetrain.interfaces import Constraint, held_dofs
 from fe_drivetrain.operator import nodal_stresses, traction_loads
 from fe_drivetrain.report import Measure, trace
 from fe_drivetrain.scene import Material
@@ -90,13 +90,13 @@ def solve(n: int) -> tuple[dict[str, float], tuple[Floats, Floats, Floats]]:
 
     # In bending, sections stay plane: that at t = 0 is held on its plane.
     symmetric = on_plane("symmetry", block.face_nodes("y0"), [0.0, 0.0, 1.0], size)
-    still = held_freedoms("translation", np.array([3 * here[0] + 1]), size)
+    still = held_dofs("translation", np.array([3 * here[0] + 1]), size)
     moment, bent = answer(("y1",), bending, [symmetric, still])
     u = moment.u[:, 0].reshape(-1, 3)
     # Under the force they warp: both ends carry the exact tractions, and three degrees of freedom
     # at t = 90 degrees hold the bar without force.
     three = np.array([3 * middle + 1, 3 * middle + 2, 3 * there[1] + 1])
-    force, pulled = answer(("y0", "y1"), end_force, [held_freedoms("support", three, size)])
+    force, pulled = answer(("y0", "y1"), end_force, [held_dofs("support", three, size)])
     end = np.flatnonzero(
         (np.abs(points[:, 0]) < 1e-12) & (np.abs(points[:, 1]) < 1e-9) & (points[:, 2] > 0.0)
     )

@@ -3,10 +3,10 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.drivetrain import published
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation import published_drivetrains as published
 from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, implied
 from fe_drivetrain.validation.shaft_theory import solid_diameter
 from fe_drivetrain.validation.twisted_tubes import twisted_tube

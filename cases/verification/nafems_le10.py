@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.interfaces import held_freedoms
+from fe_drivetrain.interfaces import held_dofs
 from fe_drivetrain.mesh import Block, brick
 from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
 from fe_drivetrain.report import trace
@@ -59,7 +59,7 @@ def solve(nodes: int, divisions: tuple[int, int, int]) -> Record:
     middle_line = outer[np.abs(points[outer, 2]) < 1e-9]
     held = np.unique(np.concatenate([*symmetry, 3 * outer, 3 * outer + 1, 3 * middle_line + 2]))
     F = traction_loads(points, block.faces["z1"], pressure(PRESSURE))
-    supports = [held_freedoms("supports", held, size)]
+    supports = [held_dofs("supports", held, size)]
     static = solve_solid(points, block.cells, STEEL.lame, supports, F)
     stress = nodal_stresses(points, block.cells, static.u[:, 0], STEEL.lame)[:, 1]
     reaction = static.reactions["supports"][:size, 0].reshape(-1, 3)[:, 2].sum()

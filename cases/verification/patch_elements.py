@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import STRESSES, Floats, Ints
-from fe_drivetrain.interfaces import freedoms
+from fe_drivetrain.interfaces import dofs
 from fe_drivetrain.mesh import element_kind
 from fe_drivetrain.operator import tensor, traction_loads
 from fe_drivetrain.report import trace
@@ -53,13 +53,13 @@ def errors(run: Run, patch: Patch) -> tuple[float, ...]:
         return found.u, found.reactions["prescribed"]
 
     with run.step("displacements given all round"):
-        strong, _ = solve(np.zeros((n, 6)), freedoms(patch.outer).ravel())
+        strong, _ = solve(np.zeros((n, 6)), dofs(patch.outer).ravel())
     with run.step("tractions, six degrees of freedom held"):
         F = np.zeros((n, 6))
         for k, sigma in enumerate(SIGMAS):
             for facets in block.faces.values():
                 F[:, k] += traction_loads(points, facets, constant_traction(sigma))
-        origin, along_x, along_y = freedoms(patch.holders)
+        origin, along_x, along_y = dofs(patch.holders)
         weak, reaction = solve(F, np.array([*origin, along_x[1], along_x[2], along_y[2]]))
     return (
         *worst_errors(patch, strong, exact, SIGMAS),

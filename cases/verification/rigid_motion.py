@@ -8,7 +8,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.common import Floats, Ints, rigid_motions
-from fe_drivetrain.interfaces import freedoms
+from fe_drivetrain.interfaces import dofs
 from fe_drivetrain.mesh import brick, renumbered
 from fe_drivetrain.operator import stresses
 from fe_drivetrain.report import trace
@@ -75,7 +75,7 @@ def moved(body: Body) -> dict[str, Floats]:
     size = float(np.ptp(points, axis=0).max())
     motions = rigid_motions(points, points.mean(axis=0))
     motions[:, 3:] /= size  # all move the body by about 1 m
-    held = freedoms(body.face).ravel()
+    held = dofs(body.face).ravel()
     static = solve_solid(
         points,
         cells,

@@ -41,7 +41,7 @@ def work(model: Model, response: Response) -> Floats:
     Raises
     ------
     ValueError
-        The scene has reference points with freedoms of their own.
+        The scene has reference points with degrees of freedom of their own.
     """
     F = model.unit_loads()
     U = response.displacements.reshape(-1, F.shape[1])

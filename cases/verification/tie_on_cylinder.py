@@ -9,7 +9,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, rigid_motions
 from fe_drivetrain.compare import grid_convergence
-from fe_drivetrain.interfaces import Constraint, freedoms, held_freedoms, mortar_tie, settled
+from fe_drivetrain.interfaces import Constraint, dofs, held_dofs, mortar_tie, settled
 from fe_drivetrain.mesh import Block
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
@@ -68,8 +68,8 @@ def stiffnesses(bodies: Bodies, ties: Sequence[Constraint] = ()) -> Record:
     K = bodies.stiffness(LAME)
     bore, outside = np.unique(bodies.faces[0]["x0"]), np.unique(bodies.faces[-1]["x1"])
     supports = [
-        held_freedoms("bore", freedoms(bore).ravel(), n),
-        held_freedoms("outside", freedoms(outside).ravel(), n),
+        held_dofs("bore", dofs(bore).ravel(), n),
+        held_dofs("outside", dofs(outside).ravel(), n),
     ]
     moved = rigid_motions(points[outside])[:, [3, 1]]
     solved = two_bodies.solve(K, [*ties, *supports], np.zeros((n, 2)), {"outside": moved})

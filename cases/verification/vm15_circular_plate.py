@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.units import INCH, PSI
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import band_of
-from fe_drivetrain.interfaces import held_freedoms
+from fe_drivetrain.interfaces import held_dofs
 from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
@@ -65,7 +65,7 @@ def solve(n: int) -> tuple[list[Record], dict[str, Floats]]:
     line = line[np.argsort(points[line, 1])]
     rows, profiles = [], {}
     for support, p in PRESSURES.items():
-        held = [held_freedoms(support, holds[support], points.size)]
+        held = [held_dofs(support, holds[support], points.size)]
         u = solve_solid(points, cells, STEEL.lame, held, p * (pressed + carried)).u[:, 0]
         s = nodal_stresses(points, cells, u, STEEL.lame)[line, 1]
         rows.append(

@@ -3,7 +3,7 @@
 One mechanism for meshes and made hub loads. They are kept in the user's cache folder, which may be
 deleted at any time; the environment variable ``FE_DRIVETRAIN_CACHE`` names another folder, or
 switches keeping off ("off"). Nothing here ever fails a run: what cannot be read or is damaged is
-made anew, and what cannot be written is not kept.
+made again, and what cannot be written is not kept.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def key(content: Mapping[str, Any]) -> str:
 def user_cache() -> Cache:
     """The user's cache, as `CACHE_VARIABLE` says; where it is unset, in the system's place.
 
-    Read anew each time, so that a run can switch it off for itself and for its processes.
+    Read again each time, so that a run can switch it off for itself and for its processes.
     """
     named = os.environ.get(CACHE_VARIABLE, "")
     if named.strip().lower() in _OFF:

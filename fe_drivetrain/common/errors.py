@@ -1,10 +1,10 @@
-"""The one exception for what a user can mend."""
+"""The one exception for what a user can fix."""
 
 
 class InputError(Exception):
     """A user's mistake: bad scene, bad file, bad option.
 
-    The message is one sentence that names the object, the value, the allowed range and the mend.
+    The message is one sentence that names the object, the value, the allowed range and the fix.
     The command line prints it without a traceback and exits with status 2. Whatever it quotes, it
     is one line of characters that can be printed.
     """

@@ -29,7 +29,7 @@ _TRIES = 100  # to hold something new before another takes it for abandoned
 _EXCHANGE = 2  # RENAME_EXCHANGE, linux/fs.h
 _HERE = -100  # AT_FDCWD, linux/fcntl.h
 
-# what a user can mend about a folder or a disk; any other OSError is ours
+# what a user can fix about a folder or a disk; any other OSError is ours
 _USERS_ERRORS = {
     errno.EACCES,
     errno.EDQUOT,
@@ -43,7 +43,7 @@ _USERS_ERRORS = {
 
 
 def sentence_about(error: OSError) -> str | None:
-    """What to tell the user, where the user can mend it."""
+    """What to tell the user, where the user can fix it."""
     if "cannot open shared object file" in str(error):
         return (
             f"a system library is missing ({error}): install it, on Debian and Ubuntu with the "

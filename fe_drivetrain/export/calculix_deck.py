@@ -123,11 +123,11 @@ def _model_lines(model: Model, plan: DeckPlan) -> Iterator[str]:
         # VTK's order of the ten nodes is that of C3D10, too
         for row in np.column_stack([chosen + 1, mesh.cells[chosen] + 1]).tolist():
             yield ",".join(map(str, row))
-    for number, (freedom, stiffness) in enumerate(plan.springs, 1):
+    for number, (dof, stiffness) in enumerate(plan.springs, 1):
         yield f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING{number}"
-        yield f"{len(mesh.cells) + number},{freedom // 3 + 1}"
+        yield f"{len(mesh.cells) + number},{dof // 3 + 1}"
         yield f"*SPRING, ELSET=SPRING{number}"
-        yield f"{freedom % 3 + 1}"
+        yield f"{dof % 3 + 1}"
         yield f"{stiffness:.13e}"
     for face in mesh.faces:
         yield from _set_lines(face, mesh.face_nodes(face))
@@ -154,8 +154,8 @@ def _model_lines(model: Model, plan: DeckPlan) -> Iterator[str]:
     yield "*BOUNDARY"
     for face in fixed_bases(model):
         yield f"{deck_label(face)},1,3"
-    for freedom in plan.held.tolist():
-        yield f"{freedom // 3 + 1},{freedom % 3 + 1}"
+    for dof in plan.held.tolist():
+        yield f"{dof // 3 + 1},{dof % 3 + 1}"
 
 
 def _header(model: Model, plan: DeckPlan) -> Iterator[str]:
@@ -163,12 +163,13 @@ def _header(model: Model, plan: DeckPlan) -> Iterator[str]:
     yield f"** written by fe-drivetrain {version('fe-drivetrain')}"
     yield "** units: m, kg, s, N, Pa, rad"
     yield f"** frame: {FRAME}"
-    yield "** nodes beside the mesh, whose freedoms 1 to 3 are what is named, along x, y, z:"
+    yield "** nodes beside the mesh, whose degrees of freedom 1 to 3 are what is named, along x, y,"
+    yield "** z:"
     for node, name in plan.names.items():
         if not name.startswith("auxiliary"):
             what = "" if name.endswith("rotations") else ": displacements"
             yield f"**   {node + 1} {name}{what}"
-    yield "** every equation gives its first freedom by freedoms that no equation gives"
+    yield "** every equation gives its first degree of freedom by ones that no equation gives"
     yield "** each step is a unit load: hub.F of 1 N, hub.M of 1 N m, gravity of 1 m/s^2 on all"
     yield "**   parts, gearbox.weight of 1 N along -z"
     yield "** forces printed at supports are those of the elements: loads on these nodes are in"
@@ -188,7 +189,7 @@ def _set_lines(name: str, nodes: Ints | Sequence[int]) -> Iterator[str]:
 
 
 def _equation(T: sparse.csr_array, pivot: int) -> Iterator[str]:
-    """One freedom less what the others make of it is zero."""
+    """One degree of freedom less what the others make of it is zero."""
     row = slice(T.indptr[pivot], T.indptr[pivot + 1])
     order = np.argsort(T.indices[row])
     columns, values = T.indices[row][order], T.data[row][order]
@@ -214,6 +215,6 @@ def _steps(
         lines = ["*STEP", f"** {load}", static, "*CLOAD, OP=NEW"]
         column = plan.loads[:, number]
         where = np.flatnonzero(column)
-        for freedom, value in zip(where.tolist(), column[where].tolist(), strict=True):
-            lines.append(f"{freedom // 3 + 1},{freedom % 3 + 1},{value:.13e}")
+        for dof, value in zip(where.tolist(), column[where].tolist(), strict=True):
+            lines.append(f"{dof // 3 + 1},{dof % 3 + 1},{value:.13e}")
         yield "\n".join([*lines, *asked, "*END STEP", ""])

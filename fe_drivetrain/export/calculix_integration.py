@@ -26,7 +26,7 @@ def four_point_model(model: Model) -> Model:
                 mesh.points,
                 mesh.cells[mesh.part_cells(part)],
                 model.scene.material_of(part).lame,
-                model.n_freedoms,
+                model.n_dofs,
             )
             for part in mesh.part_names
         },
@@ -34,13 +34,13 @@ def four_point_model(model: Model) -> Model:
 
 
 def _four_points(
-    points: Floats, cells: Ints, lame: tuple[float, float], n_freedoms: int
+    points: Floats, cells: Ints, lame: tuple[float, float], n_dofs: int
 ) -> sparse.bsr_array:
     gradients, weights = element_kind(cells.shape[1]).table(2)
-    pattern = sparsity(cells, n_freedoms // 3)
+    pattern = sparsity(cells, n_dofs // 3)
     data = np.zeros((len(pattern.indices), 3, 3))
     nodes = np.ascontiguousarray(cells, dtype=np.int32)
     every = np.arange(len(cells))
     kernels.add_curved(points, nodes, every, gradients, weights, *lame, pattern.slots, data)
-    shape = (n_freedoms, n_freedoms)
+    shape = (n_dofs, n_dofs)
     return sparse.bsr_array((data, pattern.indices, pattern.indptr), shape=shape)

@@ -24,7 +24,7 @@ ROUND_OFF = 1e-14  # coefficients below, relative to the largest of their row, a
 
 @dataclass(frozen=True)
 class DeckPlan:
-    """A model in the freedoms of its deck: three a node, reference points included.
+    """A model in the degrees of freedom of its deck: three a node, reference points included.
 
     Attributes
     ----------
@@ -35,13 +35,13 @@ class DeckPlan:
     references
         Indices of the two nodes of each reference point.
     groups
-        Equations: what they are, and the (m,) freedoms that they give.
+        Equations: what they are, and the (m,) degrees of freedom that they give.
     T
-        (3 n, 3 n) all freedoms from those that no equation gives.
+        (3 n, 3 n) all degrees of freedom from those that no equation gives.
     held
-        (m,) freedoms of reference points that are zero.
+        (m,) degrees of freedom of reference points that are zero.
     springs
-        Freedom and stiffness of springs to ground [N/m, N m/rad].
+        Degree of freedom and stiffness of springs to ground [N/m, N m/rad].
     loads
         (3 n, m) the unit loads at nodes and reference points.
     """
@@ -57,7 +57,7 @@ class DeckPlan:
 
 
 def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
-    """Number the freedoms of the deck, and solve all constraints for the freedoms they give."""
+    """Number the degrees of freedom of the deck, and solve all constraints for those they give."""
     unknown = [load for load in loads if load not in LOADS]
     if unknown or not loads:
         raise InputError(
@@ -73,39 +73,40 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
         if np.abs(k - np.diag(k.diagonal())).max() > 0.0
         for value, vector in zip(*_stretched(k), strict=True)
     ]
-    along = model.n_freedoms + 6 * len(averaged)  # first of the coupled springs' own freedoms
-    n_freedoms = along + 3 * math.ceil(len(coupled) / 3)
-    first = {p.name: model.n_freedoms + 6 * k for k, p in enumerate(averaged)}
+    along = model.n_dofs + 6 * len(averaged)  # first of the coupled springs' own degrees of freedom
+    n_dofs = along + 3 * math.ceil(len(coupled) / 3)
+    first = {p.name: model.n_dofs + 6 * k for k, p in enumerate(averaged)}
     first |= {name: int(model.points[name].motion.indices.min()) for name in rigid}
     reactions = {f"{name} reaction": name for name in model.held}
 
     constraints = []
     for constraint in model.constraints:
         if constraint.name in reactions:
-            # The reference point's own freedom is held, and a freedom of the face follows it.
+            # The reference point's own degree of freedom is held, and a degree of freedom of the
+            # face follows it.
             name = reactions[constraint.name]
             if name not in rigid:
                 own = first[name] + np.array(model.held[name])
-                constraints.append(_tied(constraint, own, n_freedoms))
+                constraints.append(_tied(constraint, own, n_dofs))
         elif constraint.name not in fixed_bases(model):
-            constraints.append(replace(constraint, rows=_widened(constraint.rows, n_freedoms)))
+            constraints.append(replace(constraint, rows=_widened(constraint.rows, n_dofs)))
     for point in averaged:
         free = [c for c in range(6) if c not in model.held.get(point.name, ())]
         own = first[point.name] + np.array(free)
         rows = Constraint(f"{point.name}: mean motion of its face", point.motion[free], own)
-        constraints.append(_tied(rows, own, n_freedoms))
+        constraints.append(_tied(rows, own, n_dofs))
     springs = [s for point, k in model.springs for s in _axial(k, first[point.name])]
     for number, (point, value, vector) in enumerate(coupled):
         stretched = sparse.csr_array(vector[None]) @ point.motion
         own = np.array([along + number])
         rows = Constraint(f"{point.name}: what its spring is stretched by", stretched, own)
-        constraints.append(_tied(rows, own, n_freedoms))
+        constraints.append(_tied(rows, own, n_dofs))
         springs.append((along + number, value))
 
     references = {name: (first[name] // 3, first[name] // 3 + 1) for name in model.points}
-    names, positions = _extra_nodes(model, references, n_freedoms // 3)
-    F = np.zeros((n_freedoms, len(LOADS)))
-    F[: model.n_freedoms, 6:9] = model.unit_loads()[:, 6:9]
+    names, positions = _extra_nodes(model, references, n_dofs // 3)
+    F = np.zeros((n_dofs, len(LOADS)))
+    F[: model.n_dofs, 6:9] = model.unit_loads()[:, 6:9]
     F[first["hub"] + np.arange(6), np.arange(6)] = 1.0
     F[first["gearbox"] + 2, 9] = -1.0
     return DeckPlan(
@@ -113,7 +114,7 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
         names={n_mesh + k: name for k, name in enumerate(names)},
         references=references,
         groups=[(c.name, np.asarray(c.pivots)) for c in constraints],
-        T=eliminate(constraints, n_freedoms).T,
+        T=eliminate(constraints, n_dofs).T,
         held=np.array(
             [first[name] + c for name, some in model.held.items() for c in some], dtype=np.int64
         ),
@@ -122,15 +123,15 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
     )
 
 
-def _widened(rows: sparse.csr_array, n_freedoms: int) -> sparse.csr_array:
-    return sparse.csr_array((rows.data, rows.indices, rows.indptr), (rows.shape[0], n_freedoms))
+def _widened(rows: sparse.csr_array, n_dofs: int) -> sparse.csr_array:
+    return sparse.csr_array((rows.data, rows.indices, rows.indptr), (rows.shape[0], n_dofs))
 
 
-def _tied(constraint: Constraint, own: Ints, n_freedoms: int) -> Constraint:
-    """Rows that were to vanish equal freedoms of their own instead."""
+def _tied(constraint: Constraint, own: Ints, n_dofs: int) -> Constraint:
+    """Rows that were to vanish equal degrees of freedom of their own instead."""
     m = len(own)
-    ties = sparse.csr_array((np.ones(m), (np.arange(m), own)), shape=(m, n_freedoms))
-    rows = _widened(constraint.rows.tocsr(), n_freedoms) - ties
+    ties = sparse.csr_array((np.ones(m), (np.arange(m), own)), shape=(m, n_dofs))
+    rows = _widened(constraint.rows.tocsr(), n_dofs) - ties
     return replace(constraint, rows=rows.tocsr())
 
 

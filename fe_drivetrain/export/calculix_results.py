@@ -145,7 +145,7 @@ def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) 
         for name, (first, second) in plan.references.items()
     }
     # ccx prints the internal forces of elements, whatever else acts on a node. Less the loads, what
-    # is left at freedoms that follow a held one by an equation is carried there.
+    # is left at degrees of freedom that follow a held one by an equation is carried there.
     flat = plan.T.T @ (forces.reshape(3 * n, n_loads) - plan.loads)
     forces = flat.reshape(forces.shape)
     reactions, base_forces = {}, {}

@@ -71,7 +71,7 @@ class CraigBampton:
 
     @property
     def stiffness(self) -> Floats:
-        """(6 n + m, 6 n + m), the points' freedoms first."""
+        """(6 n + m, 6 n + m), the points' degrees of freedom first."""
         n = len(self.point_stiffness)
         K = np.zeros((n + len(self.omega),) * 2)
         K[:n, :n] = self.point_stiffness
@@ -80,7 +80,7 @@ class CraigBampton:
 
     @property
     def mass(self) -> Floats:
-        """(6 n + m, 6 n + m), the points' freedoms first."""
+        """(6 n + m, 6 n + m), the points' degrees of freedom first."""
         return np.block(
             [[self.point_mass, self.coupling], [self.coupling.T, np.eye(len(self.omega))]]
         )
@@ -217,7 +217,7 @@ def free_frequencies(
 
 
 class _Harmonic:
-    """Stiffness, mass and the points' motions in one harmonic, of the freedoms the axis leaves."""
+    """Stiffness, mass and the points' motions in one harmonic: what the axis leaves free."""
 
     def __init__(
         self, mesh: Meridian, material: Material, n: int, places: Floats, sides: Sequence[Ints]
@@ -245,7 +245,8 @@ class _Harmonic:
         size, held = self.P.shape
         if count > size - held - 2:
             raise InputError(
-                f"number of modes is {count} but the mesh has {size - held} freedoms: ask for fewer"
+                f"number of modes is {count} but the mesh has {size - held} degrees of freedom: "
+                "ask for fewer"
             )
         # rows of the size of the stiffness, for the sake of the pivots
         scale = float(np.abs(self.K.diagonal()).mean() / np.abs(self.P).max())

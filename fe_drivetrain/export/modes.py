@@ -20,7 +20,8 @@ def natural_frequencies(
 ) -> Floats:
     """Natural frequencies, ascending, those of free motions among them as about 0 [Hz].
 
-    For the arguments see `condensation.on_supports`; mass is of the same freedoms as stiffness.
+    For the arguments see `condensation.on_supports`; mass is of the same degrees of freedom as
+    stiffness.
     """
     K, left = on_supports(points, stiffness, supports or {})
     M = np.asarray(mass)[np.ix_(left, left)]

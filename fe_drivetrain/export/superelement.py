@@ -107,7 +107,7 @@ class Superelement:
             if np.shape(matrix) != (6 * n, 6 * n) or not np.isfinite(matrix).all():
                 raise InputError(
                     f"superelement {self.name!r}: its {kind} of shape {np.shape(matrix)} must be "
-                    f"({6 * n}, {6 * n}) and finite: six freedoms for each of {n} points"
+                    f"({6 * n}, {6 * n}) and finite: six degrees of freedom for each of {n} points"
                 )
             asymmetry, least = symmetry_error(matrix), least_eigenvalue(matrix)
             if asymmetry > ALLOWED or least < -ALLOWED:

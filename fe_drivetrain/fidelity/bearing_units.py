@@ -81,21 +81,21 @@ def unit_stiffness(
     centre = np.array([unit.bearing.x, 0.0, 0.0])
     materials = {part: scene.material_of(part) for part in parts}
     solid = coupled_solid(mesh, materials, [Attachment(name, face, centre, coupling)])
-    n_freedoms = solid.n_freedoms
+    n_dofs = solid.n_dofs
     base = f"{name}.housing.base"
     left_out = np.setdiff1d(
         np.arange(len(mesh.points)),
         np.concatenate([solid.cells.ravel(), mesh.face_nodes(face)]),
     )
     held = [
-        constraints.fixed(base, mesh.face_nodes(base), n_freedoms),
-        constraints.fixed("parts left out", left_out, n_freedoms),
+        constraints.fixed(base, mesh.face_nodes(base), n_dofs),
+        constraints.fixed("parts left out", left_out, n_dofs),
     ]
     springs: list[tuple[constraints.ReferencePoint, Floats]] = []
     if unit.rollers is not None:
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
         ground = free.T @ free
-        springs = [*roller_joint(unit, mesh, n_freedoms).springs, (solid.points[0], ground)]
+        springs = [*roller_joint(unit, mesh, n_dofs).springs, (solid.points[0], ground)]
     compliance = point_compliance(solid, held, springs, method)
     stiffness = np.linalg.inv(compliance)
     if unit.rollers is not None:

@@ -249,8 +249,8 @@ def _harmonic(
     # loads are in balance: what is held only takes the rigid motions out
     ends = [int(np.lexsort((-r, sense * x))[0]) for sense in (1.0, -1.0)]
     held = {
-        0: np.concatenate([harmonics.freedoms(np.array(ends[:1]), c) for c in (0, 2)]),
-        1: harmonics.freedoms(np.array(ends), 1),
+        0: np.concatenate([harmonics.dofs(np.array(ends[:1]), c) for c in (0, 2)]),
+        1: harmonics.dofs(np.array(ends), 1),
     }[n]
     solved = harmonics.harmonic_solver(mesh, material, n, held)
     rigid = harmonics.rigid_motions(mesh, n, positions[0, 0])

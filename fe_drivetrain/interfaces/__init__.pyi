@@ -4,11 +4,11 @@ from .constraints import ReferencePoint as ReferencePoint
 from .constraints import averaged_point as averaged_point
 from .constraints import averaged_sphere as averaged_sphere
 from .constraints import centred_weights as centred_weights
+from .constraints import dofs as dofs
 from .constraints import eliminate as eliminate
 from .constraints import fixed as fixed
-from .constraints import freedoms as freedoms
 from .constraints import held as held
-from .constraints import held_freedoms as held_freedoms
+from .constraints import held_dofs as held_dofs
 from .constraints import held_nodes as held_nodes
 from .constraints import rigid_face as rigid_face
 from .constraints import rigid_point as rigid_point

@@ -31,9 +31,9 @@ class Constraint:
     name
         What the rows are, for messages.
     rows
-        (m, n_freedoms) coefficients.
+        (m, n_dofs) coefficients.
     pivots
-        (m,) the freedom that each row is solved for.
+        (m,) the degree of freedom that each row is solved for.
     """
 
     name: str
@@ -52,8 +52,8 @@ class ReferencePoint:
     position
         (3,) [m].
     motion
-        (6, n_freedoms): displacement [m] and rotation [rad] of the point from all freedoms. Its
-        transpose spreads a force and a moment at the point over the freedoms.
+        (6, n_dofs): displacement [m] and rotation [rad] of the point from all degrees of freedom.
+        Its transpose spreads a force and a moment at the point over the degrees of freedom.
     """
 
     name: str
@@ -61,29 +61,29 @@ class ReferencePoint:
     motion: sparse.csr_array
 
 
-def freedoms(nodes: Ints) -> Ints:
-    """The (n, 3) displacement freedoms of n nodes."""
+def dofs(nodes: Ints) -> Ints:
+    """The (n, 3) displacement degrees of freedom of n nodes."""
     return np.asarray(3 * np.asarray(nodes)[:, None] + np.arange(3))
 
 
-def fixed(name: str, nodes: Ints, n_freedoms: int) -> Constraint:
+def fixed(name: str, nodes: Ints, n_dofs: int) -> Constraint:
     """All displacements of the nodes are zero."""
-    return held_nodes(name, nodes, (0, 1, 2), n_freedoms)
+    return held_nodes(name, nodes, (0, 1, 2), n_dofs)
 
 
-def held_freedoms(name: str, columns: Ints, n_freedoms: int) -> Constraint:
-    """These freedoms are zero."""
+def held_dofs(name: str, columns: Ints, n_dofs: int) -> Constraint:
+    """These degrees of freedom are zero."""
     held = np.asarray(columns)
-    return Constraint(name, _rows(np.ones((held.size, 1)), held[:, None], n_freedoms), held)
+    return Constraint(name, _rows(np.ones((held.size, 1)), held[:, None], n_dofs), held)
 
 
-def held_nodes(name: str, nodes: Ints, axes: Sequence[int], n_freedoms: int) -> Constraint:
+def held_nodes(name: str, nodes: Ints, axes: Sequence[int], n_dofs: int) -> Constraint:
     """Displacements of the nodes along these axes (0, 1, 2) are zero."""
-    return held_freedoms(name, freedoms(nodes)[:, list(axes)].ravel(), n_freedoms)
+    return held_dofs(name, dofs(nodes)[:, list(axes)].ravel(), n_dofs)
 
 
 def sliding_sphere(
-    name: str, inner: Ints, outer: Ints, points: Floats, centre: Floats, n_freedoms: int
+    name: str, inner: Ints, outer: Ints, points: Floats, centre: Floats, n_dofs: int
 ) -> Constraint:
     """Spherical joint, sliding form: equal normal displacement, free tangential displacement.
 
@@ -98,10 +98,10 @@ def sliding_sphere(
     """
     normal = points[outer] - centre
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    columns = np.hstack([freedoms(outer), freedoms(inner)])
+    columns = np.hstack([dofs(outer), dofs(inner)])
     largest = np.argmax(np.abs(normal), axis=1)
     pivots = 3 * np.asarray(outer) + largest
-    return Constraint(name, _rows(np.hstack([normal, -normal]), columns, n_freedoms), pivots)
+    return Constraint(name, _rows(np.hstack([normal, -normal]), columns, n_dofs), pivots)
 
 
 def averaged_sphere(
@@ -111,14 +111,14 @@ def averaged_sphere(
     inner_weights: Floats,
     outer_weights: Floats,
     groups: Ints,
-    first_freedom: int,
-    n_freedoms: int,
+    first_dof: int,
+    n_dofs: int,
 ) -> Constraint:
     """Spherical joint, averaged form: the mean displacements of the two faces are equal.
 
-    One row over all nodes would couple each with each and fill the matrix. So every group of
-    nodes gets its own sum as a freedom, and the sums of the groups are what must vanish: the same
-    constraint, eliminated sparsely.
+    One row over all nodes would couple each with each and fill the matrix. So every group of nodes
+    gets its own sum as a degree of freedom, and the sums of the groups are what must vanish: the
+    same constraint, eliminated sparsely.
 
     Parameters
     ----------
@@ -128,8 +128,8 @@ def averaged_sphere(
         Integrals of the shape functions over the face at those nodes [m^2].
     groups
         (2 n,) group number from 0 on of each node, inner ones first.
-    first_freedom
-        First of the 3 n_groups freedoms that are the groups' sums.
+    first_dof
+        First of the 3 n_groups degrees of freedom that are the groups' sums.
     """
     nodes = np.concatenate([inner, outer])
     weights = np.concatenate(
@@ -151,12 +151,12 @@ def averaged_sphere(
 
     # One component: rows "sum of group / scale = s_group", then "sum of scale s_group = 0".
     member = sparse.csr_array(
-        (weights / scale[groups], (groups, nodes)), shape=(n_groups + 1, n_freedoms // 3 + 1)
+        (weights / scale[groups], (groups, nodes)), shape=(n_groups + 1, n_dofs // 3 + 1)
     )
     rows, pivots = [], []
     for axis in range(3):
         entries = member.tocoo()
-        sums = first_freedom + 3 * np.arange(n_groups) + axis
+        sums = first_dof + 3 * np.arange(n_groups) + axis
         rows.append(
             sparse.csr_array(
                 (
@@ -168,7 +168,7 @@ def averaged_sphere(
                         np.concatenate([3 * entries.coords[1] + axis, sums, sums]),
                     ),
                 ),
-                shape=(n_groups + 1, n_freedoms),
+                shape=(n_groups + 1, n_dofs),
             )
         )
         pivots += [*(3 * pivot_nodes + axis), int(sums[np.argmax(scale)])]
@@ -198,7 +198,7 @@ def centred_weights(weights: Floats, points: Floats, centre: Floats) -> Floats:
 def shared_motion(
     name: str, position: Floats, motion: sparse.csr_array, groups: Sequence[Ints], first: int
 ) -> tuple[Constraint, ReferencePoint]:
-    """A motion of many nodes as the sum of its groups' shares, which are freedoms of their own.
+    """A motion of many nodes as the sum of its groups' shares, each a degree of freedom of its own.
 
     A spring on the motion itself would couple each node with each; on the shares it does not.
 
@@ -207,25 +207,25 @@ def shared_motion(
     name, position
         Of the point that moves so.
     motion
-        (6, n_freedoms) the motion from the nodes' displacements.
+        (6, n_dofs) the motion from the nodes' displacements.
     groups
         Nodes of each group; together all that the motion has, none of them twice.
     first
-        First of the 6 len(groups) freedoms.
+        First of the 6 len(groups) degrees of freedom.
     """
-    n_freedoms = motion.shape[1]
+    n_dofs = motion.shape[1]
     columns = motion.tocsc()
     rows, pivots = [], []
     for number, nodes in enumerate(groups):
-        chosen = freedoms(nodes).ravel()
+        chosen = dofs(nodes).ravel()
         share = columns[:, chosen].toarray()
         order = linalg.qr(share, mode="r", pivoting=True)[1]
         pivots.append(chosen[order[:6]])
         own = first + 6 * number + np.arange(6)[:, None]
         wide = np.broadcast_to(chosen, (6, chosen.size))
-        rows.append(_rows(np.hstack([share, -np.ones((6, 1))]), np.hstack([wide, own]), n_freedoms))
+        rows.append(_rows(np.hstack([share, -np.ones((6, 1))]), np.hstack([wide, own]), n_dofs))
     shares = first + np.arange(6)[:, None] + 6 * np.arange(len(groups))
-    total = _rows(np.ones(shares.shape), shares, n_freedoms)
+    total = _rows(np.ones(shares.shape), shares, n_dofs)
     stacked = sparse.vstack(rows, format="csr")
     constraint = Constraint(f"{name} shares", stacked, np.concatenate(pivots))
     return constraint, ReferencePoint(name, position, total)
@@ -233,9 +233,9 @@ def shared_motion(
 
 def rigid_face(name: str, nodes: Ints, points: Floats, point: ReferencePoint) -> Constraint:
     """The nodes move with the reference point as one rigid body (RBE2)."""
-    n_freedoms = point.motion.shape[1]
-    columns = freedoms(nodes).ravel()
-    own = _rows(np.ones((columns.size, 1)), columns[:, None], n_freedoms)
+    n_dofs = point.motion.shape[1]
+    columns = dofs(nodes).ravel()
+    own = _rows(np.ones((columns.size, 1)), columns[:, None], n_dofs)
     rigid = sparse.csr_array(rigid_motions(points[nodes], point.position))
     return Constraint(name, (own - rigid @ point.motion).tocsr(), columns)
 
@@ -252,14 +252,14 @@ def held(name: str, point: ReferencePoint, components: Sequence[int]) -> Constra
     return Constraint(name, rows, _pivots(rows))
 
 
-def rigid_point(name: str, position: Floats, first_freedom: int, n_freedoms: int) -> ReferencePoint:
-    """A reference point with six freedoms of its own, from ``first_freedom`` on."""
-    columns = first_freedom + np.arange(6)[:, None]
-    return ReferencePoint(name, position, _rows(np.ones((6, 1)), columns, n_freedoms))
+def rigid_point(name: str, position: Floats, first_dof: int, n_dofs: int) -> ReferencePoint:
+    """A reference point with six degrees of freedom of its own, from ``first_dof`` on."""
+    columns = first_dof + np.arange(6)[:, None]
+    return ReferencePoint(name, position, _rows(np.ones((6, 1)), columns, n_dofs))
 
 
 def averaged_point(
-    name: str, nodes: Ints, weights: Floats, points: Floats, position: Floats, n_freedoms: int
+    name: str, nodes: Ints, weights: Floats, points: Floats, position: Floats, n_dofs: int
 ) -> ReferencePoint:
     """A reference point that moves as the face does on average, without stiffening it (RBE3).
 
@@ -281,8 +281,8 @@ def averaged_point(
     motions = rigid_motions(points[nodes], position)
     weighted = motions * np.repeat(w, 3)[:, None]
     fit = np.linalg.solve(motions.T @ weighted, weighted.T)
-    columns = np.broadcast_to(freedoms(nodes).ravel(), fit.shape)
-    return ReferencePoint(name, position, _rows(fit, columns, n_freedoms))
+    columns = np.broadcast_to(dofs(nodes).ravel(), fit.shape)
+    return ReferencePoint(name, position, _rows(fit, columns, n_dofs))
 
 
 @dataclass(frozen=True)
@@ -292,9 +292,9 @@ class Elimination:
     Attributes
     ----------
     T
-        (n_freedoms, n_freedoms); the columns of eliminated freedoms are empty.
+        (n_dofs, n_dofs); the columns of eliminated degrees of freedom are empty.
     free
-        (n_freedoms,) which freedoms are left.
+        (n_dofs,) which degrees of freedom are left.
     constraints
         What was eliminated.
     """
@@ -309,7 +309,7 @@ class Elimination:
         Parameters
         ----------
         residual
-            (n_freedoms, n_loads) K u - f of the unconstrained system, which the constraints carry.
+            (n_dofs, n_loads) K u - f of the unconstrained system, which the constraints carry.
 
         Returns
         -------
@@ -334,7 +334,7 @@ class Elimination:
         Returns
         -------
         u
-            (n_freedoms, n_loads), zero at the freedoms that are left.
+            (n_dofs, n_loads), zero at the degrees of freedom that are left.
         """
         C, pivots = _stack(self.constraints)
         n_loads = max(values.shape[1] for values in right.values())
@@ -344,15 +344,15 @@ class Elimination:
         return u
 
 
-def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination:
+def eliminate(constraints: Sequence[Constraint], n_dofs: int) -> Elimination:
     """Solve all constraints together for their pivots.
 
     Raises
     ------
     InputError
-        Two constraints hold the same freedom.
+        Two constraints hold the same degree of freedom.
     """
-    owner = np.full(n_freedoms, -1)
+    owner = np.full(n_dofs, -1)
     for number, constraint in enumerate(constraints):
         taken = owner[constraint.pivots]
         if (taken >= 0).any() or len(np.unique(constraint.pivots)) < len(constraint.pivots):
@@ -363,7 +363,7 @@ def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination
             )
         owner[constraint.pivots] = number
     free = np.flatnonzero(owner < 0)
-    keep = _selection(free, n_freedoms)
+    keep = _selection(free, n_dofs)
     T = keep
     if constraints:
         C, pivots = _stack(constraints)
@@ -377,7 +377,7 @@ def eliminate(constraints: Sequence[Constraint], n_freedoms: int) -> Elimination
             for some in np.array_split(columns, len(columns) // _BLOCK + 1)
         ]
         dependent = sparse.hstack(solved, format="csr") @ _selection(columns, free.size).T
-        T = (T + _selection(pivots, n_freedoms) @ dependent).tocsr()
+        T = (T + _selection(pivots, n_dofs) @ dependent).tocsr()
     return Elimination((T @ keep.T).tocsr(), owner < 0, tuple(constraints))
 
 
@@ -393,11 +393,11 @@ def _selection(chosen: Ints, size: int) -> sparse.csr_array:
     )
 
 
-def _rows(coefficients: Floats, columns: Ints, n_freedoms: int) -> sparse.csr_array:
+def _rows(coefficients: Floats, columns: Ints, n_dofs: int) -> sparse.csr_array:
     m, k = coefficients.shape
     return sparse.csr_array(
         (coefficients.ravel(), np.ascontiguousarray(columns).ravel(), np.arange(0, m * k + 1, k)),
-        shape=(m, n_freedoms),
+        shape=(m, n_dofs),
     )
 
 

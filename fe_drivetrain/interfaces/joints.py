@@ -97,16 +97,16 @@ def roller_lines(unit: BearingUnit) -> Floats:
     return np.hstack([ways, np.cross(places - centre, ways)])
 
 
-def spring_joint(unit: BearingUnit, mesh: Mesh, first_freedom: int, n_freedoms: int) -> Joint:
+def spring_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> Joint:
     """A 6x6 spring between the mean motions of the two faces; none of the two is stiffened.
 
     Parameters
     ----------
     unit, mesh
         Of interface "spring".
-    first_freedom
-        First of 6 `SECTORS` freedoms, the sectors' shares of the relative motion.
-    n_freedoms
+    first_dof
+        First of 6 `SECTORS` degrees of freedom, the sectors' shares of the relative motion.
+    n_dofs
         Of the model.
     """
     name = f"{unit.bearing.name}.joint"
@@ -116,7 +116,7 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_freedom: int, n_freedoms: 
         on = mesh.face_nodes(face)
         weights = face_weights(mesh.points, mesh.faces[face], len(mesh.points), MEANS)[on]
         weights = constraints.centred_weights(weights, mesh.points[on], centre)
-        point = constraints.averaged_point(name, on, weights, mesh.points, centre, n_freedoms)
+        point = constraints.averaged_point(name, on, weights, mesh.points, centre, n_dofs)
         nodes.append(on)
         rows.append(sign * point.motion)
     both = np.concatenate(nodes)
@@ -127,7 +127,7 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_freedom: int, n_freedoms: 
         centre,
         rows[0] + rows[1],
         [both[sector == number] for number in range(SECTORS)],
-        first_freedom,
+        first_dof,
     )
     k = spring_matrix(unit)
     rigid = np.flatnonzero(np.isinf(k.diagonal()))
@@ -137,7 +137,7 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_freedom: int, n_freedoms: 
     return Joint(tuple(conditions), ((point, np.where(np.isinf(k), 0.0, k)),))
 
 
-def roller_joint(unit: BearingUnit, mesh: Mesh, n_freedoms: int) -> Joint:
+def roller_joint(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> Joint:
     """A spring for each roller, between the means of both faces over the roller's share of them.
 
     A share reaches to the neighbours' places round the shaft, falling off evenly, and half way to
@@ -147,7 +147,7 @@ def roller_joint(unit: BearingUnit, mesh: Mesh, n_freedoms: int) -> Joint:
     ----------
     unit, mesh
         Of interface "rollers".
-    n_freedoms
+    n_dofs
         Of the model.
     """
     rollers, bearing = _rollers(unit), unit.bearing
@@ -163,7 +163,7 @@ def roller_joint(unit: BearingUnit, mesh: Mesh, n_freedoms: int) -> Joint:
     for number, (place, way) in enumerate(zip(places, ways, strict=True), 1):
         name = f"{bearing.name}.roller {number}"
         row = rows.index(rollers.rows[(number - 1) // rollers.count].x)
-        motion = sparse.csr_array((6, n_freedoms))
+        motion = sparse.csr_array((6, n_dofs))
         for face, sign in _sides(unit):
             facets, at = windows[face]
             angle = np.arctan2(at.positions[..., 2], at.positions[..., 1])
@@ -175,7 +175,7 @@ def roller_joint(unit: BearingUnit, mesh: Mesh, n_freedoms: int) -> Joint:
             np.add.at(weights, facets, (share * at.areas) @ at.values)
             near = np.unique(facets[share.max(axis=1) > 0.0])
             point = constraints.averaged_point(
-                name, near, weights[near], mesh.points, place, n_freedoms
+                name, near, weights[near], mesh.points, place, n_dofs
             )
             motion = motion + sign * point.motion
         k = np.zeros((6, 6))

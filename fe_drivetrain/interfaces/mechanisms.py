@@ -65,12 +65,12 @@ class WeakMotion:
 
 @dataclass(frozen=True)
 class _StrainFree:
-    """Rigid motions of all bodies, then the freedoms that belong to no body, as columns.
+    """Rigid motions of all bodies, then the degrees of freedom that belong to no body, as columns.
 
     Attributes
     ----------
     motions
-        (n_freedoms, 6 n_bodies + n_extra) displacements; turning is measured by its `length`.
+        (n_dofs, 6 n_bodies + n_extra) displacements; turning is measured by its `length`.
     body_of_node
         (n_nodes,).
     names
@@ -131,7 +131,7 @@ def find_mechanisms(
     springs
         Reference points with their (6, 6) stiffness to ground.
     """
-    free = _strain_free(mesh, _n_freedoms(mesh, constraints, springs))
+    free = _strain_free(mesh, _n_dofs(mesh, constraints, springs))
     motions = free.motions
     restraints = [np.zeros((1, motions.shape[1]))]
     restraints += [constraint.rows @ motions for constraint in constraints]
@@ -183,7 +183,7 @@ def weak_restraints(
     """
     if not springs:
         return []
-    free = _strain_free(mesh, _n_freedoms(mesh, constraints, springs))
+    free = _strain_free(mesh, _n_dofs(mesh, constraints, springs))
     n_moving = 6 * len(free.names)
     null = _null_space(
         [np.zeros((1, free.motions.shape[1])), *(c.rows @ free.motions for c in constraints)]
@@ -242,13 +242,13 @@ def warn_of_weak_restraints(
     return tuple(map(str, found))
 
 
-def _strain_free(mesh: Mesh, n_freedoms: int) -> _StrainFree:
+def _strain_free(mesh: Mesh, n_dofs: int) -> _StrainFree:
     body_of_node, names = named_bodies(mesh)
     n = len(mesh.points)
     length = float(np.ptp(mesh.points, axis=0).max())
     centres = np.array([mesh.points[body_of_node == b].mean(axis=0) for b in range(len(names))])
-    extra = n_freedoms - 3 * n
-    motions = np.zeros((n_freedoms, 6 * len(names) + extra))
+    extra = n_dofs - 3 * n
+    motions = np.zeros((n_dofs, 6 * len(names) + extra))
     extents = np.zeros(len(names))
     for b in range(len(names)):
         nodes = np.flatnonzero(body_of_node == b)
@@ -270,7 +270,7 @@ def _null_space(restraints: Sequence[Floats]) -> Floats:
     return np.asarray(right[rank:])
 
 
-def _n_freedoms(
+def _n_dofs(
     mesh: Mesh,
     constraints: Sequence[Constraint],
     springs: Sequence[tuple[ReferencePoint, Floats]],

@@ -79,7 +79,7 @@ def mortar_tie(
     points: Floats,
     slave: Ints,
     master: Ints,
-    n_freedoms: int,
+    n_dofs: int,
     multipliers: Multipliers = "standard",
 ) -> Constraint:
     """Tie two faces that lie on one another, whatever their meshes.
@@ -100,8 +100,8 @@ def mortar_tie(
     slave, master
         (nf, k) facets in VTK's order, turned outward: triangles of 3 or 6, quadrilaterals of 4, 8
         or 9 nodes. The master face covers all of the slave face; it may be larger.
-    n_freedoms
-        Freedoms of the whole model, three a node first.
+    n_dofs
+        Degrees of freedom of the whole model, three a node first.
     multipliers
         "standard" is the more accurate one, "dual" keeps the stiffness sparse on large faces (of
         more than about a thousand nodes); see above.
@@ -109,8 +109,8 @@ def mortar_tie(
     Returns
     -------
     constraint
-        u_slave - D^-1 M u_master = 0, a row and a pivot for each freedom of the slave's nodes. Its
-        multipliers are the nodal forces on the slave.
+        u_slave - D^-1 M u_master = 0, a row and a pivot for each degree of freedom of the slave's
+        nodes. Its multipliers are the nodal forces on the slave.
 
     Raises
     ------
@@ -135,7 +135,7 @@ def mortar_tie(
     if multipliers == "standard":
         D = _summed(mass, rows, rows, (n_slave, n_slave))
         M = _summed(pieces.across, rows[pieces.slave], columns[pieces.master], size)
-        return _warned_of_gap(_following(name, nodes, _solved(D, M), n_freedoms), points)
+        return _warned_of_gap(_following(name, nodes, _solved(D, M), n_dofs), points)
     # phi = diag(d) B^-T mass^-1 N is biorthogonal to the positive shape functions B N, facet by
     # facet: u~ = diag(1/d) M u_master are the coefficients of these, and u = B^T u~.
     positive = _positive(slave.shape[1])
@@ -149,10 +149,10 @@ def mortar_tie(
     same = np.broadcast_to(positive.T, mass.shape)  # on every facet that has the node
     spread = _summed(same, rows, rows, (n_slave, n_slave))
     P = sparse.diags_array(1.0 / count) @ spread @ sparse.diags_array(1.0 / d) @ M
-    return _warned_of_gap(_following(name, nodes, P.tocsr(), n_freedoms), points)
+    return _warned_of_gap(_following(name, nodes, P.tocsr(), n_dofs), points)
 
 
-def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_freedoms: int) -> Constraint:
+def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_dofs: int) -> Constraint:
     """Tie each slave node to the point of the master face opposite to it.
 
     What many programs call a tie. Every linear displacement passes on plane faces, but forces
@@ -161,7 +161,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_freedoms: i
 
     Parameters
     ----------
-    name, points, slave, master, n_freedoms
+    name, points, slave, master, n_dofs
         As for `mortar_tie`.
 
     Raises
@@ -199,7 +199,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_freedoms: i
         )
     size = (len(nodes.slave), len(nodes.master))
     P = _summed(at.values[best][:, None, :], node[best][:, None], columns[facet[best]], size)
-    return _warned_of_gap(_following(name, nodes, P, n_freedoms), points)
+    return _warned_of_gap(_following(name, nodes, P, n_dofs), points)
 
 
 def settled(points: Floats, *ties: Constraint) -> Floats:
@@ -311,17 +311,17 @@ def _solved(D: sparse.csr_array, M: sparse.csr_array) -> sparse.csr_array:
     return P
 
 
-def _following(name: str, nodes: _Nodes, P: sparse.csr_array, n_freedoms: int) -> Constraint:
+def _following(name: str, nodes: _Nodes, P: sparse.csr_array, n_dofs: int) -> Constraint:
     """u_slave - P u_master = 0 for each of the three displacements."""
     own = sparse.csr_array(
         (np.ones(len(nodes.slave)), (np.arange(len(nodes.slave)), nodes.slave)),
-        shape=(len(nodes.slave), n_freedoms // 3),
+        shape=(len(nodes.slave), n_dofs // 3),
     )
     entries = P.tocoo()
     i, j = entries.coords
     others = sparse.csr_array((entries.data, (i, nodes.master[j])), shape=own.shape)
     rows = sparse.kron(own - others, sparse.eye_array(3), format="csr")
-    rows.resize(rows.shape[0], n_freedoms)
+    rows.resize(rows.shape[0], n_dofs)
     return Constraint(name, rows, np.asarray(3 * nodes.slave[:, None] + np.arange(3)).ravel())
 
 

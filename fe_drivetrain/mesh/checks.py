@@ -44,7 +44,7 @@ class Fault:
     place
         Where it is, m; of an element its centre.
     sentence
-        What is wrong, where, and what mends it.
+        What is wrong, where, and how to fix it.
     """
 
     kind: str

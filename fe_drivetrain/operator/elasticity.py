@@ -50,7 +50,7 @@ def assemble(
     points: Floats,
     cells: Ints,
     lame: tuple[float, float],
-    n_freedoms: int | None = None,
+    n_dofs: int | None = None,
     pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
     """Assemble the stiffness of the given elements.
@@ -64,18 +64,19 @@ def assemble(
         nodes.
     lame
         Lame's constants (lambda, mu) [Pa].
-    n_freedoms
-        Order of the matrix, a multiple of three; freedom 3 i + k is displacement k of node i, what
-        comes after 3 n belongs to reference points and is left empty. 3 n where not given.
+    n_dofs
+        Order of the matrix, a multiple of three; degree of freedom 3 i + k is displacement k of
+        node i, what comes after 3 n belongs to reference points and is left empty. 3 n where not
+        given.
     pattern
-        From `sparsity` for the same cells and n_freedoms / 3 nodes, to spare making it again.
+        From `sparsity` for the same cells and n_dofs / 3 nodes, to spare making it again.
 
     Returns
     -------
     stiffness
-        Symmetric (n_freedoms, n_freedoms) in 3x3 blocks [N/m].
+        Symmetric (n_dofs, n_dofs) in 3x3 blocks [N/m].
     """
-    n_blocks = len(points) if n_freedoms is None else n_freedoms // 3
+    n_blocks = len(points) if n_dofs is None else n_dofs // 3
     kind = element_kind(cells.shape[1])
     pattern = pattern or sparsity(cells, n_blocks)
     nodes = np.ascontiguousarray(cells, dtype=np.int32)

@@ -4,8 +4,8 @@ A trilinear hexahedron that is bent must shear, since its edges stay straight: i
 the more the longer it is. Three parabolas for each displacement, 1 - xi^2 in the element's own
 coordinates, let it curve (Wilson et al. 1973; with the gradients taken at the middle, so that
 distorted elements still hold constant stresses exactly, Taylor, Beresford and Wilson 1976, Int. J.
-Numer. Meth. Eng. 10, 1211-1219). The nine freedoms are condensed out of each element, so that the
-matrix has the pattern of the plain one and goes to the same solvers.
+Numer. Meth. Eng. 10, 1211-1219). The nine degrees of freedom are condensed out of each element, so
+that the matrix has the pattern of the plain one and goes to the same solvers.
 
 Bricks bend exactly; distorted elements only gain (MacNeal 1987, Finite Elem. Anal. Des. 3,
 shows that no 8-node element can do both, hold constant stresses and bend when it is a trapezoid).
@@ -27,7 +27,7 @@ def assemble(
     points: Floats,
     cells: Ints,
     lame: tuple[float, float],
-    n_freedoms: int | None = None,
+    n_dofs: int | None = None,
     pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
     """Assemble the stiffness with incompatible modes.
@@ -44,11 +44,11 @@ def assemble(
             f"incompatible modes are for hexahedra of 8 nodes, not for elements of "
             f"{cells.shape[1]}: elements of second order bend as they are"
         )
-    size = 3 * len(points) if n_freedoms is None else n_freedoms
+    size = 3 * len(points) if n_dofs is None else n_dofs
     rows = np.concatenate(
         [_condensed(points, cells[chunk], lame) for chunk in chunks(len(cells), CHUNK // 4)]
     )
-    plain = elasticity.assemble(points, cells, lame, n_freedoms, pattern)
+    plain = elasticity.assemble(points, cells, lame, n_dofs, pattern)
     return plus_products(plain, -1.0, rows, cells, size)
 
 

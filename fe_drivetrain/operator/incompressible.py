@@ -41,7 +41,7 @@ def assemble(
     points: Floats,
     cells: Ints,
     lame: tuple[float, float],
-    n_freedoms: int | None = None,
+    n_dofs: int | None = None,
     pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
     """Assemble the stiffness, the dilatation projected.
@@ -54,11 +54,11 @@ def assemble(
     InputError
         The elements are tetrahedra of four nodes.
     """
-    size = 3 * len(points) if n_freedoms is None else n_freedoms
+    size = 3 * len(points) if n_dofs is None else n_dofs
     rows = np.concatenate(
         [_projected(points, cells[chunk])[0] for chunk in chunks(len(cells), CHUNK // 4)]
     )
-    plain = elasticity.assemble(points, cells, (0.0, lame[1]), n_freedoms, pattern)
+    plain = elasticity.assemble(points, cells, (0.0, lame[1]), n_dofs, pattern)
     return plus_products(plain, lame[0], rows, cells, size)
 
 
@@ -69,11 +69,11 @@ def poisson_ratio(lame: tuple[float, float]) -> float:
 
 
 def assemble_unlocked(
-    points: Floats, cells: Ints, lame: tuple[float, float], n_freedoms: int | None = None
+    points: Floats, cells: Ints, lame: tuple[float, float], n_dofs: int | None = None
 ) -> sparse.bsr_array:
     """`elasticity.assemble` below `AVERAGED_FROM`, and `assemble` from there on."""
     averaged = poisson_ratio(lame) >= AVERAGED_FROM
-    return (assemble if averaged else elasticity.assemble)(points, cells, lame, n_freedoms)
+    return (assemble if averaged else elasticity.assemble)(points, cells, lame, n_dofs)
 
 
 def warn_of_averaging(part: str, lame: tuple[float, float]) -> tuple[str, ...]:
@@ -123,14 +123,14 @@ def stresses(
 
 
 def plus_products(
-    K: sparse.bsr_array, factor: float, rows: Floats, cells: Ints, n_freedoms: int
+    K: sparse.bsr_array, factor: float, rows: Floats, cells: Ints, n_dofs: int
 ) -> sparse.bsr_array:
-    """K + factor R^T R, each row of R over the freedoms of one cell.
+    """K + factor R^T R, each row of R over the degrees of freedom of one cell.
 
     Parameters
     ----------
     K
-        (n_freedoms, n_freedoms) in 3x3 blocks.
+        (n_dofs, n_dofs) in 3x3 blocks.
     rows
         (n_cells, p, k, 3): p rows a cell, over the displacements of its nodes.
     cells
@@ -140,7 +140,7 @@ def plus_products(
     columns = np.repeat(cells[:, None], p, axis=1).astype(np.int32)
     R = sparse.bsr_array(
         (rows.reshape(-1, 1, 3), columns.ravel(), k * np.arange(n_cells * p + 1, dtype=np.int32)),
-        shape=(n_cells * p, n_freedoms),
+        shape=(n_cells * p, n_dofs),
     )
     total = K + factor * (R.T @ R)
     total.sort_indices()

@@ -228,10 +228,8 @@ def distances(indptr: Index, indices: Index, start: int) -> Index:
 
 
 @njit(cache=True, parallel=True)
-def keep_freedoms(
-    indptr: Index, indices: Index, data: Floats, kept: Floats, diagonal: float
-) -> None:
-    """Zero the rows and columns of freedoms that are not kept, and put ``diagonal`` there.
+def keep_dofs(indptr: Index, indices: Index, data: Floats, kept: Floats, diagonal: float) -> None:
+    """Zero rows and columns of degrees of freedom that are not kept, and put ``diagonal`` there.
 
     Parameters
     ----------

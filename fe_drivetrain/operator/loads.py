@@ -23,7 +23,7 @@ def pressure(value: float) -> Traction:
 
 
 def traction_loads(
-    points: Floats, facets: Ints, traction: Floats | Traction, n_freedoms: int | None = None
+    points: Floats, facets: Ints, traction: Floats | Traction, n_dofs: int | None = None
 ) -> Floats:
     """Nodal forces of a traction on a face.
 
@@ -36,13 +36,13 @@ def traction_loads(
         quadrilaterals of 4, 8 or 9 nodes.
     traction
         (3,) [Pa], or a function of positions and outward normals.
-    n_freedoms
+    n_dofs
         Length of the result; 3 n where not given.
 
     Returns
     -------
     forces
-        (n_freedoms,) [N].
+        (n_dofs,) [N].
     """
     at = facet_points(points, facets)
     given = (
@@ -51,13 +51,13 @@ def traction_loads(
         else np.asarray(traction, dtype=float)
     )
     t = np.broadcast_to(given, (at.areas.size, 3)).reshape(*at.areas.shape, 3)
-    forces = np.zeros((len(points) if n_freedoms is None else n_freedoms // 3, 3))
+    forces = np.zeros((len(points) if n_dofs is None else n_dofs // 3, 3))
     np.add.at(forces, facets, np.einsum("qn,fq,fqi->fni", at.values, at.areas, t))
     return forces.ravel()
 
 
 def body_loads(
-    points: Floats, cells: Ints, force: Floats | Field, n_freedoms: int | None = None
+    points: Floats, cells: Ints, force: Floats | Field, n_dofs: int | None = None
 ) -> Floats:
     """Nodal forces of a force per volume.
 
@@ -69,18 +69,18 @@ def body_loads(
         (n_cells, k) node numbers in VTK's order.
     force
         (3,) [N/m^3], or a function of positions.
-    n_freedoms
+    n_dofs
         Length of the result; 3 n where not given.
 
     Returns
     -------
     forces
-        (n_freedoms,) [N].
+        (n_dofs,) [N].
     """
     kind = element_kind(cells.shape[1])
     X, W = get_quadrature(kind.element.refdom, _DEGREE)
     values, gradients = kind.shape(X)
-    forces = np.zeros((len(points) if n_freedoms is None else n_freedoms // 3, 3))
+    forces = np.zeros((len(points) if n_dofs is None else n_dofs // 3, 3))
     for rows in chunks(len(cells)):
         part = cells[rows]
         volumes = np.abs(jacobian(points, part, gradients)[1]) * W

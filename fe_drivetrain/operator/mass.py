@@ -12,7 +12,7 @@ from fe_drivetrain.mesh.shapes import element_kind, jacobian
 _DEGREE = 6  # exact where sides are straight; curved ones add what the stiffness neglects, too
 
 
-def mass_matrix(points: Floats, cells: Ints, density: float, n_freedoms: int) -> sparse.csr_array:
+def mass_matrix(points: Floats, cells: Ints, density: float, n_dofs: int) -> sparse.csr_array:
     """Mass of a solid, the same in each direction.
 
     Parameters
@@ -23,18 +23,18 @@ def mass_matrix(points: Floats, cells: Ints, density: float, n_freedoms: int) ->
         (n_cells, k) node numbers in VTK's order.
     density
         [kg/m^3].
-    n_freedoms
+    n_dofs
         Three a node, and others without mass.
 
     Returns
     -------
-    (n_freedoms, n_freedoms) [kg]
+    (n_dofs, n_dofs) [kg]
     """
     kind = element_kind(cells.shape[1])
     X, W = get_quadrature(kind.element.refdom, _DEGREE)
     values, gradients = kind.shape(X)
     products = values[:, :, None] * values[:, None, :]
-    nodes = n_freedoms // 3 + 1
+    nodes = n_dofs // 3 + 1
     total = sparse.csr_array((nodes, nodes))
     for chunk in chunks(len(cells)):
         part = cells[chunk]
@@ -46,4 +46,4 @@ def mass_matrix(points: Floats, cells: Ints, density: float, n_freedoms: int) ->
             total + sparse.coo_array((local.ravel(), (rows, columns)), shape=total.shape).tocsr()
         )
     spread = sparse.kron(total, sparse.eye_array(3), format="csr")
-    return sparse.csr_array(spread[:n_freedoms, :n_freedoms])
+    return sparse.csr_array(spread[:n_dofs, :n_dofs])

@@ -43,7 +43,7 @@ class Model:
     scene, mesh
         What it was built from.
     part_stiffness
-        (n_freedoms, n_freedoms) stiffness of each part alone [N/m].
+        (n_dofs, n_dofs) stiffness of each part alone [N/m].
     part_mass
         (n_nodes,) integrals of density times shape function of each part [kg].
     points
@@ -57,7 +57,7 @@ class Model:
     held
         Motions (0-2 displacements, 3-5 rotations) of reference points that are rigidly held; their
         constraint is "NAME reaction".
-    n_freedoms
+    n_dofs
         Three a node, and six for each rigid reference point.
     warnings
         Sentences for the user, about motions that soft springs hardly restrain, and parts that are
@@ -72,7 +72,7 @@ class Model:
     constraints: tuple[Constraint, ...]
     springs: tuple[tuple[ReferencePoint, Floats], ...]
     held: Mapping[str, Sequence[int]]
-    n_freedoms: int
+    n_dofs: int
     warnings: tuple[str, ...] = ()
 
     @property
@@ -90,8 +90,8 @@ class Model:
         return np.asarray(np.sum(list(self.part_mass.values()), axis=0))
 
     def unit_loads(self) -> Floats:
-        """(n_freedoms, 10): the loads of `LOADS`, one a column."""
-        F = np.zeros((self.n_freedoms, len(LOADS)))
+        """(n_dofs, 10): the loads of `LOADS`, one a column."""
+        F = np.zeros((self.n_dofs, len(LOADS)))
         F[:, :6] = self.points["hub"].motion.T.toarray()
         mass = self.mass
         for axis in range(3):
@@ -100,8 +100,8 @@ class Model:
         return F
 
     def part_loads(self, part: str) -> Floats:
-        """(n_freedoms, 10): the share of `unit_loads` that acts inside one part (its gravity)."""
-        F = np.zeros((self.n_freedoms, len(LOADS)))
+        """(n_dofs, 10): the share of `unit_loads` that acts inside one part (its gravity)."""
+        F = np.zeros((self.n_dofs, len(LOADS)))
         mass = self.part_mass[part]
         for axis in range(3):
             F[axis : 3 * len(mass) : 3, 6 + axis] = mass
@@ -135,7 +135,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     apart = [u.bearing.name for u in units if u.interface != "bonded"]
     refuse_unsound(mesh, needed_faces(scene), apart)
     n = len(mesh.points)
-    extra: dict[str, int] = {}  # freedoms beside the nodes' own
+    extra: dict[str, int] = {}  # degrees of freedom beside the nodes' own
     for name, coupling in (("hub", scene.hub.coupling), ("gearbox", scene.gearbox.coupling)):
         if coupling == "rigid":
             extra[name] = 6
@@ -150,8 +150,8 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         if unit.bedplate is not None:
             extra[f"{name}.base"] = 6
     ends = 3 * n + np.cumsum([0, *extra.values()])
-    first_freedom = dict(zip(extra, ends[:-1].tolist(), strict=True))
-    n_freedoms = int(ends[-1])
+    first_dof = dict(zip(extra, ends[:-1].tolist(), strict=True))
+    n_dofs = int(ends[-1])
 
     conditions: list[Constraint] = []
     points: dict[str, ReferencePoint] = {}
@@ -160,12 +160,12 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
 
     def couple(name: str, face: str, position: Floats) -> ReferencePoint:
         nodes = mesh.face_nodes(face)
-        if name in first_freedom:
-            point = constraints.rigid_point(name, position, first_freedom[name], n_freedoms)
+        if name in first_dof:
+            point = constraints.rigid_point(name, position, first_dof[name], n_dofs)
             conditions.append(constraints.rigid_face(name, nodes, mesh.points, point))
             return point
         weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
-        return constraints.averaged_point(name, nodes, weights, mesh.points, position, n_freedoms)
+        return constraints.averaged_point(name, nodes, weights, mesh.points, position, n_dofs)
 
     points["hub"] = couple("hub", "shaft.front", np.array([scene.shaft.front, 0.0, 0.0]))
     points["gearbox"] = couple("gearbox", "shaft.rear", np.array([scene.shaft.rear, 0.0, 0.0]))
@@ -180,19 +180,19 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             conditions.append(constraints.equal_translations(f"{name} joint", inner, outer))
         elif unit.interface in ("spring", "rollers"):
             joint = (
-                roller_joint(unit, mesh, n_freedoms)
+                roller_joint(unit, mesh, n_dofs)
                 if unit.interface == "rollers"
-                else spring_joint(unit, mesh, first_freedom[f"{name}.joint"], n_freedoms)
+                else spring_joint(unit, mesh, first_dof[f"{name}.joint"], n_dofs)
             )
             conditions += joint.constraints
             springs += joint.springs
             points |= {point.name: point for point, _ in joint.springs}
         elif unit.interface != "bonded":
-            first = first_freedom.get(f"{name} joint", 0)
-            conditions.append(_spherical_joint(unit, mesh, first, n_freedoms))
+            first = first_dof.get(f"{name} joint", 0)
+            conditions.append(_spherical_joint(unit, mesh, first, n_dofs))
         base = f"{name}.housing.base"
         if unit.bedplate is None:
-            conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_freedoms))
+            conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
         else:
             under = centre - [0.0, 0.0, unit.housing.centre_height]
             points[f"{name}.base"] = couple(f"{name}.base", base, under)
@@ -207,7 +207,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     for part in mesh.part_names:
         material = scene.material_of(part)
         cells = mesh.cells[mesh.part_cells(part)]
-        part_stiffness[part] = assemble_unlocked(mesh.points, cells, material.lame, n_freedoms)
+        part_stiffness[part] = assemble_unlocked(mesh.points, cells, material.lame, n_dofs)
         warnings += warn_of_averaging(part, material.lame)
         part_mass[part] = material.density * volume_weights(mesh.points, cells, n)
     return Model(
@@ -219,7 +219,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         tuple(conditions),
         tuple(springs),
         held,
-        n_freedoms,
+        n_dofs,
         warnings,
     )
 
@@ -277,16 +277,14 @@ def joint_pairs(mesh: Mesh, bearing: str) -> tuple[Ints, Ints]:
     return inner, outer[partner]
 
 
-def _spherical_joint(
-    unit: BearingUnit, mesh: Mesh, first_freedom: int, n_freedoms: int
-) -> Constraint:
+def _spherical_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> Constraint:
     name = unit.bearing.name
     inner, outer = joint_pairs(mesh, name)
     label = f"{name} joint"
     points = mesh.points
     centre = np.array([unit.bearing.x, 0.0, 0.0])
     if unit.interface == "sliding":
-        return constraints.sliding_sphere(label, inner, outer, points, centre, n_freedoms)
+        return constraints.sliding_sphere(label, inner, outer, points, centre, n_dofs)
     inner_weights, outer_weights = (
         constraints.centred_weights(
             face_weights(points, mesh.faces[face], len(points), MEANS)[nodes], points[nodes], centre
@@ -298,5 +296,5 @@ def _spherical_joint(
     angle = np.arctan2(points[nodes, 2], points[nodes, 1])
     groups = np.floor((angle + np.pi) / (2.0 * np.pi) * _N_GROUPS).astype(np.int64) % _N_GROUPS
     return constraints.averaged_sphere(
-        label, inner, outer, inner_weights, outer_weights, groups, first_freedom, n_freedoms
+        label, inner, outer, inner_weights, outer_weights, groups, first_dof, n_dofs
     )

@@ -9,7 +9,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
-from fe_drivetrain.interfaces.constraints import eliminate, freedoms
+from fe_drivetrain.interfaces.constraints import dofs, eliminate
 from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import solve
@@ -137,7 +137,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     F = loads @ cases
 
     K = model.stiffness
-    elimination = eliminate(model.constraints, model.n_freedoms)
+    elimination = eliminate(model.constraints, model.n_dofs)
     T = elimination.T
     system = reduce(model.mesh.points, model.mesh.cells, K, elimination)
     try:
@@ -183,7 +183,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
 def _reactions(
     model: Model, multipliers: Mapping[str, Floats], U: Floats, cases: Floats
 ) -> dict[str, Floats]:
-    """Reactions from the residual on constrained freedoms; never from stresses."""
+    """Reactions from the residual on constrained degrees of freedom; never from stresses."""
     mesh = model.mesh
     reactions: dict[str, Floats] = {}
     for unit in model.scene.bearing_units:
@@ -204,7 +204,7 @@ def _reactions(
             # What a part's neighbour puts on it: its internal forces less the loads inside it.
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             nodes = mesh.face_nodes(face)
-            reactions[key] = resultant(mesh.points[nodes], forces[freedoms(nodes)], centre)
+            reactions[key] = resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
     reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)
     return reactions
 

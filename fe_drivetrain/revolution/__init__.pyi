@@ -1,7 +1,7 @@
 from .harmonics import Traction as Traction
 from .harmonics import along_sides as along_sides
+from .harmonics import dofs as dofs
 from .harmonics import element_matrices as element_matrices
-from .harmonics import freedoms as freedoms
 from .harmonics import harmonic_response as harmonic_response
 from .harmonics import harmonic_solver as harmonic_solver
 from .harmonics import stress_at as stress_at

@@ -26,7 +26,7 @@ _PANEL, _STRIP = 32, 96
 def condensed(
     grams: Floats, law: Floats, ids: Ints, shares: Floats, kept: int, order: Ints
 ) -> Floats:
-    """Stiffness of the kept freedoms of a mesh.
+    """Stiffness of the kept degrees of freedom of a mesh.
 
     Parameters
     ----------
@@ -36,12 +36,12 @@ def condensed(
         (k, k, s, s): element matrices are ``K[p m + i, q m + j] = sum of law[p, q, a, b]
         grams[a m + i, b m + j]`` for components p and q; symmetric.
     ids
-        (ne, k m) freedom that each of an element's follows; the kept are the first `kept`; negative
-        where it is held at zero.
+        (ne, k m) degree of freedom that each of an element's follows; the kept are the first
+        `kept`; negative where it is held at zero.
     shares
-        (ne, k m) of that freedom.
+        (ne, k m) of that degree of freedom.
     kept
-        Number of freedoms that are kept.
+        Number of degrees of freedom that are kept.
     order
         From `dissection`.
 
@@ -63,25 +63,26 @@ class Factor:
 
     Attributes
     ----------
-    freedoms
-        Numbers of each front's freedoms, one front after the other; the eliminated ones first.
+    dofs
+        Numbers of each front's degrees of freedom, one front after the other; the eliminated ones
+        first.
     sizes, gone
         (fronts,) how many, and how many of them are eliminated.
     values
         Their rows of the factor, in panels whose diagonal blocks are inverted.
     """
 
-    freedoms: Ints
+    dofs: Ints
     sizes: Ints
     gone: Ints
     values: Floats
 
     def solve(self, loads: Floats) -> Floats:
-        """Displacements (n, m) under loads (n, m); 0 of freedoms that no element has."""
+        """Displacements (n, m) under loads (n, m); 0 of degrees of freedom that no element has."""
         x = np.zeros(loads.shape)
-        used = np.unique(self.freedoms)
+        used = np.unique(self.dofs)
         x[used] = loads[used]
-        _solve(self.freedoms, self.sizes, self.gone, self.values, x)
+        _solve(self.dofs, self.sizes, self.gone, self.values, x)
         return x
 
 
@@ -95,14 +96,14 @@ def _sweep(
 ) -> tuple[Floats, Ints, Ints, Ints, Floats]:
     # one layout, so that it is compiled once
     grams, law, shares = (np.ascontiguousarray(a) for a in (grams, law, shares))
-    found, K, freedoms, sizes, gone, values = _swept(
+    found, K, dofs, sizes, gone, values = _swept(
         grams, law, np.ascontiguousarray(ids), shares, kept, order, store
     )
     if not found:
         raise InputError(
             "a part of the mesh can move without strain: hold it, or make its wall thicker"
         )
-    return K, freedoms, sizes, gone, values
+    return K, dofs, sizes, gone, values
 
 
 @njit(cache=True, fastmath=True)  # type: ignore[untyped-decorator]
@@ -197,7 +198,7 @@ def _swept(
     place = np.full(len(users), -1)
     K = np.empty((size, size))
     matrices = [np.empty((0, 0))]
-    freedoms = [np.empty(0, dtype=np.int64)]
+    dofs = [np.empty(0, dtype=np.int64)]
     counts = [np.empty(0, dtype=np.int64)]
     seen = np.zeros(len(users), dtype=np.int64)
     fronts = len(order) if store else 0
@@ -208,7 +209,7 @@ def _swept(
     nothing = np.empty(0, dtype=np.int64), np.empty(0)
     for step in range(len(order)):
         what = order[step]
-        # the freedoms of the front, and how many elements have brought each
+        # the degrees of freedom of the front, and how many elements have brought each
         if what >= 0:
             brought = np.empty(size, dtype=np.int64)
             n = 0
@@ -220,7 +221,7 @@ def _swept(
             _element(grams[what], law, K)
         else:
             A, B = matrices.pop(), matrices.pop()
-            of_a, of_b = freedoms.pop(), freedoms.pop()
+            of_a, of_b = dofs.pop(), dofs.pop()
             by_a, by_b = counts.pop(), counts.pop()
             brought = np.empty(len(of_a) + len(of_b), dtype=np.int64)
             n = 0
@@ -266,9 +267,9 @@ def _swept(
             numbers.append(all_of)
             rows.append(front[:gone].copy().ravel())
         matrices.append(front[gone:, gone:].copy())
-        freedoms.append(left)
+        dofs.append(left)
         counts.append(by)
-    found, last = matrices.pop(), freedoms.pop()
+    found, last = matrices.pop(), dofs.pop()
     result = np.zeros((kept, kept))
     for i in range(len(last)):
         for j in range(i, len(last)):
@@ -292,15 +293,15 @@ def _joined(parts):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _add_element(front: Floats, K: Floats, freedoms: Ints, shares: Floats, place: Ints) -> None:
+def _add_element(front: Floats, K: Floats, dofs: Ints, shares: Floats, place: Ints) -> None:
     for i in range(len(K)):
-        if freedoms[i] < 0:
+        if dofs[i] < 0:
             continue
-        a, share = place[freedoms[i]], shares[i]
+        a, share = place[dofs[i]], shares[i]
         for j in range(i, len(K)):
-            if freedoms[j] < 0:
+            if dofs[j] < 0:
                 continue
-            b = place[freedoms[j]]
+            b = place[dofs[j]]
             value = share * shares[j] * K[i, j]
             if a < b:
                 front[a, b] += value
@@ -312,11 +313,11 @@ def _add_element(front: Floats, K: Floats, freedoms: Ints, shares: Floats, place
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _add(front: Floats, matrix: Floats, freedoms: Ints, place: Ints) -> None:
-    for i in range(len(freedoms)):
-        a = place[freedoms[i]]
-        for j in range(i, len(freedoms)):
-            b = place[freedoms[j]]
+def _add(front: Floats, matrix: Floats, dofs: Ints, place: Ints) -> None:
+    for i in range(len(dofs)):
+        a = place[dofs[i]]
+        for j in range(i, len(dofs)):
+            b = place[dofs[j]]
             if a <= b:
                 front[a, b] += matrix[i, j]
             else:
@@ -380,13 +381,13 @@ def _inverse_of_root(A: Floats) -> bool:
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _solve(freedoms: Ints, sizes: Ints, gone: Ints, values: Floats, x: Floats) -> None:
+def _solve(dofs: Ints, sizes: Ints, gone: Ints, values: Floats, x: Floats) -> None:
     """Forward and backward, in place."""
     m = x.shape[1]
     first, at = 0, 0
     for front in range(len(sizes)):
         n, count = sizes[front], gone[front]
-        here = freedoms[first : first + n]
+        here = dofs[first : first + n]
         b = np.empty((n, m))
         for i in range(n):
             b[i] = x[here[i]]
@@ -405,7 +406,7 @@ def _solve(freedoms: Ints, sizes: Ints, gone: Ints, values: Floats, x: Floats) -
         n, count = sizes[front], gone[front]
         first -= n
         at -= count * n
-        here = freedoms[first : first + n]
+        here = dofs[first : first + n]
         b = np.empty((n, m))
         for i in range(n):
             b[i] = x[here[i]]

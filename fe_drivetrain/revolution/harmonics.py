@@ -50,8 +50,8 @@ class HarmonicResponse:
     energy: Floats
 
 
-def freedoms(nodes: Ints, component: int) -> Ints:
-    """Freedoms of nodes along x (0), the radius (1) or the circumference (2)."""
+def dofs(nodes: Ints, component: int) -> Ints:
+    """Degrees of freedom of nodes along x (0), the radius (1) or the circumference (2)."""
     return np.asarray(3 * np.asarray(nodes) + component)
 
 
@@ -76,7 +76,7 @@ def harmonic_response(
         (3 n_nodes,) or (3 n_nodes, m) nodal forces over the whole turn [N], as `surface_loads`
         gives them; none where not given.
     held
-        Freedoms (k,) and their displacements (k,) or (k, m) [m].
+        Degrees of freedom (k,) and their displacements (k,) or (k, m) [m].
 
     Raises
     ------
@@ -136,7 +136,7 @@ def harmonic_solver(
     mesh, material, n
         As for `harmonic_response`.
     held
-        Freedoms (k,) that don't move.
+        Degrees of freedom (k,) that don't move.
 
     Returns
     -------
@@ -274,8 +274,8 @@ def element_matrices(
 ) -> Floats:
     """Stiffness (ne, 3 m, 3 m) of each element over the whole turn [N/m], or of those cells.
 
-    Freedoms u_x of all its m nodes, then u_r, then u_t. On the axis entries are large that cancel
-    once its conditions hold.
+    Degrees of freedom u_x of all its m nodes, then u_r, then u_t. On the axis entries are large
+    that cancel once its conditions hold.
     """
     grams = mesh.grams if cells is None else mesh.grams[cells]
     return np.asarray(turn(n) * frontal.element_matrices(grams, material_law(lame, n)))
@@ -328,7 +328,7 @@ def material_law(lame: tuple[float, float], n: int) -> Floats:
 
 
 def on_axis(mesh: Meridian, n: int) -> tuple[Ints, Floats]:
-    """Freedom (3 n_nodes,) that each one follows, and its share: what the axis allows.
+    """Degree of freedom (3 n_nodes,) that each one follows, and its share: what the axis allows.
 
     A solid body stays whole: for n = 0 its axis moves along itself, for n = 1 sideways, u_t = -u_r,
     for all others not at all.
@@ -337,10 +337,10 @@ def on_axis(mesh: Meridian, n: int) -> tuple[Ints, Floats]:
     coefficient = np.ones(len(target))
     axis = np.flatnonzero(mesh.nodes[:, 1] == 0.0)
     if n == 1:
-        target[freedoms(axis, 2)] = freedoms(axis, 1)
-        coefficient[freedoms(axis, 2)] = -1.0
+        target[dofs(axis, 2)] = dofs(axis, 1)
+        coefficient[dofs(axis, 2)] = -1.0
     for component in {0: (1, 2), 1: (0,)}.get(n, (0, 1, 2)):
-        coefficient[freedoms(axis, component)] = 0.0
+        coefficient[dofs(axis, component)] = 0.0
     return target, coefficient
 
 
@@ -364,7 +364,7 @@ def _check_held(mesh: Meridian, n: int, which: Ints) -> None:
 
 
 def assembled(matrices: Floats, rows: Ints, shares: Floats, size: int) -> sparse.csc_array:
-    """Sum of element matrices (ne, k, k) whose freedoms are shares (ne, k) of rows (ne, k)."""
+    """Sum of element matrices (ne, k, k), degrees of freedom shares (ne, k) of rows (ne, k)."""
     scaled = (
         matrices if (shares == 1.0).all() else matrices * (shares[:, :, None] * shares[:, None])
     )
@@ -378,20 +378,20 @@ def assembled(matrices: Floats, rows: Ints, shares: Floats, size: int) -> sparse
 
 
 def _onto(target: Ints, coefficient: Floats) -> sparse.csr_array:
-    """Takes forces on all freedoms to those that they follow."""
+    """Takes forces on all degrees of freedom to those that they follow."""
     size = len(target)
     return sparse.csr_array((coefficient, (target, np.arange(size))), shape=(size, size))
 
 
 def _local(mesh: Meridian) -> Ints:
-    """(ne, 3 m) freedoms of each element, in the order of `element_matrices`."""
+    """(ne, 3 m) degrees of freedom of each element, in the order of `element_matrices`."""
     return np.asarray(
         3 * np.tile(mesh.cells, 3) + np.repeat(np.arange(3), mesh.cells.shape[1]), dtype=np.int64
     )
 
 
 def _factored(mesh: Meridian, material: Material, n: int, held: Ints) -> Callable[[Floats], Floats]:
-    """As `harmonic_solver`, in forces and displacements of the freedoms that others follow."""
+    """As `harmonic_solver`, in forces and displacements of what other degrees of freedom follow."""
     _check_order(n)
     _check_held(mesh, n, held)
     target, coefficient = on_axis(mesh, n)

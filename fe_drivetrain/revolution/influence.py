@@ -29,7 +29,7 @@ from fe_drivetrain.geometry import LENGTH_TOLERANCE
 from fe_drivetrain.revolution.harmonics import (
     Traction,
     along_sides,
-    freedoms,
+    dofs,
     harmonic_solver,
     rigid_motions,
     rigid_motions_at,
@@ -157,8 +157,8 @@ def influence_functions(
     half_angle
         Half of a patch's arc [rad].
     held
-        Freedoms (k,) of the mesh that don't move in any harmonic, such as those of a surface in a
-        rigid housing; see `axisymmetric.freedoms`.
+        Degrees of freedom (k,) of the mesh that don't move in any harmonic, such as those of a
+        surface in a rigid housing; see `axisymmetric.dofs`.
     anchor
         Where a body that ``held`` leaves free to move sideways is supported: displacements are
         relative to the mean motion of this strip, which takes the resultant of all pushes. Where
@@ -182,7 +182,7 @@ def influence_functions(
     pushes = np.zeros((size, len(strips)))
     for column, strip in enumerate(strips):
         nodes, weights = _mean(mesh, strip)
-        np.add.at(pushes[:, column], freedoms(nodes, 1), weights)
+        np.add.at(pushes[:, column], dofs(nodes, 1), weights)
     found = []
     for n in range(harmonics + 1):
         mix = _loose(mesh, n, still)
@@ -356,7 +356,7 @@ def _loose(mesh: Meridian, n: int, held: Ints) -> Floats:
 
 
 def _pins(motions: Floats) -> Ints:
-    """As many freedoms as there are motions, which stop these."""
+    """As many degrees of freedom as there are motions, which stop these."""
     count = motions.shape[1]
     if not count:
         return np.empty(0, dtype=np.int64)

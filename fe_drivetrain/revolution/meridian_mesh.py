@@ -388,7 +388,7 @@ def _on_axis(nodes: Floats) -> Floats:
 
 
 def _raised(plan: _Plan, order: int) -> Meridian:
-    """Nodes of higher order on quadrilaterals, numbered alike by neighbours."""
+    """Nodes of higher order on quadrilaterals, numbered by neighbours in the same way."""
     nodes, quads = plan.nodes, plan.cells
     element = _element(4, order)
     inner = order - 1

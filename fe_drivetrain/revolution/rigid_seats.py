@@ -32,7 +32,7 @@ def end_stiffness(
     ----------
     shaft, size, order, layers, per_fillet
         As for `fe_drivetrain.revolution.meridian`. With the default size stiffness is right to some
-        1e-5 where diameters are alike, to 2e-4 where they differ by 2.5 to 1. Of a shaft with
+        1e-5 where diameters are equal, to 2e-4 where they differ by 2.5 to 1. Of a shaft with
         fillets 2 per fillet is many times quicker.
     material
         Of the shaft.
@@ -206,7 +206,7 @@ def _between(
     for nodes, motions in seats:
         follows = motions != 0.0
         moved = follows.any(axis=2)
-        if (follows.sum(axis=2) <= 1).all():  # each freedom follows one motion
+        if (follows.sum(axis=2) <= 1).all():  # each degree of freedom follows one motion
             number, share, row = follows.argmax(axis=2), motions.sum(axis=2), np.eye(len(motions.T))
         else:
             number, share, row = (

@@ -74,14 +74,14 @@ def condense(
     names, positions
         Of the n points, (n, 3) [m]; at least two.
     loads
-        (n_freedoms, k n) nodal forces of a unit force or moment at each point; transposed, the
+        (n_dofs, k n) nodal forces of a unit force or moment at each point; transposed, the
         points' motions. k components of each point are kept.
     mass
-        (n_freedoms, n_freedoms) mass matrix of the body [kg].
+        (n_dofs, n_dofs) mass matrix of the body [kg].
     rigid
-        (n_freedoms, k) the body's rigid motions about the first point.
+        (n_dofs, k) the body's rigid motions about the first point.
     solve
-        Displacements (n_freedoms, m) under nodal forces that are in balance; any rigid motion may
+        Displacements (n_dofs, m) under nodal forces that are in balance; any rigid motion may
         be in them.
     kept
         Which of the six components of each point ``loads`` has; the others stay without stiffness.
@@ -175,20 +175,20 @@ def keep_points(body: Condensed, at: Sequence[str]) -> Condensed:
 def on_supports(
     points: Sequence[str], stiffness: Floats, supports: Mapping[str, Floats]
 ) -> tuple[Floats, Ints]:
-    """Stiffness with that of the supports added, and which freedoms they leave.
+    """Stiffness with that of the supports added, and which degrees of freedom they leave.
 
     Parameters
     ----------
     points
         Names of n points.
     stiffness
-        (6 n + m, 6 n + m): six freedoms of each point first, then m of anything.
+        (6 n + m, 6 n + m): six degrees of freedom of each point first, then m of anything.
     supports
         (6, 6) by point; inf on the diagonal holds that motion, and nothing else is in its row.
 
     Returns
     -------
-    (k, k) stiffness of the freedoms that are left, and their (k,) numbers.
+    (k, k) stiffness of the degrees of freedom that are left, and their (k,) numbers.
 
     Raises
     ------

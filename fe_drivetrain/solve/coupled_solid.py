@@ -57,7 +57,7 @@ class CoupledSolid:
     rigid_faces: tuple[Constraint, ...]
 
     @property
-    def n_freedoms(self) -> int:
+    def n_dofs(self) -> int:
         """Number of degrees of freedom, of the nodes and of points with a rigid face."""
         return int(self.stiffness.shape[0])
 
@@ -119,23 +119,21 @@ def coupled_solid(
         Reference points with their faces.
     """
     n = len(mesh.points)
-    n_freedoms = 3 * n + 6 * sum(a.coupling == "rigid" for a in attachments)
+    n_dofs = 3 * n + 6 * sum(a.coupling == "rigid" for a in attachments)
     points, rigid_faces, own = [], [], 3 * n
     for name, face, position, coupling in attachments:
         nodes = mesh.face_nodes(face)
         if coupling == "rigid":
-            point = constraints.rigid_point(name, position, own, n_freedoms)
+            point = constraints.rigid_point(name, position, own, n_dofs)
             rigid_faces.append(constraints.rigid_face(name, nodes, mesh.points, point))
             own += 6
         else:
             weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
-            point = constraints.averaged_point(
-                name, nodes, weights, mesh.points, position, n_freedoms
-            )
+            point = constraints.averaged_point(name, nodes, weights, mesh.points, position, n_dofs)
         points.append(point)
     cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
     K = sum(
-        assemble_unlocked(mesh.points, some, material.lame, n_freedoms)
+        assemble_unlocked(mesh.points, some, material.lame, n_dofs)
         for some, material in zip(cells, materials.values(), strict=True)
     )
     return CoupledSolid(
@@ -168,7 +166,7 @@ def condensed_solid(
         There is only one point, or two move as one.
     """
     solid = coupled_solid(mesh, materials, attachments)
-    n, total = 3 * len(mesh.points), solid.n_freedoms
+    n, total = 3 * len(mesh.points), solid.n_dofs
     mass = sum(
         mass_matrix(mesh.points, mesh.cells[mesh.part_cells(part)], material.density, total)
         for part, material in materials.items()
@@ -226,13 +224,13 @@ def point_compliance(
     K = solid.stiffness
     for at, k in springs:
         K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
-    elimination = constraints.eliminate([*held, *solid.rigid_faces], solid.n_freedoms)
+    elimination = constraints.eliminate([*held, *solid.rigid_faces], solid.n_dofs)
     system = reduce(solid.mesh.points, solid.cells, K, elimination)
     F = solid.loads
     return np.asarray(F.T @ (elimination.T @ solve(system, elimination.T.T @ F, method).x))
 
 
-def _pins(points: Floats, allowed: Ints, n_freedoms: int) -> Constraint:
+def _pins(points: Floats, allowed: Ints, n_dofs: int) -> Constraint:
     """Six degrees of freedom of three nodes far apart: they hold a solid without straining it."""
     some = points[allowed]
     extent = np.ptp(some, axis=0)
@@ -246,4 +244,4 @@ def _pins(points: Floats, allowed: Ints, n_freedoms: int) -> Constraint:
     motions = rigid_motions(points[nodes], points[nodes].mean(axis=0))
     motions[:, 3:] /= length[b]
     best = linalg.qr(motions.T, mode="r", pivoting=True)[1][:6]
-    return constraints.held_freedoms("pins", constraints.freedoms(nodes).ravel()[best], n_freedoms)
+    return constraints.held_dofs("pins", constraints.dofs(nodes).ravel()[best], n_dofs)

@@ -172,7 +172,7 @@ def build(system: System, options: Options = DEFAULTS) -> Hierarchy:
             keep=False,
         )
     for coarse in aggregation.levels[:-1]:
-        # Six freedoms an aggregate below the first level: two blocks of three.
+        # Six degrees of freedom an aggregate below the first level: two blocks of three.
         levels.append(_level(in_blocks(coarse.A), coarse.P))
     last = aggregation.levels[-1].A.toarray()
     # Aggregates too small for six motions leave empty rows.

@@ -49,10 +49,11 @@ class System:
     Attributes
     ----------
     K
-        (n, n) symmetric positive definite, 3x3 blocks; rows of eliminated freedoms are diagonal.
+        (n, n) symmetric positive definite, 3x3 blocks; rows of eliminated degrees of freedom are
+        diagonal.
     prolongation
         (n, n_corner) from the linear elements on the same corners to the quadratic ones, in
-        freedoms that fulfil the constraints; None where the elements are linear.
+        degrees of freedom that fulfil the constraints; None where the elements are linear.
     near_nullspace
         (n_corner, 6), or (n, 6) of linear elements: the rigid motions.
     body
@@ -60,7 +61,7 @@ class System:
         reference points. Bodies that a joint couples must not share an aggregate: each has its own
         six rigid motions.
     n_free
-        Number of freedoms that are left.
+        Number of degrees of freedom that are left.
     elements
         What it was made of; None where that is not known.
     """
@@ -83,7 +84,7 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
     cells
         (n_cells, k) node numbers in VTK's order.
     K
-        (n_freedoms, n_freedoms) stiffness before any constraint, three freedoms a node first
+        (n_dofs, n_dofs) stiffness before any constraint, three degrees of freedom a node first
         [N/m].
     elimination
         The constraints.
@@ -111,16 +112,17 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
 
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
-    """T^T K T, with the mean diagonal at eliminated freedoms; K is left as it is."""
+    """T^T K T, with the mean diagonal at eliminated degrees of freedom; K is left as it is."""
     T, free = elimination.T, elimination.free
     n = len(free)
     kept = sparse.bsr_array((K.data.copy(), K.indices, K.indptr), shape=K.shape)
     mean = float(K.diagonal().mean())
     mask = free.astype(float).reshape(-1, 3)
-    kernels.keep_freedoms(kept.indptr, kept.indices, kept.data, mask, mean)
-    # What eliminated freedoms pass on to the others: for supports nothing, for joints little.
+    kernels.keep_dofs(kept.indptr, kept.indices, kept.data, mask, mean)
+    # What eliminated degrees of freedom pass on to the others: for supports nothing, for joints
+    # little.
     pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
-    # Freedoms of reference points have no block of their own yet.
+    # Degrees of freedom of reference points have no block of their own yet.
     bare = (~free & (kept.diagonal() == 0.0)).astype(float)
     if len(pivots) == 0 and not bare.any():
         return kept
@@ -156,7 +158,7 @@ def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
 
 
 def _motions_with_points(points: Floats, elimination: Elimination) -> Floats:
-    """(n_freedoms, 6) rigid motions; reference points follow through their constraints."""
+    """(n_dofs, 6) rigid motions; reference points follow through their constraints."""
     n = 3 * len(points)
     motions = np.zeros((len(elimination.free), 6))
     motions[:n] = rigid_motions(points, points.mean(axis=0))
@@ -173,12 +175,12 @@ def _motions_with_points(points: Floats, elimination: Elimination) -> Floats:
 def _prolongation(
     cells: Ints, n_nodes: int, T: sparse.csr_array, free: np.ndarray
 ) -> tuple[sparse.csr_array, Ints]:
-    """From the freedoms of corner nodes (and reference points) to all, constraints fulfilled.
+    """From degrees of freedom of corner nodes (and reference points) to all, constraints fulfilled.
 
     Returns
     -------
     prolongation, corners
-        (n, n_corner), and which freedoms the columns are.
+        (n, n_corner), and which degrees of freedom the columns are.
     """
     kind = element_kind(cells.shape[1])
     weights = kind.corner_weights()

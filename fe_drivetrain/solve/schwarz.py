@@ -164,7 +164,8 @@ def _patches(system: System, parts: Partition, options: Options) -> list[tuple[F
         S = cut_out.stiffness(parts.cells_of(patch), own)
         gone = np.flatnonzero(~free[(3 * own[:, None] + np.arange(3)).ravel()])
         S[gone, gone] = A[gone, gone]
-        # What its elements do not hold, such as a spring's end, is no inner freedom either.
+        # What its elements do not hold, such as a spring's end, is no inner degree of freedom
+        # either.
         edge |= S.diagonal() < 0.5 * A.diagonal()
         found.append((L[np.tril_indices(len(L))], soft_modes(S, A, edge, options.threshold)))
     return found
@@ -173,8 +174,8 @@ def _patches(system: System, parts: Partition, options: Options) -> list[tuple[F
 def soft_modes(S: Floats, A: Floats, edge: NDArray[np.bool_], threshold: float) -> Floats:
     """Motions (n, m) of a patch that cost little once it is cut out, of unit energy held.
 
-    Cut out and held, a patch differs at its edge alone, by E. With A = S + E the problem is
-    E v = (1 - lambda) A v, and inner freedoms follow the edge: where they stand first in the
+    Cut out and held, a patch differs at its edge alone, by E. With A = S + E the problem is E v =
+    (1 - lambda) A v, and inner degrees of freedom follow the edge: where they stand first in the
     factor of A, its last block is that of what the edge feels. The inner part is taken from S
     alone, so that rigid motions cost nothing to the last digit, however well S is known.
 
@@ -183,7 +184,7 @@ def soft_modes(S: Floats, A: Floats, edge: NDArray[np.bool_], threshold: float) 
     S, A
         (n, n) stiffness cut out, and held.
     edge
-        (n,) freedoms in which they differ.
+        (n,) degrees of freedom in which they differ.
     threshold
         Of lambda.
     """

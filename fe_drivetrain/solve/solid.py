@@ -8,7 +8,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.interfaces.constraints import Constraint, eliminate, held_freedoms
+from fe_drivetrain.interfaces.constraints import Constraint, eliminate, held_dofs
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import Solution, solve
@@ -16,7 +16,7 @@ from fe_drivetrain.solve.solvers import Solution, solve
 Lame = tuple[float, float]
 
 Assembly = Callable[[Floats, Ints, Lame, int], sparse.bsr_array]
-"""Of points, cells, Lame's constants and n_freedoms, as `elasticity.assemble`."""
+"""Of points, cells, Lame's constants and n_dofs, as `elasticity.assemble`."""
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,14 @@ class Static:
     Attributes
     ----------
     u
-        (n_freedoms, m) displacements [m], and motions of reference points.
+        (n_dofs, m) displacements [m], and motions of reference points.
     reactions
-        (n_freedoms, m) nodal forces [N] that each support or interface puts on the solid, by the
+        (n_dofs, m) nodal forces [N] that each support or interface puts on the solid, by the
         name of its constraint; "prescribed" those that displace it as prescribed.
     energy
         (m,) strain energy [J].
     K
-        (n_freedoms, n_freedoms) stiffness before any constraint [N/m].
+        (n_dofs, n_dofs) stiffness before any constraint [N/m].
     solution
         Diagnostics of the solve.
     """
@@ -69,9 +69,9 @@ def solve_solid(
     constraints
         Supports and interfaces, see `fe_drivetrain.interfaces.constraints`.
     F
-        (n_freedoms,) or (n_freedoms, m) nodal forces [N].
+        (n_dofs,) or (n_dofs, m) nodal forces [N].
     prescribed
-        Freedoms (k,) and their displacements (k,) or (k, m) [m].
+        Degrees of freedom (k,) and their displacements (k,) or (k, m) [m].
     method
         Solver, see `fe_drivetrain.solve.solvers.solve`.
     assembly
@@ -81,7 +81,8 @@ def solve_solid(
     Raises
     ------
     InputError
-        The solid is not held, two constraints hold one freedom, or an element has no volume.
+        The solid is not held, two constraints hold one degree of freedom, or an element has no
+        volume.
     """
     parts = _parts(cells, lame)
     loads = F.reshape(len(F), -1)
@@ -95,7 +96,7 @@ def solve_solid(
         )
     held = list(constraints)
     if prescribed is not None:
-        held.append(held_freedoms("prescribed", prescribed[0], n))
+        held.append(held_dofs("prescribed", prescribed[0], n))
         loads = np.broadcast_to(loads, (n, max(loads.shape[1], _columns(prescribed[1]))))
     elimination = eliminate(held, n)
     offset = np.zeros_like(loads, dtype=float)

@@ -91,7 +91,7 @@ class Solver:
         Parameters
         ----------
         F
-            (n, n_rhs); zero at eliminated freedoms.
+            (n, n_rhs); zero at eliminated degrees of freedom.
 
         Raises
         ------

@@ -18,7 +18,7 @@ from fe_drivetrain.operator import kernels
 from fe_drivetrain.solve.reduction import Elements
 
 _DIGITS = 3
-_WIDE = 12  # freedoms that an eliminated one may depend on, in elements that count
+_WIDE = 12  # degrees of freedom that an eliminated one may depend on, in elements that count
 _LOOSE = (1e-14, 1e-12, 1e-10, 1e-8, 1e-6)  # of the mean diagonal, least first
 
 
@@ -158,7 +158,7 @@ class CutOut:
         self._wide = (counts > _WIDE).reshape(-1, 3).any(axis=1)
 
     def stiffness(self, cells: Ints, blocks: Ints) -> Floats:
-        """Stiffness (3 k, 3 k) of elements, as the freedoms of some node blocks feel it.
+        """Stiffness (3 k, 3 k) of elements, as the degrees of freedom of some node blocks feel it.
 
         Whatever else these elements touch, gives way.
 
@@ -177,16 +177,16 @@ class CutOut:
         chosen = chosen[kept]
         nodes, local = np.unique(chosen, return_inverse=True)
         B = self._assembled(nodes, local.reshape(chosen.shape), self._lame[cells[kept]])
-        freedoms = (3 * nodes[:, None] + np.arange(3)).ravel()
+        dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
         if not self._plain[nodes].all():
-            rows = self._elements.T[freedoms]
-            freedoms, place = np.unique(rows.indices, return_inverse=True)
+            rows = self._elements.T[dofs]
+            dofs, place = np.unique(rows.indices, return_inverse=True)
             T = sparse.csr_array(
-                (rows.data, place, rows.indptr), shape=(len(B), len(freedoms))
+                (rows.data, place, rows.indptr), shape=(len(B), len(dofs))
             ).toarray()
             B = T.T @ B @ T
-        at = np.searchsorted(blocks, freedoms // 3)
-        inside = blocks[np.minimum(at, len(blocks) - 1)] == freedoms // 3
+        at = np.searchsorted(blocks, dofs // 3)
+        inside = blocks[np.minimum(at, len(blocks) - 1)] == dofs // 3
         own, other = np.flatnonzero(inside), np.flatnonzero(~inside)
         found = B[np.ix_(own, own)]
         if len(other):
@@ -194,7 +194,7 @@ class CutOut:
                 _factor(B[np.ix_(other, other)]), B[np.ix_(other, own)], lower=True
             )
             found = found - half.T @ half
-        where = 3 * at[own] + freedoms[own] % 3
+        where = 3 * at[own] + dofs[own] % 3
         S[np.ix_(where, where)] = found
         return S
 

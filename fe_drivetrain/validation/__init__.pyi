@@ -14,12 +14,14 @@ from . import independent_torsion as independent_torsion
 from . import layers as layers
 from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
+from . import low_speed_shaft as low_speed_shaft
 from . import manufactured as manufactured
 from . import one_norm as one_norm
 from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
+from . import published_drivetrains as published_drivetrains
 from . import quarter_disc as quarter_disc
 from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_solids as ring_solids

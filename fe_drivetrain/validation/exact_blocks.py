@@ -91,7 +91,7 @@ def cantilever(nodes: int, divisions: int) -> Solved:
     F = sum(traction_loads(block.points, block.faces[face], on_end) for face in ("x0", "x1"))
     corners = [_nearest(block, at) for at in ((0, -c, -c), (LENGTH, -c, -c), (0, c, -c))]
     n = block.points.size
-    # six freedoms, and no force in them: the loads are in balance
+    # six degrees of freedom, and no force in them: the loads are in balance
     held = [
         held_nodes(f"corner {k}", np.array([node]), axes, n)
         for k, (node, axes) in enumerate(zip(corners, ((0, 1, 2), (1, 2), (2,)), strict=True))
@@ -112,16 +112,16 @@ def twisted(nodes: int, divisions: int) -> Solved:
     lame = (E * NU / ((1 + NU) * (1 - 2 * NU)), E / (2 * (1 + NU)))
     ends = [block.face_nodes(face) for face in ("x0", "x1")]
     angle = 1e-3
-    freedoms: list[Ints] = []
+    dofs: list[Ints] = []
     values: list[Floats] = []
     for nodes_of_end, turned in zip(ends, (0.0, angle), strict=True):
         y, z = block.points[nodes_of_end, 1:].T
-        freedoms += [3 * nodes_of_end + 1, 3 * nodes_of_end + 2]
+        dofs += [3 * nodes_of_end + 1, 3 * nodes_of_end + 2]
         values += [-turned * z, turned * y]
     n = block.points.size
     middle = _nearest(block, (0.0, 0.0, 0.0))
     held = [held_nodes("along the bar", np.array([middle]), (0,), n)]
-    prescribed = (np.concatenate(freedoms), np.concatenate(values))
+    prescribed = (np.concatenate(dofs), np.concatenate(values))
     found = solve_solid(block.points, block.cells, lame, held, np.zeros(n), prescribed)
     odd = np.arange(1, 40, 2)
     series = float((np.tanh(odd * np.pi / 2) / odd**5.0).sum())

@@ -50,7 +50,7 @@ class Outcome:
     sentence
         Of the refusal, empty where it was meshed.
     clear
-        Whether that is the program's own sentence: object, allowed range, mend; or it was meshed.
+        Whether that is the program's own sentence: object, allowed range, fix; or it was meshed.
     error
         Largest relative error of a volume or area; NaN where refused.
     allowed

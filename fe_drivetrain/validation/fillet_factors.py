@@ -18,7 +18,7 @@ from fe_drivetrain.revolution import (
     Traction,
     Where,
     along_sides,
-    freedoms,
+    dofs,
     harmonic_response,
     meridian,
     stresses,
@@ -146,7 +146,7 @@ def published_scatter(load: str, wide: float, radius: float) -> float:
 
 
 def of_a_fit(load: str, wide: float, radius: float) -> float:
-    """What a formula through computed points may be off by itself, relative."""
+    """What a formula through computed points may itself be wrong by, relative."""
     return OF_A_FIT
 
 
@@ -204,7 +204,7 @@ def peak(load: str, wide: float, radius: float, per_fillet: int, order: int = 5)
         F += surface_loads(mesh, n, mesh.sides(_at(x)), _traction(load, diameter))
     rear = mesh.where(lambda x, r: x > shaft.rear - 1e-9)
     outer = rear[mesh.nodes[rear, 1].argmax()]
-    held = np.array([freedoms(outer, 0), freedoms(outer, 2 if n == 0 else 1)])
+    held = np.array([dofs(outer, 0), dofs(outer, 2 if n == 0 else 1)])
     u = harmonic_response(mesh, STEEL, n, F, (held, np.zeros(2))).u[..., 0]
     return _along_fillet(load, mesh, n, u, radius)
 

@@ -102,14 +102,14 @@ class Solved:
 def solved(mesh: Mesh) -> Solved:
     """Solve the three loads, whatever the elements are like."""
     n = len(mesh.points)
-    n_freedoms = 3 * n + 6
-    front = rigid_point("front", np.array([SHAFT.front, 0.0, 0.0]), 3 * n, n_freedoms)
+    n_dofs = 3 * n + 6
+    front = rigid_point("front", np.array([SHAFT.front, 0.0, 0.0]), 3 * n, n_dofs)
     held = [
-        fixed("rear", mesh.face_nodes("shaft.rear"), n_freedoms),
+        fixed("rear", mesh.face_nodes("shaft.rear"), n_dofs),
         rigid_face("front", mesh.face_nodes("shaft.front"), mesh.points, front),
     ]
     rows = 3 * n + np.array(list(LOADS.values()))
-    F = np.zeros((n_freedoms, len(LOADS)))
+    F = np.zeros((n_dofs, len(LOADS)))
     F[rows, np.arange(len(LOADS))] = 1.0
     try:
         u = solve_solid(mesh.points, mesh.cells, MATERIAL.lame, held, F).u

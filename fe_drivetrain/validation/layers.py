@@ -109,8 +109,8 @@ def _enlarged(K: sparse.bsr_array, total: int) -> sparse.bsr_array:
 def ring() -> Series:
     """A hollow shaft in a ring, held outside and twisted from inside; the ring is body 0.
 
-    In hexahedra of eight nodes, one along the axis, all nodes of a circle are alike by symmetry and
-    turn alike: the two bodies are springs in series exactly, on any mesh.
+    In hexahedra of eight nodes, one along the axis, all nodes of a circle are equal by symmetry and
+    turn equally: the two bodies are springs in series exactly, on any mesh.
     """
     bore, seat, outside, width = 0.1, 0.2, 0.3, 0.1
 

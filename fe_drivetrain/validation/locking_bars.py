@@ -132,7 +132,7 @@ def bend(bar: Bar | Block, assembly: Assembly, nu: float = NU) -> Bent:
     length = float(points[:, 0].max())
     ends = np.flatnonzero(np.isin(points[:, 0], (0.0, length)))
     prescribed = (3 * ends, -CURVATURE * points[ends, 0] * points[ends, 2])
-    # three freedoms without force: two places of the front face that are at one height
+    # three degrees of freedom without force: two places of the front face that are at one height
     front = np.flatnonzero(points[:, 0] == 0.0)
     y, z = points[front, 1], points[front, 2]
     level = z[np.abs(y).argmax()]
@@ -208,7 +208,7 @@ def tip_loaded(nodes: int, across: int, along: int, length: float, assembly: Ass
         int(np.linalg.norm(block.points - np.array(at), axis=1).argmin())
         for at in ((0.0, -c, -c), (length, -c, -c), (0.0, c, -c))
     ]
-    # six freedoms, and no force in them: the loads are in balance
+    # six degrees of freedom, and no force in them: the loads are in balance
     held = [
         held_nodes(f"corner {k}", np.array([node]), axes, n)
         for k, (node, axes) in enumerate(zip(corners, ((0, 1, 2), (1, 2), (2,)), strict=True))

@@ -12,10 +12,10 @@ from scipy import sparse
 
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.interfaces import Constraint, eliminate, held_freedoms
+from fe_drivetrain.interfaces import Constraint, eliminate, held_dofs
 from fe_drivetrain.mesh import Mesh, element_kind, first_order, generate, straightened
 from fe_drivetrain.operator import incompressible, pressure, stresses, traction_loads
-from fe_drivetrain.revolution import freedoms, harmonic_response, meridian
+from fe_drivetrain.revolution import dofs, harmonic_response, meridian
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import TOLERANCE, Solution, multigrid, reduce, solve_solid
 from fe_drivetrain.validation.plane_rings import (
@@ -172,7 +172,7 @@ class Disc:
     def iterated(self, nu: float, assembly: Assembly) -> multigrid.Iteration:
         """What multigrid alone comes to, with no direct solver behind it."""
         n = self.unknowns
-        held: Constraint = held_freedoms("plates", self._held(), n)
+        held: Constraint = held_dofs("plates", self._held(), n)
         K = assembly(self.points, self.cells, material(nu).lame, n)
         elimination = eliminate([held], n)
         system = reduce(self.points, self.cells, K, elimination)
@@ -198,10 +198,10 @@ def exact_disc(nu: float, order: int = 6) -> float:
     mesh = meridian(DISC, 0.075, order=order, layers=4)
     x = mesh.nodes[:, 0]
     front, rear = (np.flatnonzero(np.abs(x - end) < 1e-9) for end in (x.min(), x.max()))
-    held = np.concatenate([freedoms(nodes, c) for nodes in (front, rear) for c in (0, 1)])
+    held = np.concatenate([dofs(nodes, c) for nodes in (front, rear) for c in (0, 1)])
     values = np.zeros(len(held))
     values[: len(front)] = 1.0
-    swirl = freedoms(np.arange(len(x)), 2)
+    swirl = dofs(np.arange(len(x)), 2)
     found = harmonic_response(
         mesh,
         material(nu),

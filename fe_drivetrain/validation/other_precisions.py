@@ -34,7 +34,7 @@ class Tube:
     cells
         (n_cells, 27).
     free
-        Freedoms that are left.
+        Degrees of freedom that are left.
     load
         (n_free, 2) a force across and a moment about the axis, spread over the nodes of the end.
     """
@@ -97,15 +97,15 @@ def stiffness(solid: Tube, kind: type) -> tuple[NDArray[np.int64], NDArray[np.in
         trace = np.einsum("eambm->eab", G)
         K = lame[0] * G + lame[1] * G.transpose(0, 1, 4, 3, 2)
         K += lame[1] * trace[:, :, None, :, None] * identity[None, None, :, None, :]
-        freedoms = (3 * cells[:, :, None] + np.arange(3)).reshape(e, -1)
-        rows.append(np.repeat(freedoms, 3 * n, axis=1).ravel())
-        columns.append(np.tile(freedoms, (1, 3 * n)).ravel())
+        dofs = (3 * cells[:, :, None] + np.arange(3)).reshape(e, -1)
+        rows.append(np.repeat(dofs, 3 * n, axis=1).ravel())
+        columns.append(np.tile(dofs, (1, 3 * n)).ravel())
         values.append(K.reshape(e, -1).ravel())
     return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
 
 
 def summed(solid: Tube, kind: type) -> sparse.csr_array:
-    """Stiffness of the freedoms that are left, in one precision."""
+    """Stiffness of the degrees of freedom that are left, in one precision."""
     rows, columns, values = stiffness(solid, kind)
     n = solid.points.size
     order = np.argsort(rows * n + columns, kind="stable")

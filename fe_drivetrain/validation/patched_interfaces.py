@@ -18,7 +18,7 @@ from fe_drivetrain.interfaces import (
     averaged_point,
     averaged_sphere,
     centred_weights,
-    held_freedoms,
+    held_dofs,
     mortar_tie,
     node_tie,
     rigid_face,
@@ -194,7 +194,7 @@ def rigid_block() -> dict[str, float]:
     centre = bodies.points[nodes].mean(axis=0)
     point = rigid_point("point", centre, bodies.points.size, n)
     face = rigid_face("face", nodes, bodies.points, point)
-    held = held_freedoms("held", np.arange(n - 6, n), n)
+    held = held_dofs("held", np.arange(n - 6, n), n)
 
     K = bodies.stiffness(LAME, n)
     turned = two_bodies.solve(K, [face, held], np.zeros((n, 6)), {"held": np.eye(6)})
@@ -290,6 +290,6 @@ def sphere_error(divisions: int) -> float:
         nodes = np.unique(faces["x1"])
         held.append(3 * int(nodes[np.argmin(np.abs(bodies.points[nodes, 1]))]) + 1)
     held.append(3 * axis + 2)
-    support = held_freedoms("support", np.array(held), n)
+    support = held_dofs("support", np.array(held), n)
     u = two_bodies.solve(bodies.stiffness(LAME), [joint, support], F).u
     return two_bodies.stress_error(bodies, u[:, 0], LAME, pressure, root_mean_square=True)

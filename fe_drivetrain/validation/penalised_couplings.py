@@ -45,7 +45,7 @@ class Bar:
     support, coupling
         Constraints.
     F
-        (n_freedoms, m) loads [N].
+        (n_dofs, m) loads [N].
     """
 
     points: Floats

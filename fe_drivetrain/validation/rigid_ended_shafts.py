@@ -76,14 +76,14 @@ def meshed(shaft: Shaft, size: float, turn: int, local: LocalSizes | None = None
 def solved(mesh: Mesh, shaft: Shaft, loads: tuple[str, ...] = tuple(LOADS)) -> Solved:
     """Stiffnesses between rigid ends, and their estimated errors."""
     n = len(mesh.points)
-    n_freedoms = 3 * n + 6
-    front = rigid_point("front", np.array([shaft.front, 0.0, 0.0]), 3 * n, n_freedoms)
+    n_dofs = 3 * n + 6
+    front = rigid_point("front", np.array([shaft.front, 0.0, 0.0]), 3 * n, n_dofs)
     constraints = [
-        fixed("rear", mesh.face_nodes("shaft.rear"), n_freedoms),
+        fixed("rear", mesh.face_nodes("shaft.rear"), n_dofs),
         rigid_face("front", mesh.face_nodes("shaft.front"), mesh.points, front),
     ]
     rows = [3 * n + LOADS[load] for load in loads]
-    F = np.zeros((n_freedoms, len(loads)))
+    F = np.zeros((n_dofs, len(loads)))
     F[rows, np.arange(len(loads))] = 1.0
     found = solve_solid(mesh.points, mesh.cells, MATERIAL.lame, constraints, F)
     parts = [(mesh.cells, MATERIAL.lame)]

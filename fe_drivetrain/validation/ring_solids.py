@@ -46,17 +46,17 @@ def ring_sector(
     return brick(divisions, nodes, shape, edges)
 
 
-def on_plane(name: str, nodes: Ints, normal: ArrayLike, n_freedoms: int) -> Constraint:
+def on_plane(name: str, nodes: Ints, normal: ArrayLike, n_dofs: int) -> Constraint:
     """The nodes stay on a plane, and slide in it: a plane of symmetry."""
     n = np.asarray(normal, dtype=float)
     n = np.where(np.abs(n) < 1e-14 * np.abs(n).max(), 0.0, n)
-    rows = _rows(np.tile(n, (len(nodes), 1)), nodes, n_freedoms)
+    rows = _rows(np.tile(n, (len(nodes), 1)), nodes, n_dofs)
     return Constraint(name, rows, 3 * np.asarray(nodes) + int(np.abs(n).argmax()))
 
 
-def sector_symmetry(block: Block, angle: float, n_freedoms: int | None = None) -> list[Constraint]:
+def sector_symmetry(block: Block, angle: float, n_dofs: int | None = None) -> list[Constraint]:
     """Both ends of a sector on planes of symmetry through the axis."""
-    n = block.points.size if n_freedoms is None else n_freedoms
+    n = block.points.size if n_dofs is None else n_dofs
     normals = (0.0, 0.0, 1.0), (0.0, -np.sin(angle), np.cos(angle))
     return [
         on_plane(f"symmetry {face}", block.face_nodes(face), normal, n)
@@ -69,14 +69,14 @@ def plane_strain_hold(block: Block) -> Constraint:
     return held_nodes("plane strain", np.arange(len(block.points)), [0], block.points.size)
 
 
-def moves_as_one(name: str, nodes: Ints, axis: int, n_freedoms: int) -> Constraint:
+def moves_as_one(name: str, nodes: Ints, axis: int, n_dofs: int) -> Constraint:
     """The nodes have the same displacement along an axis, whatever it is."""
     first, others = int(nodes[0]), np.asarray(nodes[1:])
     m = len(others)
     columns = np.column_stack([3 * others + axis, np.full(m, 3 * first + axis)])
     rows = sparse.csr_array(
         (np.tile([1.0, -1.0], m), columns.ravel(), np.arange(0, 2 * m + 1, 2)),
-        shape=(m, n_freedoms),
+        shape=(m, n_dofs),
     )
     return Constraint(name, rows, 3 * others + axis)
 
@@ -134,12 +134,12 @@ def facets_where(cells: Ints, chosen: Ints) -> Ints:
     return np.asarray(inside[first])
 
 
-def _rows(coefficients: Floats, nodes: Ints, n_freedoms: int) -> sparse.csr_array:
-    """(m, n_freedoms) rows that take (m, 3) coefficients of a node each."""
+def _rows(coefficients: Floats, nodes: Ints, n_dofs: int) -> sparse.csr_array:
+    """(m, n_dofs) rows that take (m, 3) coefficients of a node each."""
     columns = 3 * np.asarray(nodes)[:, None] + np.arange(3)
     m = len(columns)
     rows = sparse.csr_array(
-        (coefficients.ravel(), columns.ravel(), np.arange(0, 3 * m + 1, 3)), shape=(m, n_freedoms)
+        (coefficients.ravel(), columns.ravel(), np.arange(0, 3 * m + 1, 3)), shape=(m, n_dofs)
     )
     rows.eliminate_zeros()
     return rows

@@ -20,7 +20,7 @@ from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.mesh import MEANS, Hexahedra, face_weights, local_facets, shaft_hexahedra
-from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads, turn
+from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads, turn
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import solve_solid
 
@@ -92,7 +92,7 @@ def tilted(width: float, size: float, order: int = 6, length: float = LENGTH) ->
 
     band = mesh.where(on_band)
     outer = mesh.where(lambda x, r: np.abs(r - OUTSIDE) < _SAME)
-    clamp = np.concatenate([freedoms(outer, k) for k in range(3)])
+    clamp = np.concatenate([dofs(outer, k) for k in range(3)])
     still = np.zeros(len(clamp))
     x = mesh.nodes[band, 0]
     # Rotation about z: u_x = -r cos, u_y = x.
@@ -108,7 +108,7 @@ def tilted(width: float, size: float, order: int = 6, length: float = LENGTH) ->
     energy = float(averaged.energy[0])
     found["averaged"] = Tilted(1.0, 2.0 * energy, energy)
     for name, components in (("rigid", (0, 1, 2)), ("sliding", (1,))):
-        which = np.concatenate([freedoms(band, k) for k in components])
+        which = np.concatenate([dofs(band, k) for k in components])
         values = np.concatenate([rigid[:, k] for k in components])
         response = harmonic_response(
             mesh,

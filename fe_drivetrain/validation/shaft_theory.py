@@ -201,7 +201,8 @@ def extra_curvature(tube: Tube) -> float:
     Cross-sections that carry their own weight are also stressed sideways: with moments z and
     (z^2 - y^2) / 2 of equilibrium in the section, ``integral z (sigma_y + sigma_z) dA`` is that of
     ``(z^2 - y^2) / 2 d(tau_xz)/dx + y z d(tau_xy)/dx``, where tau is Saint-Venant's for a shear
-    force that falls by 1 N/m; and sigma_x / E lacks nu times as much. Exact for a uniform load.
+    force that falls by 1 N/m; and the axial strain is sigma_x / E less nu / E times as much. Exact
+    for a uniform load.
     """
     a, b = tube.outer / 2, tube.inner / 2
     t, w = np.polynomial.legendre.leggauss(12)

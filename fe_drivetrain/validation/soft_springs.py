@@ -87,7 +87,7 @@ class Sprung:
     @cached_property
     def elimination(self) -> Elimination:
         """Elimination of all constraints; springs are not among them."""
-        return eliminate(self.model.constraints, self.model.n_freedoms)
+        return eliminate(self.model.constraints, self.model.n_dofs)
 
     @cached_property
     def moduli(self) -> dict[str, float]:

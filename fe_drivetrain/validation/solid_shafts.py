@@ -1,4 +1,4 @@
-"""Solid shafts for finite elements: meshes that refine alike, loads on ends, motions of sections.
+"""Solid shafts for finite elements: meshes refined similarly, loads on ends, motions of sections.
 
 A section's motion is its mean displacement and its least-squares rotation (an averaged reference
 point). These means are Cowper's (1966), so Timoshenko's beam with his coefficient speaks of the
@@ -186,12 +186,12 @@ def resultant(points: Floats, forces: Floats, about: float = 0.0) -> Floats:
 
 
 def prescribed_on(mesh: Solid, nodes: Ints, field: Floats) -> tuple[Ints, Floats]:
-    """Freedoms of the nodes, and their values in a field (n, 3) of all nodes."""
+    """Degrees of freedom of the nodes, and their values in a field (n, 3) of all nodes."""
     return (3 * nodes[:, None] + np.arange(3)).ravel(), field[nodes].ravel()
 
 
 def pinned_like(mesh: Solid, field: Floats) -> tuple[Ints, Floats]:
-    """Six freedoms of three nodes of the front face, held where a field (n, 3) has them.
+    """Six degrees of freedom of three nodes of the front face, held where a field (n, 3) has them.
 
     They hold the solid statically, so they carry nothing where the loads are in equilibrium.
     """

@@ -88,7 +88,7 @@ def main_bearing(quick: bool) -> Problem:
     mesh = mesh_scene(scene)
     model = soft_springs.sprung(scene, mesh).model
     load = VERTICAL.moment
-    elimination = eliminate(model.constraints, model.n_freedoms)
+    elimination = eliminate(model.constraints, model.n_dofs)
     T = elimination.T
     system = reduce(mesh.points, mesh.cells, model.stiffness, elimination)
     unit = model.unit_loads()[:, [LOADS.index("hub.My")]]

@@ -288,7 +288,7 @@ def _sphere(shell: Shell, across: int, through: int) -> Block:
 
 
 def _joint(mesh: Mesh, joint: Joint, first: int, n: int) -> list[Constraint]:
-    """The joint as the drivetrain's model has it; ``first`` of its own freedoms."""
+    """The joint as the drivetrain's model has it; ``first`` of its own degrees of freedom."""
     if joint == "bonded":
         return []
     inner, outer = mesh.pairs()
@@ -337,7 +337,7 @@ class Moved:
     displacements
         (n, 3) where the core moves [m].
     unknowns
-        Number of freedoms that are left.
+        Number of degrees of freedom that are left.
     """
 
     stiffness: float

@@ -19,7 +19,7 @@ from fe_drivetrain.mesh import (
     shaft_hexahedra,
 )
 from fe_drivetrain.operator import assemble
-from fe_drivetrain.revolution import freedoms, harmonic_response, meridian, surface_loads
+from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import System, reduce
 from fe_drivetrain.validation.solver_trials import factored, fastest
@@ -181,7 +181,7 @@ def oval_work(shaft: Shaft, elements: int = 8) -> float:
         mesh, 2, sides, lambda at, normals: np.tile([0.0, 1.0, 0.0], (len(at), 1))
     )
     rear = np.flatnonzero(np.abs(x - shaft.rear) < 1e-9)
-    which = np.concatenate([freedoms(rear, k) for k in range(3)])
+    which = np.concatenate([dofs(rear, k) for k in range(3)])
     found = harmonic_response(mesh, STEEL, 2, loads, (which, np.zeros(len(which))))
     return float(2.0 * found.energy[0])
 

@@ -10,7 +10,7 @@ import numpy as np
 from fe_drivetrain.common import Floats, rigid_motions
 from fe_drivetrain.interfaces import (
     Constraint,
-    held_freedoms,
+    held_dofs,
     held_nodes,
     mortar_tie,
     node_tie,
@@ -129,7 +129,7 @@ def stiffnesses(bodies: two_bodies.Bodies, tie: Constraint | None = None) -> Sti
     g = np.column_stack([-turned * z, turned * y]).ravel()
     centre = front[np.argmin(np.abs(points[front, 1:]).sum(axis=1))]
     supports = [
-        held_freedoms("ends", in_plane, n),
+        held_dofs("ends", in_plane, n),
         held_nodes("axial", np.array([centre]), (0,), n),
     ]
     twisted = two_bodies.solve(K, [*ties, *supports], np.zeros((n, 1)), {"ends": g[:, None]})

@@ -13,8 +13,8 @@ from skfem.quadrature import get_quadrature
 from fe_drivetrain.common import Floats, InputError, rigid_motions
 from fe_drivetrain.interfaces import (
     Constraint,
-    freedoms,
-    held_freedoms,
+    dofs,
+    held_dofs,
     mortar_tie,
     node_tie,
     settled,
@@ -151,7 +151,7 @@ def shared(turn: int, nodes: int = 10) -> Twisted:
     rings = two_bodies.together(ring(BORE, TIED, turn, nodes), ring(TIED, OUTSIDE, turn, nodes))
     match = cKDTree(rings.points).query_pairs(1e-9, output_type="ndarray")
     low, high = match.T
-    rows = np.concatenate([freedoms(low), freedoms(high)], axis=0).reshape(2, -1)
+    rows = np.concatenate([dofs(low), dofs(high)], axis=0).reshape(2, -1)
     k = np.arange(rows.shape[1])
     C = sparse.csr_array(
         (np.repeat([1.0, -1.0], len(k)), (np.tile(k, 2), rows.ravel())),
@@ -166,8 +166,8 @@ def twist(tied: Tie) -> Twisted:
     bodies, points, n = tied.bodies, tied.bodies.points, tied.bodies.points.size
     bore, outside = np.unique(bodies.faces[0]["x0"]), np.unique(bodies.faces[1]["x1"])
     supports = [
-        held_freedoms("bore", freedoms(bore).ravel(), n),
-        held_freedoms("outside", freedoms(outside).ravel(), n),
+        held_dofs("bore", dofs(bore).ravel(), n),
+        held_dofs("outside", dofs(outside).ravel(), n),
     ]
     turned = rigid_motions(points[outside])[:, [3]]
     K = bodies.stiffness(LAME)

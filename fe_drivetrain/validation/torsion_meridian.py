@@ -102,7 +102,7 @@ def torsion_bounds(shaft: Shaft, shear_modulus: float, size: float, halvings: in
 
 
 def _least(basis: Any, form: Callable[..., Any], values: Floats, held: Any) -> float:
-    """The least energy with these values at the held freedoms."""
+    """The least energy with these values at the held degrees of freedom."""
     K = BilinearForm(form).assemble(basis)
     u = solve(*condense(K, x=values, D=np.flatnonzero(held)))
     return float(u @ (K @ u))

@@ -123,7 +123,7 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
     """
     old = model.mesh
     mesh = replace(old, points=old.points @ turn.T + shift)
-    n, n_freedoms = len(mesh.points), model.n_freedoms
+    n, n_dofs = len(mesh.points), model.n_dofs
     unit = model.scene.bearing_units[0]
     name = unit.bearing.name
     faces = {"hub": "shaft.front", "gearbox": "shaft.rear", f"{name}.seat": f"shaft.seat.{name}"}
@@ -132,7 +132,7 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
         nodes = mesh.face_nodes(face)
         weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
         position = turn @ model.points[key].position + shift
-        point = constraints.averaged_point(key, nodes, weights, mesh.points, position, n_freedoms)
+        point = constraints.averaged_point(key, nodes, weights, mesh.points, position, n_dofs)
         own_axes = (sparse.csr_array(twice(turn).T) @ point.motion).tocsr()
         points[key] = ReferencePoint(key, position, own_axes)
 
@@ -141,12 +141,10 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
         inner, outer = joint_pairs(mesh, name)
         centre = turn @ np.array([unit.bearing.x, 0.0, 0.0]) + shift
         conditions.append(
-            constraints.sliding_sphere(
-                f"{name} joint", inner, outer, mesh.points, centre, n_freedoms
-            )
+            constraints.sliding_sphere(f"{name} joint", inner, outer, mesh.points, centre, n_dofs)
         )
     base = f"{name}.housing.base"
-    conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_freedoms))
+    conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
     held = model.scene.gearbox.held
     conditions.append(constraints.held("gearbox reaction", points["gearbox"], held))
     stiffness = {
@@ -154,7 +152,7 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
             mesh.points,
             mesh.cells[mesh.part_cells(part)],
             model.scene.material_of(part).lame,
-            n_freedoms,
+            n_dofs,
         )
         for part in mesh.part_names
     }

@@ -9,7 +9,7 @@ from scipy.sparse.linalg import splu
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common import Floats, Ints
-from fe_drivetrain.interfaces import Constraint, Elimination, eliminate, held_freedoms
+from fe_drivetrain.interfaces import Constraint, Elimination, eliminate, held_dofs
 from fe_drivetrain.mesh import Block, element_kind
 from fe_drivetrain.operator import assemble, stresses, tensor, traction_loads
 
@@ -34,20 +34,20 @@ class Bodies:
     cells: tuple[Ints, ...]
     faces: tuple[dict[str, Ints], ...]
 
-    def stiffness(self, lame: Lame, n_freedoms: int | None = None) -> sparse.csr_array:
+    def stiffness(self, lame: Lame, n_dofs: int | None = None) -> sparse.csr_array:
         """Stiffness of all bodies, each on its own [N/m]."""
-        n = self.points.size if n_freedoms is None else n_freedoms
+        n = self.points.size if n_dofs is None else n_dofs
         return sum(assemble(self.points, cells, lame, n) for cells in self.cells).tocsr()
 
     def loads(
-        self, stress: Floats, free: Sequence[tuple[int, str]], n_freedoms: int | None = None
+        self, stress: Floats, free: Sequence[tuple[int, str]], n_dofs: int | None = None
     ) -> Floats:
         """Nodal forces of a uniform stress (3, 3) on the faces (body, name) [N]."""
 
         def traction(positions: Floats, normals: Floats) -> Floats:
             return normals @ stress
 
-        n = self.points.size if n_freedoms is None else n_freedoms
+        n = self.points.size if n_dofs is None else n_dofs
         forces = np.zeros(n)
         for body, name in free:
             forces += traction_loads(self.points, self.faces[body][name], traction, n)
@@ -155,8 +155,8 @@ def stress_error(
     return float(np.abs(difference).max())
 
 
-def isostatic(points: Floats, nodes: Ints, n_freedoms: int, name: str = "support") -> Constraint:
-    """Six freedoms of three nodes held, so that a body can neither move nor turn, nor is stressed.
+def isostatic(points: Floats, nodes: Ints, n_dofs: int, name: str = "support") -> Constraint:
+    """Six degrees of freedom of three nodes held: a body neither moves nor turns, nor is stressed.
 
     The nodes are the first of the given ones, the one farthest from it, and the one farthest from
     the line through both.
@@ -171,4 +171,4 @@ def isostatic(points: Floats, nodes: Ints, n_freedoms: int, name: str = "support
     held = [3 * a, 3 * a + 1, 3 * a + 2]
     held += [3 * b + axis for axis in range(3) if axis != along]
     held.append(3 * c + int(np.argmax(np.abs(normal))))
-    return held_freedoms(name, np.array(held), n_freedoms)
+    return held_dofs(name, np.array(held), n_dofs)

@@ -1,12 +1,12 @@
 """CalculiX: full stiffness and mass as single springs and masses, tied to the points by equations.
 
-CalculiX 2.20 takes no matrix as an element (*MATRIX ASSEMBLE came later, and
-its *USER ELEMENT is the name of a compiled routine), and its springs join single freedoms.
-But every symmetric matrix without negative eigenvalues is a sum of squares of linear forms,
-K = sum k_i v_i v_i^T, its eigenvectors with a unit diagonal: an auxiliary node moves by v_i^T u, by
-*EQUATION, and stands on a spring k_i (SPRING1) to the ground. A mass does the same with MASS.
+CalculiX 2.20 takes no matrix as an element (*MATRIX ASSEMBLE came later, and its *USER ELEMENT is
+the name of a compiled routine), and its springs join single degrees of freedom. But every symmetric
+matrix without negative eigenvalues is a sum of squares of linear forms, K = sum k_i v_i v_i^T, its
+eigenvectors with a unit diagonal: an auxiliary node moves by v_i^T u, by *EQUATION, and stands on a
+spring k_i (SPRING1) to the ground. A mass does the same with MASS.
 
-A point is two nodes, as in `calculix_plan`: freedoms 1 to 3 of the first are its
+A point is two nodes, as in `calculix_plan`: degrees of freedom 1 to 3 of the first are its
 displacements, of the second its rotations. The file is for an *INCLUDE in the model definition.
 """
 
@@ -97,8 +97,8 @@ def squares(matrix: Floats) -> tuple[Floats, Floats]:
     values
         (r,) positive factors.
     forms
-        (r, m) of the m freedoms; the matrix is ``forms.T @ diag(values) @ forms``, and what no form
-        sees has neither stiffness nor mass.
+        (r, m) of the m degrees of freedom; the matrix is ``forms.T @ diag(values) @ forms``, and
+        what no form sees has neither stiffness nor mass.
     """
     size = diagonal_roots(matrix.diagonal())
     unit = scaled_to_unit_diagonal(matrix)
@@ -130,12 +130,12 @@ def read(path: Path) -> Superelement:
 
 
 def _equation(auxiliary: int, form: Floats, first_node: int) -> Iterator[str]:
-    # All freedoms stand in every equation, of zero factor too: ccx lays out its matrix for springs
-    # only, and stops where a mass then couples freedoms that no spring does.
+    # All degrees of freedom stand in every equation, of zero factor too: ccx lays out its matrix
+    # for springs only, and stops where a mass then couples degrees of freedom that no spring does.
     terms = [(auxiliary, 1, -1.0)]
     terms += [(first_node + f // 3, f % 3 + 1, value) for f, value in enumerate(form.tolist())]
     yield str(len(terms))
-    texts = [f"{node},{freedom},{value:.13e}" for node, freedom, value in terms]
+    texts = [f"{node},{dof},{value:.13e}" for node, dof, value in terms]
     for start in range(0, len(texts), _TERMS):
         yield ",".join(texts[start : start + _TERMS])
 
@@ -175,7 +175,7 @@ def _summed(text: str) -> dict[str, Floats]:
 
 
 def _forms(lines: list[str], first: int, size: int) -> dict[int, Floats]:
-    """Linear forms of the points' freedoms, by auxiliary node."""
+    """Linear forms of the points' degrees of freedom, by auxiliary node."""
     found: dict[int, Floats] = {}
     rest = list(lines)
     while rest:

@@ -29,7 +29,8 @@ class CraigBamptonFile(BaseModel):
     points: SuperelementFile
     omega: list[float] = Field(description="circular frequencies, all points held [rad/s]")
     coupling: list[list[float]] = Field(
-        description="mass between freedoms of points (rows) and modes (columns); none in stiffness"
+        description="mass between degrees of freedom of points (rows) and modes (columns); none "
+        "in stiffness"
     )
 
 
@@ -58,8 +59,8 @@ def read_craig_bampton(path: str | Path) -> CraigBampton:
     if points.mass is None or coupling.shape != (len(points.stiffness), len(content.omega)):
         raise InputError(
             f"{path}: coupling has the shape {coupling.shape} but must have a row for each of "
-            f"{len(points.stiffness)} freedoms and a column for each of {len(content.omega)} "
-            "modes, and points need a mass"
+            f"{len(points.stiffness)} degrees of freedom and a column for each of "
+            f"{len(content.omega)} modes, and points need a mass"
         )
     return CraigBampton(
         points.points,

@@ -92,7 +92,7 @@ def _lines(element: Superelement) -> Iterator[str]:
     entries = statement(element)
     entries |= {f"matrix {letter}": name for letter, name in names.items()}
     entries["in the case control"] = ", ".join(f"{k}2GG = {name}" for k, name in names.items())
-    entries["grid points"] = "point 1 is GRID 1, and so on; each has its six freedoms"
+    entries["grid points"] = "point 1 is GRID 1, and so on; each has its six degrees of freedom"
     yield from comment_lines(entries, "$")
     for number, position in enumerate(element.positions.tolist(), 1):
         x, y, z = (double(value).replace("D", "E") for value in position)
@@ -124,10 +124,10 @@ def _matrices(path: Path, model: Any, entries: dict[str, str]) -> tuple[Floats, 
                 raise InputError(f"{path} has no DMIG {name!r}: it must hold its {_KINDS[letter]}")
             continue
         values, rows, _ = model.dmig[name].get_matrix()
-        # pyNastran's order of freedoms is that in which they come up
+        # pyNastran's order of degrees of freedom is that in which they come up
         places = [6 * (grid - 1) + component - 1 for grid, component in map(tuple, rows.values())]
         if sorted(places) != list(range(size)):
-            raise InputError(f"{path}: DMIG {name} has not the six freedoms of each GRID")
+            raise InputError(f"{path}: DMIG {name} has not the six degrees of freedom of each GRID")
         matrix = np.zeros((size, size))
         matrix[np.ix_(places, places)] = values
         found[letter] = matrix

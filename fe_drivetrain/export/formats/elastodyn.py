@@ -35,7 +35,7 @@ def write_torsion(
     """Write an ElastoDyn input with another drivetrain spring and damper.
 
     All bytes but those of the two values and the blanks before them stay as they are. The value of
-    `DrTrDOF`, which switches the freedom on, stays too.
+    `DrTrDOF`, which switches the degree of freedom on, stays too.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.export.formats.statement import element_of, freedom_labels, statement
+from fe_drivetrain.export.formats.statement import dof_labels, element_of, statement
 from fe_drivetrain.export.superelement import Superelement
 
 
@@ -27,7 +27,7 @@ def write(path: Path, element: Superelement) -> None:
         file["positions"] = element.positions
         file["positions"].attrs["units"] = "m"
         file["points"] = list(element.points)
-        file["freedoms"] = freedom_labels(element)
+        file["freedoms"] = dof_labels(element)
         for kind, matrix in (("stiffness", element.stiffness), ("mass", element.mass)):
             if matrix is not None:
                 file[kind] = matrix

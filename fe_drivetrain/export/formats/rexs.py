@@ -120,8 +120,8 @@ def read(path: Path) -> Superelement:
     n = len(points)
     if matrix.shape != (6 * n, 6 * n) or any(len(place) != 3 for place in positions):
         raise InputError(
-            f"{path} has a stiffness of shape {matrix.shape} for {n} points: six freedoms for each "
-            "point, which has x, y and z"
+            f"{path} has a stiffness of shape {matrix.shape} for {n} points: six degrees of "
+            "freedom for each point, which has x, y and z"
         )
     # a comment's tag is the function that makes one
     lines = [line for c in model if callable(c.tag) for line in (c.text or "").splitlines()]
@@ -158,7 +158,7 @@ def _ordered(model: ET.Element, group: str | None) -> list[str]:
 
 
 def _lengths(n: int) -> Floats:
-    """What each freedom grows by from m, N m to mm, N mm."""
+    """What each degree of freedom grows by from m, N m to mm, N mm."""
     return np.tile([1.0, 1.0, 1.0, _MILLIMETRES, _MILLIMETRES, _MILLIMETRES], n // 6)
 
 

@@ -16,8 +16,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.formats.statement import (
     comment_lines,
     commented,
+    dof_labels,
     element_of,
-    freedom_labels,
     statement,
     text_of,
 )
@@ -30,11 +30,12 @@ _LINE = re.compile(r"^subvar\(\$_(?P<name>\w+), str= '(?P<value>[^']*)'\)")
 def write(path: Path, element: Superelement) -> None:
     """Write a variable for each coordinate and each entry of the upper triangles.
 
-    ``$_NAME_K_3_9`` is the stiffness between the freedoms 3 and 9 of the superelement NAME, and
-    ``$_NAME_M_3_9`` their mass; ``$_NAME_x_2`` is x of its second point. Numbers keep every digit.
+    ``$_NAME_K_3_9`` is the stiffness between the degrees of freedom 3 and 9 of the superelement
+    NAME, and ``$_NAME_M_3_9`` their mass; ``$_NAME_x_2`` is x of its second point. Numbers keep
+    every digit.
     """
     entries = statement(element)
-    labels = freedom_labels(element)
+    labels = dof_labels(element)
     lines = [_HEADER, "", *comment_lines(entries, "!"), ""]
 
     def add(name: str, value: float, comment: str) -> None:

@@ -1,7 +1,7 @@
 """Statement of a superelement in text formats, beside its matrices: comments "key: value".
 
-Frame, units, points, order of freedoms, source, uncertainty and checks stand in the file as a
-person reads them, and are read back from there.
+Frame, units, points, order of degrees of freedom, source, uncertainty and checks stand in the file
+as a person reads them, and are read back from there.
 """
 
 from __future__ import annotations
@@ -125,9 +125,9 @@ def _points(entries: Mapping[str, str]) -> tuple[tuple[str, ...], Floats]:
     return tuple(names), np.array(positions)
 
 
-def freedom_labels(element: Superelement) -> list[str]:
-    """The 6 n freedoms by name, as in "hub ux"."""
-    return [f"{point} {freedom}" for point in element.points for freedom in MOTIONS]
+def dof_labels(element: Superelement) -> list[str]:
+    """The 6 n degrees of freedom by name, as in "hub ux"."""
+    return [f"{point} {dof}" for point in element.points for dof in MOTIONS]
 
 
 def text_of(path: Path, kind: str) -> str:

@@ -1,7 +1,7 @@
 """CSV for a spreadsheet: the statement in lines with "#", then one table with labelled rows.
 
-The first column says which matrix a row is of, the second which freedom: a row is the forces and
-moments at that freedom for unit motions of the freedoms in the head.
+The first column says which matrix a row is of, the second which degree of freedom: a row is the
+forces and moments at that degree of freedom for unit motions of the degrees of freedom in the head.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.formats.statement import element_of, freedom_labels, statement, text_of
+from fe_drivetrain.export.formats.statement import dof_labels, element_of, statement, text_of
 from fe_drivetrain.export.superelement import Superelement
 
 _END = "# end"
@@ -21,7 +21,7 @@ _END = "# end"
 
 def write(path: Path, element: Superelement) -> None:
     """Write a superelement; numbers keep every digit."""
-    labels = freedom_labels(element)
+    labels = dof_labels(element)
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerows((f"# {key}", value) for key, value in statement(element).items())

@@ -14,14 +14,15 @@ from fe_drivetrain.export.formats.calculix_springs import write as write_springs
 from fe_drivetrain.export.programs.ccx import run_calculix
 from fe_drivetrain.export.superelement import Superelement
 
-#: Freedoms that the eigenvalue solver of ccx (ARPACK) wants for every frequency; found by trial.
-FREEDOMS_A_FREQUENCY = 6
+#: Degrees of freedom that the eigenvalue solver of ccx (ARPACK) wants for every frequency; found by
+#: trial.
+DOFS_PER_FREQUENCY = 6
 
 _FREQUENCY = re.compile(r"^ +\d+ +(\S+) +\S+ +(\S+) +\S+ *$", re.MULTILINE)
 
 
 def held(element: Superelement) -> int:
-    """How many freedoms are held in the runs: the first point's six, where the body is free."""
+    """How many degrees of freedom the runs hold: the first point's six, where the body is free."""
     return 0 if element.supported else 6
 
 
@@ -37,13 +38,14 @@ def compliance_by_calculix(element: Superelement, folder: Path) -> Floats:
 
     Returns
     -------
-    (m, m) of the m freedoms that are not held [m/N, rad/N, rad/(N m)], in the digits of a .dat.
+    (m, m) of the m degrees of freedom that are not held [m/N, rad/N, rad/(N m)], in the digits of a
+    .dat.
     """
     write_springs(folder / "element.inp", element)
     start, size = held(element), 6 * len(element.points)
     lines = ["*INCLUDE, INPUT=element.inp", *_support(element)]
-    for freedom in range(start, size):
-        lines += ["*STEP", "*STATIC", "*CLOAD, OP=NEW", f"{freedom // 3 + 1},{freedom % 3 + 1},1."]
+    for dof in range(start, size):
+        lines += ["*STEP", "*STATIC", "*CLOAD, OP=NEW", f"{dof // 3 + 1},{dof % 3 + 1},1."]
         lines += [f"*NODE PRINT, NSET={element.name.upper()}_POINTS", "U", "*END STEP"]
     dat = _run(folder / "loads.inp", lines)
     found = np.full((size, size - start), np.nan)
@@ -68,13 +70,13 @@ def frequencies_by_calculix(element: Superelement, folder: Path, count: int) -> 
     Raises
     ------
     InputError
-        There is no mass, or there are not `FREEDOMS_A_FREQUENCY` for each frequency.
+        There is no mass, or there are not `DOFS_PER_FREQUENCY` for each frequency.
     """
     free = 6 * len(element.points) - held(element)
-    if element.mass is None or free < FREEDOMS_A_FREQUENCY * count:
+    if element.mass is None or free < DOFS_PER_FREQUENCY * count:
         raise InputError(
-            f"superelement {element.name!r} must have mass and {FREEDOMS_A_FREQUENCY} freedoms for "
-            f"each of {count} frequencies: it has {free}"
+            f"superelement {element.name!r} must have mass and {DOFS_PER_FREQUENCY} degrees of "
+            f"freedom for each of {count} frequencies: it has {free}"
         )
     write_springs(folder / "element.inp", element)
     lines = ["*INCLUDE, INPUT=element.inp", *_support(element)]

@@ -1,7 +1,7 @@
 """ROSS: the beam of a scene as shaft elements, its bearing units and gearbox as bearing elements.
 
-ROSS has the shaft along its z, y up and x = y cross z; freedoms of a node x, y, z, alpha, beta,
-theta, the last three rotations about these. So its x, y, z are this project's y, z, x, turned
+ROSS has the shaft along its z, y up and x = y cross z; degrees of freedom of a node x, y, z, alpha,
+beta, theta, the last three rotations about these. So its x, y, z are this project's y, z, x, turned
 cyclically and right-handed both. Shear as here: Cowper's coefficient.
 
 A BearingElement has kxx, kxy, kyx, kyy and kzz only. What else a bearing unit or a gearbox has
@@ -294,8 +294,8 @@ def _rows(n: int) -> Floats:
 def _further_stiffness(ross: Any) -> Any:
     """A class of elements with a full stiffness to ground.
 
-    ROSS adds the stiffness of its disks, which is zero but for this one, to six freedoms of a node;
-    a bearing has three.
+    ROSS adds the stiffness of its disks, which is zero but for this one, to six degrees of freedom
+    of a node; a bearing has three.
     """
 
     class FurtherStiffness(ross.DiskElement):  # type: ignore[misc]

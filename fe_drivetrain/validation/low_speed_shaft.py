@@ -1,8 +1,9 @@
 """The low-speed shaft of the NREL 750 kW drivetrain as solids of revolution, and its stiffness.
 
-The thesis gives k, not the shaft. What its damper gives away (see `damping`) is J = (C / 2 zeta)^2
-/ k, and with it the length G J / k of a uniform solid shaft. A shaft of that length with flange and
-steps, whose sections add up to the same k, is what finite elements are asked about.
+The thesis gives k, not the shaft. What its damper implies (see `implied_shafts`) is
+J = (C / 2 zeta)^2 / k, and with it the length G J / k of a uniform solid shaft. A shaft of that
+length with flange and steps, whose sections add up to the same k, is what finite elements are asked
+about.
 """
 
 from __future__ import annotations
@@ -14,9 +15,7 @@ from fe_drivetrain.interfaces import Constraint, averaged_point, fixed, rigid_fa
 from fe_drivetrain.mesh import Mesh, face_weights, generate
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS as SHEAR_MODULUS
-from fe_drivetrain.validation.implied_shafts import Uniform
-from fe_drivetrain.validation.implied_shafts import implied as implied
+from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, Uniform
 from fe_drivetrain.validation.twisted_tubes import material_of
 
 MATERIAL = material_of(SHEAR_MODULUS)
@@ -30,12 +29,22 @@ FILLET = 0.04
 
 
 def uniform(found: Uniform) -> Shaft:
-    """That shaft."""
+    """The uniform solid shaft that k and C imply, from x = 0 on; `found` is from `implied`."""
     return Shaft(front=0.0, sections=(Section(length=found.length, outer_diameter=found.diameter),))
 
 
 def stepped(length: float, stiffness: float, fillet: float = FILLET) -> Shaft:
-    """Flange and two sections whose G J / L in series are a stiffness [m, N m/rad, m]."""
+    """Flange and two sections whose G J / L in series are a stiffness.
+
+    Parameters
+    ----------
+    length : float
+        Of all three [m].
+    stiffness : float
+        1 / sum(L / G J) [N m/rad].
+    fillet : float
+        Radius at the foot of both steps [m]; 0 for sharp ones.
+    """
     lengths = [share * length for share in SHARES]
     scale = (
         sum(
@@ -63,7 +72,22 @@ def in_series(shaft: Shaft) -> float:
 
 
 def meridian_stiffness(shaft: Shaft, size: float, order: int | None = None) -> float:
-    """Torsional stiffness between rigid ends from the meridian [N m/rad]."""
+    """Torsional stiffness between rigid ends by Fourier harmonics.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        Of steel, G = 80 GPa.
+    size : float
+        Of elements in the meridian [m].
+    order : int, optional
+        Of these elements; `end_stiffness` chooses where it is left out.
+
+    Returns
+    -------
+    stiffness : float
+        [N m/rad].
+    """
     return float(end_stiffness(shaft, MATERIAL, size, order=order)[3, 3])
 
 
@@ -74,27 +98,34 @@ def meshed(shaft: Shaft, turn: int) -> Mesh:
 
 
 def solid_stiffness(mesh: Mesh, *, rigid: bool = True) -> float:
-    """Torque over the angle of the front face, the rear face held [N m/rad].
+    """Torque over the angle of the front face, the rear face held.
 
     Parameters
     ----------
-    rigid
+    mesh : Mesh
+        From `meshed`.
+    rigid : bool
         Whether the front face is; otherwise it is free to deform, and its angle is its mean.
+
+    Returns
+    -------
+    stiffness : float
+        [N m/rad].
     """
     n = len(mesh.points)
     origin = np.array([mesh.points[:, 0].min(), 0.0, 0.0])
     face = mesh.face_nodes("shaft.front")
     constraints: list[Constraint]
     if rigid:
-        n_freedoms = 3 * n + 6
-        front = rigid_point("front", origin, 3 * n, n_freedoms)
+        n_dofs = 3 * n + 6
+        front = rigid_point("front", origin, 3 * n, n_dofs)
         constraints = [rigid_face("front", face, mesh.points, front)]
     else:
-        n_freedoms = 3 * n
+        n_dofs = 3 * n
         weights = face_weights(mesh.points, mesh.faces["shaft.front"], n)[face]
-        front = averaged_point("front", face, weights, mesh.points, origin, n_freedoms)
+        front = averaged_point("front", face, weights, mesh.points, origin, n_dofs)
         constraints = []
-    constraints.append(fixed("rear", mesh.face_nodes("shaft.rear"), n_freedoms))
+    constraints.append(fixed("rear", mesh.face_nodes("shaft.rear"), n_dofs))
     row = front.motion[[3]]
     found = solve_solid(mesh.points, mesh.cells, MATERIAL.lame, constraints, row.T.toarray())
     return float(1.0 / (row @ found.u)[0, 0])

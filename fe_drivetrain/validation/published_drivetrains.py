@@ -4,18 +4,14 @@ The inputs stand in YAML files beside this module, digit for digit as in Tables 
 the frequencies of Tables 6.1, 6.2 and 6.4 stand here.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
 import yaml
-from numpy.typing import NDArray
 
-from fe_drivetrain.common import Floats
-from fe_drivetrain.report import Chart, Verdict, chart, judge, trace
+from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.torsion import (
     Drivetrain,
     GeneratorState,
@@ -26,8 +22,6 @@ from fe_drivetrain.torsion import (
     natural_modes,
     parse_drivetrain,
 )
-
-Ints = NDArray[np.intp]
 
 TABLE_6_1 = "Al-Hamadani 2018, Table 6.1"
 TABLE_6_2 = "Al-Hamadani 2018, Table 6.2"
@@ -77,27 +71,34 @@ OTHERS = {
 #: Section 6.2.3: peaks of the torque's spectrum in a simulated shutdown [Hz].
 SHUTDOWN = {"A": 9.1, "B": 4.664, "C": 2.503}
 
-ROUNDING = (
-    "every input at its worst within half of its last printed digit, summed, and one unit of the "
-    "reference's last digit, which the thesis cuts off in places (5.1951 rad/s stands as 0.826 Hz)"
-)
-
 #: What is counted is exact.
 _EXACT = {"teeth", "planets"}
 
 
 def text_of(name: str) -> str:
-    """The YAML text of "nrel_750kw", "drivetrain_a", "..._b" or "..._c"."""
-    return (files("fe_drivetrain.cases.drivetrain") / f"{name}.yaml").read_text("utf-8")
+    """The YAML text of a table, digit for digit as printed.
+
+    Parameters
+    ----------
+    name : str
+        "nrel_750kw", "drivetrain_a", "drivetrain_b" or "drivetrain_c".
+    """
+    return (files("fe_drivetrain.validation") / f"{name}.yaml").read_text("utf-8")
 
 
 def table(name: str) -> Drivetrain:
-    """One of the tables, by the name of its file."""
+    """One of the tables; `name` as in `text_of`."""
     return parse_drivetrain(text_of(name), source=name)
 
 
 def nrel_stages(table: Drivetrain) -> tuple[PlanetaryStage, ParallelStage, ParallelStage]:
-    """The three stages of drivetrain D."""
+    """The three stages of drivetrain D, the NREL 750 kW.
+
+    Raises
+    ------
+    TypeError
+        The table is of another drivetrain.
+    """
     one, two, three = table.stages
     if not (
         isinstance(one, PlanetaryStage)
@@ -109,16 +110,16 @@ def nrel_stages(table: Drivetrain) -> tuple[PlanetaryStage, ParallelStage, Paral
 
 
 def digit(printed: str) -> float:
-    """One unit of the last digit of a number as printed."""
+    """One unit of the last digit of a number as printed, such as "3.69e7"."""
     mantissa, _, power = printed.lower().partition("e")
     decimals = len(mantissa.partition(".")[2])
     return float(10.0 ** (int(power or 0) - decimals))
 
 
-def changed(table: Drivetrain, changes: Mapping[str, float]) -> Drivetrain:
+def with_values(table: Drivetrain, values: Mapping[str, float]) -> Drivetrain:
     """The table with other values, by dotted key such as "stages.0.carrier"."""
     data = table.model_dump(exclude_none=True)
-    for key, value in changes.items():
+    for key, value in values.items():
         *path, last = key.split(".")
         target: Any = data
         for part in path:
@@ -148,18 +149,23 @@ def rounding_band(
     base: Drivetrain | None = None,
     without: frozenset[str] = frozenset(),
 ) -> Floats:
-    """Half width [Hz] of each frequency's band that the rounding of the printed inputs leaves.
+    """Band of each frequency that the rounding of the printed inputs leaves.
 
     Parameters
     ----------
-    name
+    name : str
         Of the table whose digits count.
-    model
+    model : callable
         From a table to its masses.
-    base
-        The table itself, where some of its values have been changed.
-    without
-        Keys of inputs that were, and have no printed digits any more.
+    base : Drivetrain, optional
+        The table with some values changed; the printed one where left out.
+    without : frozenset of str
+        Keys of those values, which have no printed digits any more.
+
+    Returns
+    -------
+    band : (n,) array
+        Half widths [Hz]: every input at its worst within half of its last digit, summed.
     """
     middle = base or table(name)
     band = np.zeros(len(model(middle).inertias))
@@ -168,7 +174,7 @@ def rounding_band(
             continue
         half = digit(printed) / 2
         pair = [
-            natural_modes(model(changed(middle, {key: float(printed) + step}))).frequencies
+            natural_modes(model(with_values(middle, {key: float(printed) + step}))).frequencies
             for step in (half, -half)
         ]
         band += np.abs(pair[0] - pair[1]) / 2
@@ -181,75 +187,19 @@ def observable(modes: Modes, least: float = 1e-9) -> Ints:
     Planets that move against each other, their sum at rest, turn nothing else: the thesis finds
     frequencies from the response of the generator's speed to the rotor's torque, in which these
     modes have no part.
+
+    Parameters
+    ----------
+    modes : Modes
+        Of a model with a mass for each gear.
+    least : float
+        Share of the kinetic energy outside the planets, below which a mode is theirs alone.
+
+    Returns
+    -------
+    numbers : (m,) array
+        From 0, ascending.
     """
     planets = [i for i, name in enumerate(modes.names) if "planet" in name]
     others = np.delete(modes.inertia_shares, planets, axis=0).sum(axis=0)
     return np.flatnonzero(others > least)
-
-
-def judge_printed(
-    label: str,
-    found: Floats,
-    printed: Sequence[str],
-    bands: Floats,
-    source: str,
-    leave_out: frozenset[int] = frozenset(),
-    unit: str = "Hz",
-) -> list[Verdict]:
-    """Frequencies against a table's, but for free turning and what is left out (counted from 1).
-
-    Parameters
-    ----------
-    found, bands
-        With the half width that rounding of the inputs leaves.
-    """
-    return [
-        judge(
-            f"{label}: frequency {mode}",
-            float(f),
-            float(value),
-            tolerance=float(band) + digit(value),
-            relative=False,
-            unit=unit,
-            source=source,
-            reason=ROUNDING,
-            measure="frequency",
-        )
-        for mode, (f, value, band) in enumerate(zip(found, printed, bands, strict=True), start=1)
-        if float(value) != 0.0 and mode not in leave_out
-    ]
-
-
-def judge_count(label: str, wrong: int) -> Verdict:
-    """Whether `independent.certified` found every frequency in its place."""
-    return judge(
-        f"{label}: frequencies that are not where exact counting puts them, of 1e-9",
-        float(wrong),
-        0.0,
-        tolerance=0.5,
-        relative=False,
-        source="Sylvester's law of inertia, in rational arithmetic",
-        reason="a count; 1e-9 is far above what rounding leaves of singular values",
-        measure="identity",
-    )
-
-
-def shapes_chart(caption: str, modes: Modes, speeds: Mapping[str, float], chosen: Ints) -> Chart:
-    """Mode shapes seen from the rotor's shaft (angles over the speed ratio), largest 1."""
-    seen = modes.shapes / np.array([[speeds[name]] for name in modes.names])
-    seen = seen / np.abs(seen).max(axis=0)
-    return chart(
-        caption,
-        [
-            trace(
-                f"{modes.frequencies[m]:.4g} Hz",
-                np.arange(len(modes.names)),
-                seen[:, m],
-                mode="lines+markers",
-                text=list(modes.names),
-            )
-            for m in chosen
-        ],
-        "inertia, from the rotor (0) to the generator",
-        "angle over speed ratio, largest 1",
-    )
