@@ -305,7 +305,7 @@ def with_parts(carrier: float, planet: float) -> Drivetrain:
 def misses(x: Floats) -> Floats:
     """Relative errors of the chosen frequencies with factors on carrier and planet."""
     table = with_parts(x[0] * PLANETARY.carrier, x[1] * PLANETARY.planet)
-    return seen_of(table)[CHOSEN] / TARGETS[CHOSEN] - 1
+    return np.asarray(seen_of(table)[CHOSEN] / TARGETS[CHOSEN] - 1)
 
 
 def restored() -> Restored:

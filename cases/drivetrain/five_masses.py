@@ -211,7 +211,7 @@ def fitted_inputs() -> Restored:
     def misses(factors: Floats) -> Floats:
         values = dict(zip(names, np.multiply(start, factors), strict=True))
         found = natural_modes(changed(SYSTEMS["fixed"], values)).frequencies
-        return found[:3] / targets[:3] - 1
+        return np.asarray(found[:3] / targets[:3] - 1)
 
     solved, _, converged, message = fsolve(misses, np.ones(3), xtol=1e-13, full_output=True)
     if converged != 1:
