@@ -1,9 +1,26 @@
 """Exudyn on drivetrains of scenes: flexible, with modes, and of rigid bodies and springs."""
 
-from typing import Any
+from collections.abc import Callable
+from functools import partial
+from itertools import pairwise
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
+from fe_drivetrain.common import Floats
+from fe_drivetrain.export import (
+    CraigBampton,
+    Superelement,
+    craig_bampton_shaft,
+    free_frequencies,
+    lumped_superelement,
+    natural_frequencies,
+)
+from fe_drivetrain.export.programs import exudyn_system
+from fe_drivetrain.fidelity import scene_supports, shaft_level
+from fe_drivetrain.scene import Scene
+from fe_drivetrain.suite import Page, Record, Run, column
 
 #: Fixed-interface modes of the flexible body, and of the convergence study.
 MODES = 12
@@ -15,178 +32,153 @@ FLOATING = 1e-5
 #: Natural frequencies of the free shaft in the study.
 FREE = 6
 
+_Body = CraigBampton | Superelement
 
-def run(run: Run) -> Any:
+
+@case(
+    "Exudyn: multibody drivetrains from scenes",
+    source="Exudyn (Gerstmayr 2023, Multibody System Dynamics 60, 553-596), run here",
+)
+def run(run: Run, page: Page) -> None:
     """Build multibody systems, let Exudyn solve them, compare."""
-    from itertools import pairwise
-
-    import numpy as np
-
-    from fe_drivetrain.cases.export import (
-        rotor_scenes,
-    )
-    from fe_drivetrain.export import (
-        craig_bampton_shaft,
-        free_frequencies,
-        lumped_superelement,
-        natural_frequencies,
-    )
-    from fe_drivetrain.export.programs import exudyn_system
-    from fe_drivetrain.fidelity import scene_supports, shaft_level
-    from fe_drivetrain.report import Section, Table, Text, judge
-
     version = exudyn_system.exudyn_version()
-    verdicts: list[Any] = []
-    rows: list[list[Any]] = []
-    figures: dict[str, Any] = {}
-    worst = {"reactions": 0.0, "frequencies": 0.0}
-    for name in rotor_scenes.QUICK_SCENES if run.quick else rotor_scenes.SCENES:
+    rows: list[Record] = []
+    for name in QUICK_SCENES if run.quick else SCENES:
         with run.step(f"bearing units of {name}"):
-            scene, units = rotor_scenes.scene_and_units(name)
-        supports = scene_supports(scene, units)
-        with run.step(f"shaft of {name}"):
-            modal = craig_bampton_shaft(scene, MODES, order=rotor_scenes.ORDER)
-            guyan = modal.with_modes(0)
-            points = modal.superelement
-            lumped = lumped_superelement(scene)
-            levels = {
-                1: shaft_level(scene, 1, units),
-                2: shaft_level(scene, 2, units, modal.condensed),
-            }
-        shafts: list[tuple[str, int, Any, Any]] = [
-            ("flexible, Guyan", 2, guyan, exudyn_system.flexible_system),
-            (f"flexible, {MODES} modes", 2, modal, exudyn_system.flexible_system),
-            ("floating frame", 2, points, exudyn_system.floating_system),
-            ("rigid bodies", 1, lumped, exudyn_system.rigid_bodies_system),
-        ]
-        for label, level, body, build in shafts:
-            with run.step(f"Exudyn on {name}"):
-                system = build(body, supports)
-                found = system.reaction_matrix("hub")
-                frequencies = system.frequencies()
-            expected = natural_frequencies(body.points, body.stiffness, body.mass, supports)
-            matrices = levels[level].reaction_matrices
-            # a unit load of each kind puts a force of 1 or so on a support, moments by the arm
-            off = max(
-                float(np.abs(found[at] - matrices[at][:, :6]).max() / np.abs(matrices[at]).max())
-                for at in supports
-            )
-            apart = float(np.abs(frequencies / expected - 1).max())
-            worst["reactions"] = max(worst["reactions"], off)
-            worst["frequencies"] = max(worst["frequencies"], apart)
-            verdicts += [
-                judge(
-                    f"{name}, {label}: reactions of all supports to six unit loads at the hub, "
-                    "largest difference over the largest of the support",
-                    off,
-                    0.0,
-                    tolerance=1e-6,
-                    relative=False,
-                    source=f"level {level} of this project, with the same matrices",
-                    reason="Newton's method leaves 1e-8 of the load; what the shaft turns under it "
-                    "goes with its square, for it is applied both ways",
-                    measure="reaction",
-                ),
-                judge(
-                    f"{name}, {label}: all {len(expected)} natural frequencies, largest relative "
-                    "difference",
-                    apart,
-                    0.0,
-                    tolerance=FLOATING if body is points else 1e-8,
-                    relative=False,
-                    source="eigenvalues of the condensed matrices with the supports",
-                    reason="Exudyn takes the stiffness of a floating frame by differences: of "
-                    "steps of 1e-8 m, springs ten thousand times stiffer than others lose 1e-16 m"
-                    if body is points
-                    else "the same small dense matrices, put together by Exudyn: half of the "
-                    "digits of a square root at least",
-                    measure="identity",
-                ),
-            ]
-            rows.append([name, label, *(float(f) for f in frequencies[:4])])
-            figures[f"{name}, {label}"] = frequencies[:6].tolist()
+            scene, units = scene_and_units(name)
+        rows += scene_rows(run, name, scene, units)
+    for row in rows:
+        label = f"{row['scene']}, {row['shaft']}"
+        floating = row["shaft"] == "floating frame"
+        page.at_most(
+            f"{label}: reactions of all supports to six unit loads at the hub, largest difference "
+            "over the largest of the support",
+            row["reactions"],
+            1e-6,
+            why="Newton's method leaves 1e-8 of the load; what the shaft turns under it goes with "
+            "its square, for it is applied both ways",
+            source=f"level {row['level']} of this project, with the same matrices",
+            measure="reaction",
+        )
+        page.vanishes(
+            f"{label}: all {row['count']} natural frequencies, largest relative difference",
+            row["frequencies"],
+            within=FLOATING if floating else 1e-8,
+            why="Exudyn takes the stiffness of a floating frame by differences: of steps of 1e-8 "
+            "m, springs ten thousand times stiffer than others lose 1e-16 m"
+            if floating
+            else "the same small dense matrices, put together by Exudyn: half of the digits of a "
+            "square root at least",
+            source="eigenvalues of the condensed matrices with the supports",
+        )
+        page.data(label, row["lowest"])
+    page.answer(
+        f"Exudyn {version} carries loads at the hub to the bearings as this project does, to "
+        f"{max(column(rows, 'reactions')):.1e}, whether the shaft is a flexible body, one in a "
+        "floating frame, or rigid bodies with 6x6 connectors.",
+        "Its natural frequencies are those of the condensed matrices to "
+        f"{max(column(rows, 'frequencies')):.1e}.",
+    )
+    page.section("Natural frequencies on the scene's supports")
+    modes = [f"mode {k} [Hz]" for k in range(1, 5)]
+    page.table("The lowest, by Exudyn", rows, ["scene", "shaft", *modes])
+    modes_study(run, page, scene)
 
+
+def scene_rows(run: Run, name: str, scene: Scene, units: dict[str, Floats]) -> list[Record]:
+    """One scene with its shaft in four forms: largest errors, and the lowest frequencies."""
+    supports = scene_supports(scene, units)
+    with run.step(f"shaft of {name}"):
+        modal = craig_bampton_shaft(scene, MODES, order=ORDER)
+        guyan = modal.with_modes(0)
+        points = modal.superelement
+        lumped = lumped_superelement(scene)
+        levels = {
+            1: shaft_level(scene, 1, units),
+            2: shaft_level(scene, 2, units, modal.condensed),
+        }
+    flexible = exudyn_system.flexible_system
+    floating, chain = exudyn_system.floating_system, exudyn_system.rigid_bodies_system
+    forms: list[tuple[str, int, _Body, Callable[[], exudyn_system.System]]] = [
+        ("flexible, Guyan", 2, guyan, partial(flexible, guyan, supports)),
+        (f"flexible, {MODES} modes", 2, modal, partial(flexible, modal, supports)),
+        ("floating frame", 2, points, partial(floating, points, supports)),
+        ("rigid bodies", 1, lumped, partial(chain, lumped, supports)),
+    ]
+    rows = []
+    for label, level, body, build in forms:
+        with run.step(f"Exudyn on {name}"):
+            system = build()
+            found = system.reaction_matrix("hub")
+            frequencies = system.frequencies()
+        assert body.mass is not None
+        expected = natural_frequencies(body.points, body.stiffness, body.mass, supports)
+        exact = levels[level].reaction_matrices
+        rows.append(
+            {
+                "scene": name,
+                "shaft": label,
+                "level": level,
+                "count": len(expected),
+                # a unit load of each kind puts a force of 1 or so on a support, moments by the arm
+                "reactions": max(
+                    float(np.abs(found[at] - exact[at][:, :6]).max() / np.abs(exact[at]).max())
+                    for at in supports
+                ),
+                "frequencies": float(np.abs(frequencies / expected - 1).max()),
+                "lowest": frequencies[:6],
+                **{f"mode {k + 1} [Hz]": frequencies[k] for k in range(4)},
+            }
+        )
+    return rows
+
+
+def modes_study(run: Run, page: Page, scene: Scene) -> None:
+    """How many modes the free shaft of a scene needs, its ends kept."""
+    counts = QUICK_STUDY if run.quick else STUDY
     with run.step("modes of Craig and Bampton"):
-        # the last scene's shaft, free, its ends kept
-        whole = free_frequencies(scene, FREE, order=rotor_scenes.ORDER)[:FREE]
-        study: list[list[Any]] = []
-        series = []
-        counts = QUICK_STUDY if run.quick else STUDY
-        most = craig_bampton_shaft(scene, counts[-1], ("hub", "gearbox"), order=rotor_scenes.ORDER)
-        for modes in counts:
-            body = most.with_modes(modes)
-            f = natural_frequencies(body.points, body.stiffness, body.mass)[6 : 6 + FREE]
-            series.append(f)
-            found_at = [float(100 * (a / b - 1)) for a, b in zip(f, whole, strict=True)]
-            study.append([len(body.omega), *found_at])
+        whole = free_frequencies(scene, FREE, order=ORDER)[:FREE]
+        most = craig_bampton_shaft(scene, counts[-1], ("hub", "gearbox"), order=ORDER)
+        bodies = [most.with_modes(count) for count in counts]
+        series = [
+            natural_frequencies(body.points, body.stiffness, body.mass)[6 : 6 + FREE]
+            for body in bodies
+        ]
+    study = [
+        [len(body.omega), *(100 * (f / whole - 1)).tolist()]
+        for body, f in zip(bodies, series, strict=True)
+    ]
     below = sum(int((f < whole * (1 - 1e-7)).sum()) for f in series)
     rising = sum(int((b > a * (1 + 1e-9)).sum()) for a, b in pairwise(series))
-    for what, count, reason in (
-        ("below the whole meridian's", below, "Rayleigh and Ritz: a reduction is too stiff"),
-        ("that rise with more modes", rising, "the fewer modes are among the more"),
-    ):
-        verdicts.append(
-            judge(
-                f"Craig-Bampton, frequencies {what}",
-                float(count),
-                0.0,
-                tolerance=0.5,
-                relative=False,
-                source="Courant and Fischer",
-                reason=f"a count; {reason}",
-                measure="identity",
-            )
-        )
-    figures["study"] = study
-    return CASE.results(
-        run,
-        summary=[
-            f"Exudyn {version} carries loads at the hub to the bearings as this project does, to "
-            f"{worst['reactions']:.1e}, whether the shaft is a flexible body, one in a floating "
-            "frame, or rigid bodies with 6x6 connectors.",
-            "Its natural frequencies are those of the condensed matrices to "
-            f"{worst['frequencies']:.1e}.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Natural frequencies on the scene's supports",
-                items=[
-                    Table(
-                        caption="The lowest, by Exudyn",
-                        columns=["scene", "shaft", *(f"mode {k} [Hz]" for k in range(1, 5))],
-                        rows=rows,
-                    )
-                ],
-            ),
-            Section(
-                title="How many modes",
-                items=[
-                    Table(
-                        caption=f"Free shaft of {scene.title}, hub and gearbox kept: error of its "
-                        "natural frequencies against the meridian that is not condensed [%]",
-                        columns=["modes", *(f"{f:.1f} Hz" for f in whole)],
-                        rows=study,
-                    ),
-                    Text(
-                        text="Points move as the mean of a face, and stand still as such; the face "
-                        "itself goes on to vibrate. No modes at all is Guyan's condensation."
-                    ),
-                ],
-            ),
-        ],
-        figures=figures,
+    page.equals(
+        "Craig-Bampton, frequencies below the whole meridian's",
+        below,
+        0,
+        within=0.0,
+        relative=False,
+        why="Rayleigh and Ritz: a reduction is too stiff",
+        source="Courant and Fischer",
+        measure="identity",
     )
-
-
-CASE = Case(
-    name="export/exudyn_drivetrain",
-    title="Exudyn: multibody drivetrains from scenes",
-    source="Exudyn (Gerstmayr 2023, Multibody System Dynamics 60, 553-596), run here",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+    page.equals(
+        "Craig-Bampton, frequencies that rise with more modes",
+        rising,
+        0,
+        within=0.0,
+        relative=False,
+        why="the fewer modes are among the more",
+        source="Courant and Fischer",
+        measure="identity",
+    )
+    page.section("How many modes")
+    page.table(
+        f"Free shaft of {scene.title}, hub and gearbox kept: error of its natural frequencies "
+        "against the meridian that is not condensed [%]",
+        study,
+        ["modes", *(f"{f:.1f} Hz" for f in whole)],
+    )
+    page.text(
+        "Points move as the mean of a face, and stand still as such; the face itself goes on to "
+        "vibrate. No modes at all is Guyan's condensation."
+    )
+    page.data("study", study)

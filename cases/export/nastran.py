@@ -1,144 +1,100 @@
 """Condensed matrices as Nastran bulk data (DMIG) and OUTPUT4, read by pyNastran."""
 
-from typing import Any
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
 
-SOURCE = "the matrices before they were written"
-DMIG_REASON = (
-    "sixteen characters of a field keep ten digits at least, of which half of the last is rounded"
-)
-OP4_REASON = "seventeen digits name every double; the rest is one addition of the two triangles"
+from fe_drivetrain import export
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.export.samples import frequencies, matrices, samples
+from fe_drivetrain.common import largest_difference
+from fe_drivetrain.export import pynastran
+from fe_drivetrain.suite import Page, Run, column, grouped
 
-
-def run(run: Run) -> Any:
-    """Write, read by pyNastran, compare."""
-    import tempfile
-    from pathlib import Path
-
-    import numpy as np
-
-    from fe_drivetrain import export
-    from fe_drivetrain.cases.export.samples import (
-        difference,
-        frequencies,
-        samples,
-    )
-    from fe_drivetrain.export import pynastran
-    from fe_drivetrain.report import Section, Table, Text, judge
-
-    pynastran("bdf.bdf")  # absent, it is missed before anything is solved
-    elements = samples(run)
-    rows: list[list[Any]] = []
-    verdicts = []
-    with run.step("write and read"), tempfile.TemporaryDirectory() as name:
-        for label, element in elements.items():
-            for format, tolerance, reason in (
-                ("dmig", 1e-9, DMIG_REASON),
-                ("op4", 1e-15, OP4_REASON),
-            ):
-                path = Path(name) / f"{element.name}{export.FORMATS[format].suffix}"
-                export.write(path, element, format)
-                back = export.read(path, format)
-                pairs = [("stiffness", back.stiffness, element.stiffness)]
-                if element.mass is not None and back.mass is not None:
-                    pairs.append(("mass", back.mass, element.mass))
-                for kind, found, expected in pairs:
-                    worst = difference(found, expected)
-                    rows.append([label, format, kind, len(expected), path.stat().st_size, worst])
-                    verdicts.append(
-                        judge(
-                            f"{label}, {format}: {kind} read less {kind} written, of a unit "
-                            "diagonal",
-                            worst,
-                            0.0,
-                            tolerance=tolerance,
-                            relative=False,
-                            source=SOURCE,
-                            reason=reason,
-                            measure="identity",
-                        )
-                    )
-                if element.supported:
-                    continue
-                verdicts.append(
-                    judge(
-                        f"{label}, {format}: force against rigid motions",
-                        back.rigid_error(),
-                        0.0,
-                        tolerance=1e-9,
-                        relative=False,
-                        source="a free body resists no rigid motion",
-                        reason=DMIG_REASON,
-                        measure="identity",
-                    )
-                )
-                assert element.mass is not None
-                assert back.mass is not None
-                computed = frequencies(back.stiffness, back.mass, 3)
-                expected_hz = frequencies(element.stiffness, element.mass, 3)
-                worst_hz = int(np.argmax(np.abs(computed / expected_hz - 1.0)))
-                verdicts.append(
-                    judge(
-                        f"{label}, {format}: natural frequency {worst_hz + 1} of the first three",
-                        float(computed[worst_hz]),
-                        float(expected_hz[worst_hz]),
-                        unit="Hz",
-                        tolerance=1e-6,
-                        source=SOURCE,
-                        reason="rounding by 1e-10, over the softest elastic motion's share in a "
-                        "unit diagonal, which is above 1e-2",
-                        measure="frequency",
-                    )
-                )
-    worst_of = {f: max(row[-1] for row in rows if row[1] == f) for f in ("dmig", "op4")}
-    return CASE.results(
-        run,
-        summary=[
-            "pyNastran reads the exported DMIG with a largest difference of "
-            f"{worst_of['dmig']:.1e} of a unit diagonal, and OUTPUT4 with {worst_of['op4']:.1e}.",
-            "A symmetric DMIG holds one triangle; the whole matrix comes back from it.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Files",
-                items=[
-                    Table(
-                        caption="Largest difference between what was written and what pyNastran "
-                        "reads",
-                        columns=[
-                            "superelement",
-                            "format",
-                            "matrix",
-                            "freedoms",
-                            "size [bytes]",
-                            "difference of a unit diagonal",
-                        ],
-                        rows=rows,
-                    ),
-                    Text(
-                        text="The file of bulk data has a GRID for each point, and is included in "
-                        "a model; its comments name the points, the matrices and the case control "
-                        "that selects them (K2GG, M2GG)."
-                    ),
-                ],
-            )
-        ],
-        figures={},
-    )
+WRITTEN = "the matrices before they were written"
+#: By format: largest difference that the digits of its numbers leave, and why.
+DIGITS = {
+    "dmig": (
+        1e-9,
+        "sixteen characters of a field keep ten digits at least, of which half of the last is "
+        "rounded",
+    ),
+    "op4": (
+        1e-15,
+        "seventeen digits name every double; the rest is one addition of the two triangles",
+    ),
+}
+DIFFERENCE = "difference of a unit diagonal"
 
 
-CASE = Case(
-    name="export/nastran",
-    title="Nastran DMIG and OUTPUT4 of a shaft and a bearing, read by pyNastran",
+@case(
+    "Nastran DMIG and OUTPUT4 of a shaft and a bearing, read by pyNastran",
     source="MSC Nastran Quick Reference Guide, DMIG; NX Nastran DMAP Programmer's Guide, OUTPUT4; "
     "pyNastran, run here",
-    run=run,
 )
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)
+def run(run: Run, page: Page) -> None:
+    """Write, read by pyNastran, compare."""
+    pynastran("bdf.bdf")  # absent, it is missed before anything is solved
+    elements = samples(run)
+    rows = []
+    for label, element in elements.items():
+        for format, (tolerance, digits) in DIGITS.items():
+            with run.step("write and read"), TemporaryDirectory() as folder:
+                path = Path(folder) / f"{element.name}{export.FORMATS[format].suffix}"
+                export.write(path, element, format)
+                size, back = path.stat().st_size, export.read(path, format)
+            name, found, written = f"{label}, {format}", matrices(back), matrices(element)
+            for kind in written:
+                worst = largest_difference(found[kind], written[kind])
+                page.vanishes(
+                    f"{name}: {kind} read less {kind} written, of a unit diagonal",
+                    worst,
+                    within=tolerance,
+                    why=digits,
+                    source=WRITTEN,
+                )
+                rows.append(
+                    {
+                        "superelement": label,
+                        "format": format,
+                        "matrix": kind,
+                        "degrees of freedom": len(written[kind]),
+                        "size [bytes]": size,
+                        DIFFERENCE: worst,
+                    }
+                )
+            if element.supported:
+                continue
+            page.vanishes(
+                f"{name}: force against rigid motions",
+                back.rigid_error(),
+                within=1e-9,
+                why=DIGITS["dmig"][1],
+                source="a free body resists no rigid motion",
+            )
+            computed, exact = (frequencies(m["stiffness"], m["mass"], 3) for m in (found, written))
+            k = int(np.argmax(np.abs(computed / exact - 1.0)))
+            page.equals(
+                f"{name}: natural frequency {k + 1} of the first three",
+                computed[k],
+                exact[k],
+                within=1e-6,
+                why="rounding by 1e-10, over the softest elastic motion's share in a unit "
+                "diagonal, which is above 1e-2",
+                source=WRITTEN,
+                unit="Hz",
+                measure="frequency",
+            )
+    worst_of = {name: max(column(of, DIFFERENCE)) for name, of in grouped(rows, "format")}
+    page.answer(
+        f"pyNastran reads the exported DMIG with a largest difference of {worst_of['dmig']:.1e} of "
+        f"a unit diagonal, and OUTPUT4 with {worst_of['op4']:.1e}.",
+        "A symmetric DMIG holds one triangle; the whole matrix comes back from it.",
+    )
+    page.section("Files")
+    page.table("Largest difference between what was written and what pyNastran reads", rows)
+    page.text(
+        "The file of bulk data has a GRID for each point, and is included in a model; its comments "
+        "name the points, the matrices and the case control that selects them (K2GG, M2GG)."
+    )

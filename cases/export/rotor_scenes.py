@@ -1,8 +1,8 @@
 """Scenes of the rotor and multibody cases, with their bearing units on coarse meshes."""
 
-from __future__ import annotations
-
-from typing import Any
+from fe_drivetrain.common import Floats
+from fe_drivetrain.fidelity import housing_springs
+from fe_drivetrain.scene import Scene, library_scene
 
 #: Library scenes: full, and quick.
 SCENES, QUICK_SCENES = ("main_bearing_bonded", "two_bearings"), ("two_bearings",)
@@ -14,11 +14,8 @@ FACTOR = 4.0
 ORDER = 4
 
 
-def scene_and_units(name: str) -> tuple[Any, dict[str, Any]]:
+def scene_and_units(name: str) -> tuple[Scene, dict[str, Floats]]:
     """A library scene on a coarse mesh, and the (6, 6) stiffness of each of its bearing units."""
-    from fe_drivetrain.fidelity import housing_springs
-    from fe_drivetrain.scene import library_scene
-
     scene = library_scene(name)
     sizes = scene.mesh.scaled(FACTOR).model_copy(update={"elements_per_turn": 8})
     scene = scene.model_copy(update={"mesh": sizes})

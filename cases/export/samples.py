@@ -1,8 +1,7 @@
-"""Superelements that the export cases write, and how two matrices are compared."""
-
-from __future__ import annotations
+"""Superelements that the export cases write, and their natural frequencies."""
 
 import numpy as np
+from scipy.linalg import eigh
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.export import Superelement, superelement_of
@@ -22,26 +21,22 @@ def samples(run: Run) -> dict[str, Superelement]:
     """
     scene = library_scene(SCENE)
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(FACTOR)})
-    with run.step("free shaft"):
-        shaft = superelement_of(scene, "shaft")
-    if run.quick:
-        return {"free shaft": shaft}
-    with run.step("bearing with housing"):
-        bearing = superelement_of(scene, scene.bearing_units[0].bearing.name)
-    return {"free shaft": shaft, "bearing with housing": bearing}
+    found = {"free shaft": run.timed("free shaft", superelement_of, scene, "shaft")}
+    if not run.quick:
+        bearing = scene.bearing_units[0].bearing.name
+        label = "bearing with housing"
+        found[label] = run.timed(label, superelement_of, scene, bearing)
+    return found
 
 
-def difference(found: Floats, expected: Floats) -> float:
-    """Largest difference, of a unit diagonal: lengths and angles count alike."""
-    diagonal = expected.diagonal()
-    size = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
-    return float(np.abs((found - expected) / np.outer(size, size)).max())
+def matrices(element: Superelement) -> dict[str, Floats]:
+    """Its stiffness, and its mass if it has one."""
+    found = {"stiffness": element.stiffness}
+    return found if element.mass is None else found | {"mass": element.mass}
 
 
 def frequencies(stiffness: Floats, mass: Floats, count: int) -> Floats:
     """The lowest natural frequencies other than those of rigid motions [Hz]."""
-    from scipy.linalg import eigh
-
     size = 1.0 / np.sqrt(np.outer(mass.diagonal(), mass.diagonal()))
     squares = eigh(stiffness * size, mass * size, eigvals_only=True)
     elastic = squares[squares > 1e-6 * squares[-1]]

@@ -1,9 +1,19 @@
 """WISDEM's drivetrain with spring and damper of a finite-element shaft, from its turbine file."""
 
+import warnings
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import MissingToolError
+from fe_drivetrain.export import Torsion, shaft_superelement, torsional_damping, torsional_stiffness
+from fe_drivetrain.export.formats import windio
+from fe_drivetrain.scene import change_scene, library_scene
+from fe_drivetrain.suite import Page, Run
 
 RATIO = 0.05
 #: Main shaft: outer and inner diameter [m].
@@ -22,23 +32,12 @@ components:
 """
 
 
-def run(run: Run) -> Any:
+@case(
+    "WISDEM's drivetrain with the torsion of a finite-element shaft",
+    source="WISDEM and windIO, run here",
+)
+def run(run: Run, page: Page) -> None:
     """Run WISDEM's drivetrain with its own torsion, then with ours from a turbine file."""
-    import tempfile
-    from importlib import import_module
-    from pathlib import Path
-
-    from fe_drivetrain.common import MissingToolError
-    from fe_drivetrain.export import (
-        Torsion,
-        shaft_superelement,
-        torsional_damping,
-        torsional_stiffness,
-    )
-    from fe_drivetrain.export.formats import windio
-    from fe_drivetrain.report import Section, Table, Text, judge
-    from fe_drivetrain.scene import change_scene, library_scene
-
     scene = library_scene("main_bearing_bonded")
     material = scene.material_of("shaft")
     with run.step("WISDEM with its own torsion"):
@@ -51,7 +50,7 @@ def run(run: Run) -> Any:
                 '"fe-drivetrain[wisdem]"'
             ) from error
         problem.run_model()
-    own, length = _torsion(problem), float(problem.get_val("L_lss", units="m")[0])
+    own, length = torsion_of(problem), float(problem.get_val("L_lss", units="m")[0])
     rotor = float(problem["blades_I"][0] + problem["hub_system_I"][0])
     generator = float(problem["generator_I"][0])
 
@@ -71,7 +70,7 @@ def run(run: Run) -> Any:
     softer = 1.0 / (1.0 / spring + 1.0 / (5 * spring) + 1.0 / (3 * spring))
     ours = Torsion(softer, torsional_damping(RATIO, softer, rotor, generator))
 
-    with run.step("WISDEM with ours"), tempfile.TemporaryDirectory() as name:
+    with run.step("WISDEM with ours"), TemporaryDirectory() as name:
         path = Path(name) / "turbine.yaml"
         path.write_text(TURBINE)
         windio.write_torsion(path, path, ours, "wisdem", overwrite=True)
@@ -79,78 +78,60 @@ def run(run: Run) -> Any:
         for key in ("spring_constant_user", "damping_coefficient_user"):
             problem[f"drivetrain_{key}"] = given[key]
         problem.run_model()
-        used = _torsion(problem)
+        used = torsion_of(problem)
         windio.write_torsion(path, path, ours, "windio", overwrite=True)
         stated = load_yaml(path)["components"]["drivetrain"]["elastic_properties"]
-    digits = "the file keeps every digit"
-    verdicts = [
-        judge(
-            "main shaft: stiffness of the finite-element model",
-            spring,
-            own.spring,
-            unit="N m/rad",
-            tolerance=1e-9,
-            source="WISDEM's drivetrain, G J / L of its uniform shaft",
-            reason="the elements contain the exact solution: round-off of the condensation",
-            measure="stiffness",
-        ),
-    ]
+    page.equals(
+        "main shaft: stiffness of the finite-element model",
+        spring,
+        own.spring,
+        within=1e-9,
+        why="the elements contain the exact solution: round-off of the condensation",
+        source="WISDEM's drivetrain, G J / L of its uniform shaft",
+        unit="N m/rad",
+        measure="stiffness",
+    )
     for quantity, found, expected, unit in (
         ("spring that WISDEM goes on with", used.spring, ours.spring, "N m/rad"),
         ("damper that WISDEM goes on with", used.damper, ours.damper, "N m s/rad"),
         ("spring_constant in windIO", stated["spring_constant"], ours.spring, "N m/rad"),
         ("damping_coefficient in windIO", stated["damping_coefficient"], ours.damper, "N m s/rad"),
     ):
-        verdicts.append(
-            judge(
-                quantity,
-                found,
-                expected,
-                unit=unit,
-                tolerance=0.0,
-                source="what was written",
-                reason=digits,
-                measure="identity",
-            )
+        page.equals(
+            quantity,
+            found,
+            expected,
+            within=0.0,
+            why="the file keeps every digit",
+            source="what was written",
+            unit=unit,
+            measure="identity",
         )
-    return CASE.results(
-        run,
-        summary=[
-            f"WISDEM's drivetrain takes {used.spring:.4g} N m/rad from the turbine file in place "
-            f"of its own {own.spring:.4g} N m/rad, and the damper with it.",
-            "For a uniform shaft its own stiffness is that of the finite-element shaft.",
-        ],
-        verdicts=verdicts,
-        sections=[
-            Section(
-                title="Torsion of the drivetrain",
-                items=[
-                    Text(
-                        text="WISDEM's damper is its damping ratio times that of critical with the "
-                        "generator held; ours is of the mode in which rotor and generator turn "
-                        "against each other, which has less inertia. WISDEM 4.2 looks for its "
-                        "overrides beside the drivetrain's other values, not in its elastic "
-                        "properties, where its schema lists them. The turbine is made up."
-                    ),
-                    Table(
-                        caption="Direct drive, low-speed side",
-                        columns=["", "spring [N m/rad]", "damper [N m s/rad]"],
-                        rows=[["WISDEM's own", *own], ["with ours", *used]],
-                    ),
-                ],
-            ),
-        ],
-        figures={"own": list(own), "used": list(used)},
+    page.answer(
+        f"WISDEM's drivetrain takes {used.spring:.4g} N m/rad from the turbine file in place of "
+        f"its own {own.spring:.4g} N m/rad, and the damper with it.",
+        "For a uniform shaft its own stiffness is that of the finite-element shaft.",
     )
+    page.section("Torsion of the drivetrain")
+    page.text(
+        "WISDEM's damper is its damping ratio times that of critical with the generator held; ours "
+        "is of the mode in which rotor and generator turn against each other, which has less "
+        "inertia. WISDEM 4.2 looks for its overrides beside the drivetrain's other values, not in "
+        "its elastic properties, where its schema lists them. The turbine is made up."
+    )
+    page.table(
+        "Direct drive, low-speed side",
+        [
+            {"": name, "spring [N m/rad]": torsion.spring, "damper [N m s/rad]": torsion.damper}
+            for name, torsion in (("WISDEM's own", own), ("with ours", used))
+        ],
+    )
+    page.data("own", list(own))
+    page.data("used", list(used))
 
 
 def drivetrain(young: float, shear: float) -> Any:
     """WISDEM's direct drivetrain of a made-up turbine; moduli of its steel [Pa]."""
-    import warnings
-    from importlib import import_module
-
-    import numpy as np
-
     with warnings.catch_warnings():
         # openmdao's and WISDEM's own
         warnings.simplefilter("ignore")
@@ -241,23 +222,9 @@ def drivetrain(young: float, shear: float) -> Any:
     return problem
 
 
-def _torsion(problem: Any) -> Any:
-    from fe_drivetrain.export import Torsion
-
+def torsion_of(problem: Any) -> Torsion:
+    """Spring and damper that WISDEM goes on with."""
     return Torsion(
         float(problem.get_val("drivetrain_spring_constant", units="N*m/rad")[0]),
         float(problem.get_val("drivetrain_damping_coefficient", units="N*m*s/rad")[0]),
     )
-
-
-CASE = Case(
-    name="export/wisdem",
-    title="WISDEM's drivetrain with the torsion of a finite-element shaft",
-    source="WISDEM and windIO, run here",
-    run=run,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)

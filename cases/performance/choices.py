@@ -59,17 +59,19 @@ class Outcome:
 
     Attributes
     ----------
-    element, mesh, solve
-        The choice.
-    used
+    element, mesh : str
+        The choice, with `solve`.
+    solve : Solve
+        The choice, with `element` and `mesh`.
+    used : str
         Solver that gave the solution: another than the one asked for where that fell back.
-    unknowns, iterations, bytes
+    unknowns, iterations, bytes : int
         Of the system, of the iteration, and held by factor or hierarchy.
-    seconds
+    seconds : dict of str to float
         Wall time of each of `STEPS`, the median where it was repeated.
-    values
+    values : ndarray
         (q,) the quantities that were computed.
-    volume_error
+    volume_error : float
         Relative error of the mesh's volume; 0 where it is not known.
     """
 
@@ -107,15 +109,15 @@ class Level:
 
     Attributes
     ----------
-    element
+    element : str
         One of `ELEMENTS`.
-    size
+    size : float
         Element size [m].
-    turn
+    turn : int
         Elements round any cylinder, at least.
-    grading
+    grading : Grading
         Of hexahedra.
-    refinement
+    refinement : int
         Of hexahedra: each element cut into so many along its three directions.
     """
 
@@ -204,7 +206,7 @@ def assemble_shaft(shaft: Shaft, material: Material, mesh: SolidShaft) -> Assemb
 
 
 def _loads(T: Any, point: ReferencePoint) -> Floats:
-    """The six unit loads at a reference point on the degrees of freedom left, (n, 6)."""
+    """The six unit loads at a reference point on the remaining degrees of freedom, (n, 6)."""
     return np.asarray(T.T @ point.motion.T.toarray())
 
 
@@ -219,9 +221,9 @@ def shaft_outcomes(
 
     Parameters
     ----------
-    solves
+    solves : iterable of Solve
         Those that need not be tried on a system of this size are left out.
-    repeats
+    repeats : int, optional
         How often what takes little time is done, for a median.
     """
     mesh, meshing = timed(lambda: mesh_shaft(shaft, level), repeats)
@@ -263,11 +265,13 @@ def solved(
 
     Parameters
     ----------
-    element, mesh
+    element, mesh : str
         What it is a system of.
-    before
+    before : tuple of two floats
         Wall time of mesh and of assembly [s].
-    solves, repeats
+    solves : iterable of Solve
+        As for `shaft_outcomes`.
+    repeats : int, optional
         As for `shaft_outcomes`.
     """
     system, loads, quantities = assembled

@@ -12,9 +12,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
-from fe_drivetrain.cases.performance import (
-    choices,
-)
+from fe_drivetrain.cases.performance import choices
 from fe_drivetrain.common import run_python
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS
@@ -37,13 +35,13 @@ class Grown:
 
     Attributes
     ----------
-    unknowns
+    unknowns : int
         Of the system.
-    used
+    used : str
         The solver.
-    seconds
+    seconds : dict of str to float
         Wall time of each step.
-    peak_bytes
+    peak_bytes : int
         Largest resident memory of the process, interpreter and libraries included.
     """
 
@@ -63,14 +61,16 @@ def grown(size: float, turn: int, method: str = "auto") -> Grown | None:
 
     Parameters
     ----------
-    size, turn
-        Element size [m], elements round any cylinder.
-    method
+    size : float
+        Element size [m].
+    turn : int
+        Elements round any cylinder.
+    method : str, optional
         Of `fe_drivetrain.solve.solvers`.
 
     Returns
     -------
-    Grown
+    Grown or None
         None where the process failed or took too long: no time is made up for it.
     """
     command = ["-m", __name__, str(size), str(turn), method]

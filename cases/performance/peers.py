@@ -1,66 +1,31 @@
 """This project beside the tools that would otherwise be used: time, memory, accuracy."""
 
-from __future__ import annotations
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from typing import TYPE_CHECKING, Any
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.performance import problems, rounds
+from fe_drivetrain.cases.performance.peer_settings import OURS, plan_of, settings_of
+from fe_drivetrain.cases.performance.problems import BENCHMARKS, Benchmark
+from fe_drivetrain.cases.performance.rounds import EQUAL, Plan, Row
+from fe_drivetrain.cases.performance.tools.launch import (
+    Outcome,
+    Variant,
+    how_to_install,
+    interpreters,
+    launch,
+    parse,
+)
+from fe_drivetrain.cases.performance.tools.runner import write_problem
+from fe_drivetrain.common import Progress
+from fe_drivetrain.report import Cell, formatted, trace
+from fe_drivetrain.suite import Page, Record, Run
 
-from fe_drivetrain.suite import OldCase as Case
-from fe_drivetrain.suite import Run
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fe_drivetrain.cases.performance.problems import (
-        Benchmark,
-    )
-    from fe_drivetrain.cases.performance.rounds import (
-        Plan,
-        Row,
-    )
-    from fe_drivetrain.cases.performance.tools.launch import (
-        Outcome,
-        Variant,
-    )
-
-SIZES = (10_000, 50_000, 110_000, 300_000, 1_000_000)
-QUICK_SIZES = (10_000,)
 WARM_UP = 4_000
 
-JUDGED_FROM = 30_000
-"""Unknowns from which on this project shall be the fastest."""
-
-OURS = "this_project"
-
-DEFAULT_TOOLS = (
-    OURS,
-    "scikit_fem.superlu",
-    "scikit_fem.pyamg",
-    "calculix",
-    "ngsolve",
-    "sfepy.pardiso",
-    "felupe.pardiso",
-    "felupe.pardiso_own",
-    "dolfinx",
-)
-"""With the solvers that serve each tool best; the others by ``--set tools=[...]``."""
-
-DEFAULTS: dict[str, Any] = {
-    "tools": list(DEFAULT_TOOLS),
-    "problems": ["shaft", "assembly"],
-    "sizes": list(SIZES),
-    "repetitions": 5,
-    "budget": 6.0,
-    "time_limit": 30.0,
-    "memory_limit": 12.0,
-    "threads": 2,
-}
-
-QUICK: dict[str, Any] = {
-    "tools": [f"{OURS}.auto", "scikit_fem.superlu"],
-    "problems": ["shaft"],
-    "sizes": list(QUICK_SIZES),
-    "repetitions": 1,
-}
+COMPARED_FROM = 30_000
+"""Unknowns from which on being the fastest of all is the goal."""
 
 COLOURS = {
     OURS: "#1f2933",
@@ -75,37 +40,28 @@ DASHES = ("solid", "dash", "dot", "dashdot")
 SYMBOLS = ("circle", "square", "diamond", "x")
 
 
-def run(run: Run) -> Any:
+@case(
+    "Speed and memory beside other finite-element tools, at equal error",
+    source="Measured here: the same meshes, boundary conditions and answers for every tool",
+    alone=True,
+)
+def run(run: Run, page: Page) -> None:
     """Run every tool on every mesh in turns, and compare what they took at equal error."""
-    import tempfile
-    from pathlib import Path
-
-    from fe_drivetrain.cases.performance import (
-        problems,
-        rounds,
-    )
-    from fe_drivetrain.cases.performance.tools.launch import (
-        parse,
-    )
-    from fe_drivetrain.cases.performance.tools.runner import (
-        write_problem,
-    )
-
+    page.seed = None
     settings = settings_of(run)
     plan = plan_of(settings)
-    variants = parse([OURS, *settings["tools"]]) if not _has_ours(settings) else None
-    variants = variants or parse(settings["tools"])
-    rows: dict[str, list[Row]] = {}
-    benchmarks = {name: problems.BENCHMARKS[name]() for name in settings["problems"]}
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        warm_up, problem_file = folder / "warm_up.npz", folder / "problem.npz"
+    has_ours = any(str(name).partition(".")[0] == OURS for name in settings["tools"])
+    variants = parse([*([] if has_ours else [OURS]), *settings["tools"]])
+    benchmarks = [BENCHMARKS[name]() for name in settings["problems"]]
+    found: list[list[Row]] = []
+    with TemporaryDirectory() as name:
+        warm_up, problem_file = Path(name) / "warm_up.npz", Path(name) / "problem.npz"
         with run.step("tools: a first small run"):
             write_problem(problems.of_size(problems.hollow_shaft(), WARM_UP), warm_up)
             first = first_runs(variants, warm_up, plan, run.report)
         there = [(v, first[v][1]) for v in variants if first[v][0].status != "missing"]
-        for key, benchmark in benchmarks.items():
-            rows[key] = []
+        for benchmark in benchmarks:
+            rows: list[Row] = []
             for size in settings["sizes"]:
                 with run.step("meshes"):
                     problem = problems.of_size(benchmark, size)
@@ -113,100 +69,57 @@ def run(run: Run) -> Any:
                 unknowns = problem.n_unknowns
                 del problem
                 with run.step(f"{benchmark.title}: {unknowns:,} unknowns"):
-                    rows[key] += rounds.run_rounds(
-                        there, problem_file, warm_up, unknowns, plan, rows[key], run.report
+                    rows += rounds.run_rounds(
+                        there, problem_file, warm_up, unknowns, plan, rows, run.report
                     )
-    references = {
-        key: {n: rounds.judge_errors(of_mesh(found, n)) for n in meshes_of(found)}
-        for key, found in rows.items()
-    }
-    return results_of(run, settings, plan, benchmarks, rows, references, first)
+            found.append(rows)
+    references = [
+        {n: rounds.judge_errors(of_mesh(rows, n)) for n in meshes_of(rows)} for rows in found
+    ]
+    for benchmark, rows in zip(benchmarks, found, strict=True):
+        check(page, benchmark, rows)
+        page.answer(in_a_sentence(benchmark, rows))
+    missing = sorted({v.tool_name for v, (o, _) in first.items() if o.status == "missing"})
+    if missing:
+        page.answer(f"Not installed here: {', '.join(missing)}.")
 
-
-def settings_of(run: Run) -> dict[str, Any]:
-    """The user's settings on top of the defaults.
-
-    Raises
-    ------
-    InputError
-        A setting is unknown or out of its range.
-    """
-    from fe_drivetrain.cases.performance.problems import (
-        BENCHMARKS,
-    )
-    from fe_drivetrain.cases.performance.tools.launch import (
-        TOOLS,
-        parse,
-    )
-    from fe_drivetrain.common import InputError
-
-    quick = QUICK if run.quick else {}
-    unknown = sorted(set(run.settings) - set(DEFAULTS))
-    if unknown:
-        raise InputError(f"setting {unknown[0]!r} is unknown: use one of {', '.join(DEFAULTS)}")
-    settings = DEFAULTS | quick | dict(run.settings)
-    for key in ("tools", "problems", "sizes"):
-        value = settings[key]
-        settings[key] = list(value) if isinstance(value, list | tuple) else [value]
-        if not settings[key]:
-            raise InputError(f"{key} is empty: name one at the least")
-    try:
-        parse(list(map(str, settings["tools"])))
-    except KeyError as error:
-        raise InputError(
-            f"tools: {error.args[0]!r} is unknown: use some of {', '.join(TOOLS)}, all solvers of "
-            "a tool, or one as in ngsolve.multigrid"
-        ) from error
-    for name in settings["problems"]:
-        if name not in BENCHMARKS:
-            raise InputError(f"problems: {name!r} is unknown: use some of {', '.join(BENCHMARKS)}")
-    for size in settings["sizes"]:
-        if isinstance(size, bool) or not isinstance(size, int) or not 1000 <= size <= 5_000_000:
-            raise InputError(f"sizes: {size!r} must be a whole number from 1000 to 5000000")
-    settings["sizes"] = sorted(set(settings["sizes"]))
-    ranges = {
-        "repetitions": (1, 100),
-        "budget": (0.0, 3600.0),
-        "time_limit": (1.0, 86400.0),
-        "memory_limit": (0.5, 4096.0),
-        "threads": (1, 256),
-    }
-    for key, (low, high) in ranges.items():
-        value = settings[key]
-        whole = key in ("repetitions", "threads")
-        kind = int if whole else int | float
-        if isinstance(value, bool) or not isinstance(value, kind) or not low <= value <= high:
-            raise InputError(
-                f"{key} = {value!r} must be a {'whole ' if whole else ''}number from {low:g} to "
-                f"{high:g}"
-            )
-    return settings
-
-
-def plan_of(settings: dict[str, Any]) -> Plan:
-    """Repetitions and limits."""
-    from fe_drivetrain.cases.performance.rounds import (
-        Plan,
-    )
-    from fe_drivetrain.cases.performance.tools.launch import (
-        Limits,
-    )
-
-    limits = Limits(
-        float(settings["time_limit"]), settings["memory_limit"] * 2.0**30, settings["threads"]
-    )
-    return Plan(settings["repetitions"], float(settings["budget"]), limits)
+    page.section("Time at equal error")
+    for benchmark, rows in zip(benchmarks, found, strict=True):
+        show_time(page, benchmark, rows, plan)
+    page.section("Memory")
+    for benchmark, rows in zip(benchmarks, found, strict=True):
+        show_memory(page, benchmark, rows)
+    for benchmark, rows, known in zip(benchmarks, found, references, strict=True):
+        page.section(benchmark.title)
+        for n in meshes_of(rows):
+            show_mesh(page, benchmark, of_mesh(rows, n), n, known[n])
+    page.section("Tools")
+    show_tools(page, first, plan)
+    page.section("How it was measured")
+    for text in method(plan):
+        page.text(text)
+    for key, rows in zip(settings["problems"], found, strict=True):
+        page.data(
+            key,
+            [
+                {
+                    "tool": str(r.variant),
+                    "unknowns": r.unknowns,
+                    "seconds": [f["seconds"] for f in r.found],
+                    "bytes": [f["peak_bytes"] for f in r.found],
+                    "stiffness": r.stiffness,
+                    "error": r.error,
+                    "trouble": r.trouble,
+                }
+                for r in rows
+            ],
+        )
 
 
 def first_runs(
-    variants: Sequence[Variant], warm_up: Any, plan: Plan, report: Any
+    variants: Sequence[Variant], warm_up: Path, plan: Plan, report: Progress
 ) -> dict[Variant, tuple[Outcome, str]]:
     """Run every tool once on the small problem: which are there, and in which Python."""
-    from fe_drivetrain.cases.performance.tools.launch import (
-        interpreters,
-        launch,
-    )
-
     found = {}
     for variant in variants:
         report(f"{variant.name}: a first small run")
@@ -229,354 +142,155 @@ def of_mesh(rows: Sequence[Row], unknowns: int) -> list[Row]:
     return [row for row in rows if row.unknowns == unknowns]
 
 
-def _has_ours(settings: dict[str, Any]) -> bool:
-    return any(str(name).partition(".")[0] == OURS for name in settings["tools"])
-
-
-def results_of(
-    run: Run,
-    settings: dict[str, Any],
-    plan: Plan,
-    benchmarks: dict[str, Benchmark],
-    rows: dict[str, list[Row]],
-    references: dict[str, dict[int, dict[str, float]]],
-    first: dict[Variant, tuple[Outcome, str]],
-) -> Any:
-    """The page."""
-    from fe_drivetrain.report import Section, Text
-
-    verdicts = [
-        verdict for key, b in benchmarks.items() for verdict in verdicts_of(b, rows[key], plan)
-    ]
-    comparison: list[Any] = []
-    memory: list[Any] = []
-    for key, benchmark in benchmarks.items():
-        comparison += [ratio_table(benchmark, rows[key], plan), time_chart(benchmark, rows[key])]
-        memory += [memory_table(benchmark, rows[key]), memory_chart(benchmark, rows[key])]
-    missing = sorted({v.tool_name for v, (o, _) in first.items() if o.status == "missing"})
-    sections = [
-        Section(title="Time at equal error", items=comparison),
-        Section(title="Memory", items=memory),
-        *(
-            Section(
-                title=benchmark.title,
-                items=[
-                    mesh_table(benchmark, of_mesh(rows[key], n), n, references[key][n])
-                    for n in meshes_of(rows[key])
-                ],
-            )
-            for key, benchmark in benchmarks.items()
-        ),
-        Section(title="Tools", items=[tool_table(first, plan), *missing_tables(first)]),
-        Section(title="How it was measured", items=[Text(text=text) for text in method(plan)]),
-    ]
-    return CASE.results(
-        run,
-        seed=None,
-        summary=summary_of(benchmarks, rows, missing),
-        verdicts=verdicts,
-        sections=sections,
-        figures={
-            key: [
-                {
-                    "tool": str(r.variant),
-                    "unknowns": r.unknowns,
-                    "seconds": [f["seconds"] for f in r.found],
-                    "bytes": [f["peak_bytes"] for f in r.found],
-                    "stiffness": r.stiffness,
-                    "error": r.error,
-                    "trouble": r.trouble,
-                }
-                for r in found
-            ]
-            for key, found in rows.items()
-        },
-    )
-
-
-def verdicts_of(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> list[Any]:
-    """Faster than any other, with less memory than any direct one; the same answer."""
-    from fe_drivetrain.cases.performance import (
-        rounds,
-    )
-    from fe_drivetrain.report import judge
-
-    found = []
+def check(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> None:
+    """The same answer from every direct solver, and the exact one where it is known."""
     for n in meshes_of(rows):
         here = of_mesh(rows, n)
-        ours = rounds.of_tool(here, OURS, "auto")
-        peers = [r for r in here if r.variant.tool != OURS]
-        if ours is None or not peers:
-            continue
-        label = f"{benchmark.title}, {n:,} unknowns"
         direct = [r for r in here if r.variant.kind == "direct" and r.variant.rule == "common"]
         errors = [r.error for r in direct if r.error is not None]
-        if len(errors) > 1:
-            found.append(
-                judge(
-                    f"{label}: largest difference of a direct solver's stiffness from their median",
-                    max(errors),
-                    0.0,
-                    tolerance=rounds.EQUAL,
-                    relative=False,
-                    source="the other tools, same mesh, same quadrature",
-                    reason="the same equations: six digits are asked for, round-off is less",
-                )
+        peers = any(r.variant.tool != OURS for r in here)
+        if len(errors) > 1 and peers and rounds.of_tool(here, OURS, "auto"):
+            page.vanishes(
+                f"{benchmark.title}, {n:,} unknowns: largest difference of a direct solver's "
+                "stiffness from their median",
+                max(errors),
+                within=EQUAL,
+                why="the same equations: six digits are asked for, round-off is less",
+                source="the other tools, same mesh, same quadrature",
             )
-        if n < JUDGED_FROM:
-            continue
-        found.append(_time_verdict(label, ours, here, plan))
-        lean = rounds.leanest_direct_peer(here)
-        if lean is not None and lean.bytes:
-            found.append(
-                judge(
-                    f"{label}: peak memory of this project as a share of the leanest direct peer's "
-                    f"({lean.variant.name})",
-                    ours.bytes / lean.bytes if ours.bytes else float("nan"),
-                    0.0,
-                    tolerance=1.0,
-                    relative=False,
-                    source="measured in this run",
-                    reason="less memory than any direct solver is the goal",
-                )
-            )
-    exact = _exact_verdict(benchmark, rows)
-    return [*found, *([exact] if exact else [])]
-
-
-def _time_verdict(label: str, ours: Row, here: Sequence[Row], plan: Plan) -> Any:
-    from fe_drivetrain.cases.performance import (
-        rounds,
-    )
-    from fe_drivetrain.report import judge
-
-    peer = rounds.fastest_peer(here)
-    if peer is not None and peer.seconds:
-        name, least = peer.variant.name, peer.seconds
-    else:
-        name, least = f"none is below {plan.limits.seconds:g} s", plan.limits.seconds
-    share = ours.seconds / least if ours.seconds and ours.reaches else float("nan")
-    return judge(
-        f"{label}: time of this project as a share of the fastest peer's ({name})",
-        share,
-        0.0,
-        tolerance=1.0,
-        relative=False,
-        source="medians of this run, at a stiffness within 1e-6",
-        reason="faster than each of them is the goal",
-    )
-
-
-def _exact_verdict(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
-    from fe_drivetrain.cases.performance import (
-        rounds,
-    )
-    from fe_drivetrain.report import judge
-
     done = [r for r in rows if r.variant.tool == OURS and r.variant.key == "auto" and r.found]
     if benchmark.exact is None or not done:
-        return None
+        return
     finest = max(done, key=lambda r: r.unknowns)
     assert finest.stiffness is not None
-    return judge(
+    fine = finest.unknowns >= COMPARED_FROM
+    page.equals(
         f"{benchmark.title}, {finest.unknowns:,} unknowns: {benchmark.quantity}",
         finest.stiffness,
         benchmark.exact,
-        tolerance=1e-5 if finest.unknowns >= JUDGED_FROM else 1e-2,
+        within=1e-5 if fine else 1e-2,
+        why="what the shape of the curved elements leaves, which falls with the fourth power of "
+        "the angle of an element, a quarter of a radian at most on such a mesh; the solver's share "
+        f"is below {small(EQUAL)}"
+        if fine
+        else "a parabola through three points of an arc of angle a leaves a^4 / 500 of its radius, "
+        "and the stiffness goes with the fourth power of that: 1e-2 of six elements a turn, the "
+        "fewest of any mesh",
         source="exact, G J / L",
-        reason="what the shape of the curved elements leaves; the solver's share is "
-        f"below {_small(rounds.EQUAL)}",
         unit=benchmark.unit,
     )
 
 
-def summary_of(
-    benchmarks: dict[str, Benchmark], rows: dict[str, list[Row]], missing: Sequence[str]
-) -> list[str]:
-    """The answer in a few sentences."""
-    from fe_drivetrain.cases.performance import (
-        rounds,
-    )
+def shares(rows: Sequence[Row], plan: Plan) -> list[Record]:
+    """Time and memory of this project as shares of the best other's, on meshes that are compared.
 
-    sentences = []
-    for key, benchmark in benchmarks.items():
-        parts = []
-        for n in meshes_of(rows[key]):
-            here = of_mesh(rows[key], n)
-            ours, peer = rounds.of_tool(here, OURS, "auto"), rounds.fastest_peer(here)
-            mine = "no answer" if ours is None or ours.seconds is None else f"{ours.seconds:.2g} s"
-            other = "no other in time"
-            if peer is not None and peer.seconds is not None:
-                other = f"the fastest other {peer.seconds:.2g} s ({peer.variant.name})"
-            parts.append(f"{n:,} unknowns {mine}, {other}")
-        sentences.append(f"{benchmark.title}, this project: {'; '.join(parts)}.")
-    if missing:
-        sentences.append(f"Not installed here: {', '.join(missing)}.")
-    return sentences
+    Where no other tool comes to an end within the time limit, the limit stands for the fastest.
+    """
+    found: list[Record] = []
+    for n in meshes_of(rows):
+        here = of_mesh(rows, n)
+        ours = rounds.of_tool(here, OURS, "auto")
+        if n < COMPARED_FROM or ours is None or all(r.variant.tool == OURS for r in here):
+            continue
+        peer, lean = rounds.fastest_peer(here), rounds.leanest_direct_peer(here)
+        name, least = f"none is below {plan.limits.seconds:g} s", plan.limits.seconds
+        if peer is not None and peer.seconds:
+            name, least = peer.variant.name, peer.seconds
+        found.append(
+            {
+                "unknowns": n,
+                "fastest other": name,
+                "time, share of its": ours.seconds / least
+                if ours.seconds and ours.reaches
+                else None,
+                "leanest direct other": lean.variant.name if lean else "none",
+                "peak memory, share of its": ours.bytes / lean.bytes
+                if ours.bytes and lean and lean.bytes
+                else None,
+            }
+        )
+    return found
 
 
-def ratio_table(benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> Any:
+def in_a_sentence(benchmark: Benchmark, rows: Sequence[Row]) -> str:
+    """What this project and the fastest other took on every mesh."""
+    parts = []
+    for n in meshes_of(rows):
+        here = of_mesh(rows, n)
+        ours, peer = rounds.of_tool(here, OURS, "auto"), rounds.fastest_peer(here)
+        mine = "no answer" if ours is None or ours.seconds is None else f"{ours.seconds:.2g} s"
+        other = "no other in time"
+        if peer is not None and peer.seconds is not None:
+            other = f"the fastest other {peer.seconds:.2g} s ({peer.variant.name})"
+        parts.append(f"{n:,} unknowns {mine}, {other}")
+    return f"{benchmark.title}, this project: {'; '.join(parts)}."
+
+
+def by_mesh(
+    page: Page, caption: str, rows: Sequence[Row], cell: Callable[[Row, int], Cell]
+) -> None:
+    """A table with a row for each tool and a column for each mesh."""
+    meshes = meshes_of(rows)
+    table: list[list[Cell]] = []
+    for variant in dict.fromkeys(r.variant for r in rows):
+        mine = {r.unknowns: r for r in rows if r.variant == variant}
+        table.append([variant.name, *(cell(mine[n], n) if n in mine else None for n in meshes)])
+    page.table(caption, table, ["tool and solver", *(f"{n:,} unknowns" for n in meshes)])
+
+
+def show_time(page: Page, benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> None:
     """How many times this project's time each tool takes, where it reaches the same error."""
-    from fe_drivetrain.cases.performance import (
-        rounds,
+    ours = {n: rounds.of_tool(of_mesh(rows, n), OURS, "auto") for n in meshes_of(rows)}
+
+    def ratio(row: Row, unknowns: int) -> Cell:
+        mine = ours[unknowns]
+        if mine is None or mine.seconds is None:
+            return None
+        if row.seconds is not None:
+            if row.reaches:
+                return float(f"{row.seconds / mine.seconds:.3g}")
+            return f"error {small(row.error)}" if row.error is not None else None
+        if row.least_seconds is not None:
+            return f"> {row.least_seconds / mine.seconds:.2g}"
+        return row.trouble
+
+    compared = shares(rows, plan)
+    if compared:
+        page.table(
+            f"{benchmark.title}: this project (auto) against the best of the others, from "
+            f"{COMPARED_FROM:,} unknowns on; the goal is to be the fastest, and to take less "
+            "memory than any direct solver: below 1",
+            compared,
+        )
+    by_mesh(
+        page,
+        f"{benchmark.title}: time as a multiple of this project's (auto), for solvers that leave "
+        f"less than {small(EQUAL)} of the stiffness; > where a run was ended, or not begun, "
+        f"because it would take over {plan.limits.seconds:g} s",
+        rows,
+        ratio,
     )
-    from fe_drivetrain.report import Table
-
-    meshes = meshes_of(rows)
-    ours = {n: rounds.of_tool(of_mesh(rows, n), OURS, "auto") for n in meshes}
-    table: list[list[Any]] = []
-    for variant in dict.fromkeys(r.variant for r in rows):
-        line: list[Any] = [variant.name]
-        for n in meshes:
-            row = rounds.of_tool(of_mesh(rows, n), variant.tool, variant.key)
-            mine = ours[n]
-            line.append(_ratio(row, mine.seconds if mine else None))
-        table.append(line)
-    return Table(
-        caption=f"{benchmark.title}: time as a multiple of this project's (auto), for solvers that "
-        f"leave less than {_small(rounds.EQUAL)} of the stiffness; > where a run was ended, or not "
-        f"begun, because it would take over {plan.limits.seconds:g} s",
-        columns=["tool and solver", *(f"{n:,} unknowns" for n in meshes)],
-        rows=table,
-    )
-
-
-def _ratio(row: Row | None, ours: float | None) -> Any:
-    if row is None or ours is None:
-        return None
-    if row.seconds is not None:
-        if row.reaches:
-            return float(f"{row.seconds / ours:.3g}")
-        return f"error {_small(row.error)}" if row.error is not None else None
-    if row.least_seconds is not None:
-        return f"> {row.least_seconds / ours:.2g}"
-    return row.trouble
-
-
-def mesh_table(
-    benchmark: Benchmark, rows: Sequence[Row], unknowns: int, references: dict[str, float]
-) -> Any:
-    """All that was measured on one mesh."""
-
-    from fe_drivetrain.report import Table
-
-    exact = benchmark.exact
-    table: list[list[Any]] = []
-    for row in rows:
-        times = [f["seconds"] for f in row.found]
-        spread = round(100 * (max(times) - min(times)) / max(times)) if len(times) > 1 else None
-        line = [
-            row.variant.name,
-            _rounded(row.seconds),
-            spread,
-            len(times),
-            None if row.loading is None else round(row.loading, 3),
-            _rounded(row.step("assembly")),
-            _rounded(row.step("solve")),
-            row.found[0]["iterations"] if row.found else None,
-            _rounded(row.error, 2),
-        ]
-        if exact is not None:
-            off = None if row.stiffness is None else row.stiffness / exact - 1.0
-            line.append(_rounded(off, 2))
-        table.append([*line, "; ".join(_remarks(row)) or None])
-    known = ", ".join(
-        f"{value:.9g} {benchmark.unit} by the {_rule_in_words(rule)}"
-        for rule, value in references.items()
-    )
-    columns = [
-        "tool and solver",
-        "time [s]",
-        "spread [%]",
-        "runs",
-        "mesh in [s]",
-        "assembly [s]",
-        "solver [s]",
-        "iterations",
-        "error of the stiffness",
-    ]
-    if exact is not None:
-        columns.append("from the exact one")
-    return Table(
-        caption=f"{unknowns:,} unknowns: medians, and how far the fastest run is below the slowest;"
-        f" the solver's error, against {known or 'no reference'}",
-        columns=[*columns, "remarks"],
-        rows=table,
-    )
-
-
-def _remarks(row: Row) -> list[str]:
-    """What else to know of a row."""
-    from fe_drivetrain.cases.performance.rounds import (
-        EQUAL,
-    )
-
-    remarks = [row.trouble] if row.trouble else []
-    if row.variant.rule != "common":
-        remarks.append(f"{row.variant.rule} of quadrature")
-    if row.error is not None and not row.reaches:
-        remarks.append(f"does not reach {_small(EQUAL)}")
-    if row.found and row.variant.kind == "chosen":
-        remarks.append(f"took {row.found[0]['notes']['method']}")
-    return remarks
-
-
-def _rule_in_words(rule: str) -> str:
-    return "common quadrature" if rule == "common" else f"rule of {rule}"
-
-
-def _rounded(value: float | None, digits: int = 3) -> float | None:
-    return None if value is None else float(f"{value:.{digits}g}")
-
-
-def _small(value: float) -> str:
-    """A small number in words, as the page writes numbers."""
-    from fe_drivetrain.report import formatted
-
-    return formatted(float(value), 1)
-
-
-def memory_table(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
-    """Peak memory of every tool by mesh."""
-    from fe_drivetrain.cases.performance import (
-        rounds,
-    )
-    from fe_drivetrain.report import Table
-
-    meshes = meshes_of(rows)
-    table: list[list[Any]] = []
-    for variant in dict.fromkeys(r.variant for r in rows):
-        line: list[Any] = [variant.name]
-        for n in meshes:
-            row = rounds.of_tool(of_mesh(rows, n), variant.tool, variant.key)
-            line.append(None if row is None or row.bytes is None else round(row.bytes / 2**20))
-        table.append(line)
-    return Table(
-        caption=f"{benchmark.title}: peak memory of the process [MiB], Python, libraries and mesh "
-        "included; of CalculiX, ccx alone",
-        columns=["tool and solver", *(f"{n:,} unknowns" for n in meshes)],
-        rows=table,
-    )
-
-
-def time_chart(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
-    """Time against unknowns."""
-    from fe_drivetrain.cases.performance.rounds import (
-        EQUAL,
-    )
-
-    return _chart(
+    show_chart(
+        page,
         f"{benchmark.title}: time from the mesh in memory to the stiffness; hollow markers leave "
-        f"more than {_small(EQUAL)} of the stiffness",
+        f"more than {small(EQUAL)} of the stiffness",
         "time [s]",
         rows,
         lambda row: row.seconds,
     )
 
 
-def memory_chart(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
-    """Peak memory against unknowns."""
-    return _chart(
+def show_memory(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> None:
+    """Peak memory of every tool by mesh."""
+    by_mesh(
+        page,
+        f"{benchmark.title}: peak memory of the process [MiB], Python, libraries and mesh "
+        "included; of CalculiX, ccx alone",
+        rows,
+        lambda row, _: None if row.bytes is None else round(row.bytes / 2**20),
+    )
+    show_chart(
+        page,
         f"{benchmark.title}: peak memory",
         "peak memory [MiB]",
         rows,
@@ -584,58 +298,122 @@ def memory_chart(benchmark: Benchmark, rows: Sequence[Row]) -> Any:
     )
 
 
-def _chart(caption: str, axis: str, rows: Sequence[Row], value: Any) -> Any:
-    from fe_drivetrain.report import Chart
-
+def show_chart(
+    page: Page,
+    caption: str,
+    axis: str,
+    rows: Sequence[Row],
+    value: Callable[[Row], float | None],
+) -> None:
+    """A quantity against unknowns: a colour for each tool, a dash for each of its solvers."""
     traces = []
     counts: dict[str, int] = {}
     for variant in dict.fromkeys(r.variant for r in rows):
-        mine = [r for r in rows if r.variant == variant and value(r) is not None]
-        if not mine:
+        mine = [r for r in rows if r.variant == variant]
+        values = [value(r) for r in mine]
+        shown = [(r, v) for r, v in zip(mine, values, strict=True) if v is not None]
+        if not shown:
             continue
         place = counts.get(variant.tool, 0)
         counts[variant.tool] = place + 1
         symbol = SYMBOLS[place % len(SYMBOLS)]
-        ours = variant.tool == OURS
+        colour = COLOURS[variant.tool]
         traces.append(
-            {
-                "type": "scatter",
-                "mode": "lines+markers",
-                "name": variant.name,
-                "x": [r.unknowns for r in mine],
-                "y": [_rounded(value(r), 4) for r in mine],
-                "line": {
-                    "color": COLOURS[variant.tool],
+            trace(
+                variant.name,
+                [r.unknowns for r, _ in shown],
+                [v for _, v in shown],
+                mode="lines+markers",
+                line={
+                    "color": colour,
                     "dash": DASHES[place % len(DASHES)],
-                    "width": 3.5 if ours and place == 0 else 1.7,
+                    "width": 3.5 if variant.tool == OURS and place == 0 else 1.7,
                 },
-                "marker": {
-                    "color": COLOURS[variant.tool],
+                marker={
+                    "color": colour,
                     "size": 9,
-                    "symbol": [symbol if r.reaches else f"{symbol}-open" for r in mine],
+                    "symbol": [symbol if r.reaches else f"{symbol}-open" for r, _ in shown],
                 },
-            }
+            )
         )
-    return Chart(
-        caption=caption,
-        figure={
-            "data": traces,
-            "layout": {
-                "height": 640,
-                "xaxis": {"title": {"text": "unknowns"}, "type": "log", "dtick": "D2"},
-                "yaxis": {"title": {"text": axis}, "type": "log", "dtick": "D2"},
-            },
-        },
+    page.chart(caption, traces, "unknowns", axis, "xy")
+
+
+def show_mesh(
+    page: Page,
+    benchmark: Benchmark,
+    rows: Sequence[Row],
+    unknowns: int,
+    references: dict[str, float],
+) -> None:
+    """All that was measured on one mesh."""
+    exact = benchmark.exact
+    table = []
+    for row in rows:
+        times = [f["seconds"] for f in row.found]
+        spread = round(100 * (max(times) - min(times)) / max(times)) if len(times) > 1 else None
+        line = {
+            "tool and solver": row.variant.name,
+            "time [s]": significant(row.seconds),
+            "spread [%]": spread,
+            "runs": len(times),
+            "mesh in [s]": None if row.loading is None else round(row.loading, 3),
+            "assembly [s]": significant(row.step("assembly")),
+            "solver [s]": significant(row.step("solve")),
+            "iterations": row.found[0]["iterations"] if row.found else None,
+            "error of the stiffness": significant(row.error, 2),
+        }
+        if exact is not None:
+            error = None if row.stiffness is None else row.stiffness / exact - 1.0
+            line["from the exact one"] = significant(error, 2)
+        table.append({**line, "remarks": "; ".join(remarks(row)) or None})
+    known = ", ".join(
+        f"{value:.9g} {benchmark.unit} by the "
+        f"{'common quadrature' if rule == 'common' else f'rule of {rule}'}"
+        for rule, value in references.items()
+    )
+    page.table(
+        f"{unknowns:,} unknowns: medians, and how far the fastest run is below the slowest; the "
+        f"solver's error, against {known or 'no reference'}",
+        table,
     )
 
 
-def tool_table(first: dict[Variant, tuple[Outcome, str]], plan: Plan) -> Any:
-    """What is installed, and what it takes to start it."""
-    from fe_drivetrain.report import Table
+def remarks(row: Row) -> list[str]:
+    """What else to know of a row."""
+    found = [row.trouble] if row.trouble else []
+    if row.variant.rule != "common":
+        found.append(f"{row.variant.rule} of quadrature")
+    if row.error is not None and not row.reaches:
+        found.append(f"does not reach {small(EQUAL)}")
+    if row.found and row.variant.kind == "chosen":
+        found.append(f"took {row.found[0]['notes']['method']}")
+    return found
 
-    table: list[list[Any]] = []
+
+def significant(value: float | None, digits: int = 3) -> float | None:
+    """A number of so many digits."""
+    return None if value is None else float(f"{value:.{digits}g}")
+
+
+def small(value: float) -> str:
+    """A small number in words, as the page writes numbers."""
+    return formatted(float(value), 1)
+
+
+def show_tools(page: Page, first: dict[Variant, tuple[Outcome, str]], plan: Plan) -> None:
+    """What is installed, and what it takes to start it; how to install what is not."""
+    table: list[Record] = []
+    missing: list[Record] = []
     for variant, (outcome, _) in first.items():
         if outcome.status == "missing":
+            missing.append(
+                {
+                    "tool and solver": variant.name,
+                    "what is missing": outcome.reason,
+                    "how to install it": how_to_install(variant.tool),
+                }
+            )
             continue
         found = outcome.found
         notes = found.get("notes", {})
@@ -643,54 +421,26 @@ def tool_table(first: dict[Variant, tuple[Outcome, str]], plan: Plan) -> Any:
         cores = notes.get("threads", plan.limits.threads)
         if processes:
             cores = f"{processes} process{'es' if processes > 1 else ''}"
+        baseline = found.get("baseline_bytes")
         table.append(
-            [
-                variant.name,
-                found.get("version", ""),
-                str(cores),
-                _rounded(found.get("import_seconds")),
-                _rounded(found.get("warm_up_seconds")),
-                round(found["baseline_bytes"] / 2**20) if found.get("baseline_bytes") else None,
-                outcome.reason or None,
-            ]
+            {
+                "tool and solver": variant.name,
+                "version": found.get("version", ""),
+                "threads": str(cores),
+                "import [s]": significant(found.get("import_seconds")),
+                "first solve [s]": significant(found.get("warm_up_seconds")),
+                "memory after it [MiB]": round(baseline / 2**20) if baseline else None,
+                "remarks": outcome.reason or None,
+            }
         )
-    return Table(
-        caption="What each tool takes before the clock starts; the first solve, of about "
+    page.table(
+        "What each tool takes before the clock starts; the first solve, of about "
         f"{WARM_UP:,} displacements, compiles and loads what is imported late",
-        columns=[
-            "tool and solver",
-            "version",
-            "threads",
-            "import [s]",
-            "first solve [s]",
-            "memory after it [MiB]",
-            "remarks",
-        ],
-        rows=table,
+        table,
+        list(table[0]) if table else ["tool and solver"],
     )
-
-
-def missing_tables(first: dict[Variant, tuple[Outcome, str]]) -> list[Any]:
-    """How to install what is not there."""
-    from fe_drivetrain.cases.performance.tools.launch import (
-        how_to_install,
-    )
-    from fe_drivetrain.report import Table
-
-    rows: list[list[Any]] = [
-        [variant.name, outcome.reason, how_to_install(variant.tool)]
-        for variant, (outcome, _) in first.items()
-        if outcome.status == "missing"
-    ]
-    if not rows:
-        return []
-    return [
-        Table(
-            caption="Not installed here",
-            columns=["tool and solver", "what is missing", "how to install it"],
-            rows=rows,
-        )
-    ]
+    if missing:
+        page.table("Not installed here", missing)
 
 
 def method(plan: Plan) -> list[str]:
@@ -702,10 +452,10 @@ def method(plan: Plan) -> list[str]:
         "the stiffness uᵀKu, twice the strain energy, at unit motion.",
         "The clock runs from the mesh in memory, in each tool's own form, to the stiffness: "
         "assembly, boundary conditions, solver, energy. Imports and taking the mesh in, shown "
-        "beside it, are left out for all alike. CalculiX reads a deck instead; its clock starts "
+        "beside it, are left out for all. CalculiX reads a deck instead; its clock starts "
         "when it says that its step begins, so reading is left out for it too.",
         f"Each run is a fresh process, which first solves a small problem. Tools take turns, so "
-        f"that what else the machine does hits all alike. Up to {plan.repetitions} runs, fewer "
+        f"that what else the machine does hits all equally. Up to {plan.repetitions} runs, fewer "
         f"where they would take over {plan.budget:g} s together; medians are shown. A run over "
         f"{limits.seconds:g} s or {limits.bytes / 2**30:g} GiB is ended, and larger meshes are not "
         "begun where a power law through the last two, at least linear, says that they would be.",
@@ -727,17 +477,3 @@ def method(plan: Plan) -> list[str]:
         "SfePy has tetrahedra with straight edges only. It is given the curved nodes for its "
         "field and its mapping; the assembly stays its own.",
     ]
-
-
-CASE = Case(
-    name="performance/peers",
-    title="Speed and memory beside other finite-element tools, at equal error",
-    source="Measured here: the same meshes, boundary conditions and answers for every tool",
-    run=run,
-    alone=True,
-)
-
-if __name__ == "__main__":
-    from fe_drivetrain.commands import main_of_case
-
-    main_of_case(CASE)

@@ -13,14 +13,15 @@ def pareto_front(seconds: ArrayLike, errors: ArrayLike, gain: float = 0.0) -> In
 
     Parameters
     ----------
-    seconds, errors
+    seconds, errors : array_like
         (n,) of each choice; a choice with an error that is not a number is on no front.
-    gain
+    gain : float, optional
         By what share of its error a slower choice has to be better to count as better.
 
     Returns
     -------
-    Indices, from the quickest to the most exact.
+    ndarray of int
+        Indices, from the quickest to the most exact.
     """
     time, error = np.asarray(seconds, dtype=float), np.asarray(errors, dtype=float)
     front: list[int] = []

@@ -7,11 +7,7 @@ import numpy as np
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
-from fe_drivetrain.cases.performance.tools.runner import (
-    Floats,
-    Ints,
-    Problem,
-)
+from fe_drivetrain.cases.performance.tools.runner import Floats, Ints, Problem
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import Mesh, cached_mesh
 from fe_drivetrain.response import mesh_scene
@@ -34,13 +30,13 @@ class Benchmark:
 
     Attributes
     ----------
-    title, quantity, unit
+    title, quantity, unit : str
         For the page.
-    exact
+    exact : float or None
         The stiffness where it is known.
-    at
+    at : callable
         The problem at a mesh size, relative to `size`.
-    guess
+    guess : float
         Nodal displacements at relative size 1, about.
     """
 

@@ -9,12 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.cases.performance.tools.launch import (
-    Limits,
-    Outcome,
-    Variant,
-    launch,
-)
+from fe_drivetrain.cases.performance.tools.launch import Limits, Outcome, Variant, launch
 
 EQUAL = 1e-6
 """Tools are compared where the solver leaves less of the stiffness than this."""
@@ -26,17 +21,17 @@ class Row:
 
     Attributes
     ----------
-    variant
+    variant : Variant
         The tool and its solver.
-    unknowns
+    unknowns : int
         Of the mesh.
-    found
+    found : list of dict
         What each run measured, see `tools.runner.measure`.
-    trouble
+    trouble : str
         Why there is nothing, or no more, in words.
-    least_seconds
-        What it takes at the least, where it was ended or not begun [s].
-    error
+    least_seconds : float or None
+        The least that it takes, where it was ended or not begun [s].
+    error : float or None
         Of the stiffness, against the exact solution of the same equations; see `judge_errors`.
     """
 
@@ -84,11 +79,11 @@ class Plan:
 
     Attributes
     ----------
-    repetitions
-        Runs of each row at the most.
-    budget
+    repetitions : int
+        Most runs of each row.
+    budget : float
         Seconds of solving after which a row is run no more.
-    limits
+    limits : Limits
         Of each run.
     """
 
@@ -118,19 +113,19 @@ def run_rounds(
 
     Parameters
     ----------
-    variants
+    variants : sequence of tuple
         Tools and the interpreters that have them.
-    problem, warm_up
+    problem, warm_up : Path
         Files of the problem and of the small one.
-    unknowns
+    unknowns : int
         Of the problem.
-    plan
+    plan : Plan
         Repetitions and limits.
-    earlier
+    earlier : iterable of Row, optional
         Rows of smaller meshes: what is sure to go over a limit is not begun.
-    report
+    report : callable, optional
         Told of each run.
-    start
+    start : callable, optional
         Runs one; tests have another.
     """
     rows = {variant: Row(variant, unknowns) for variant, _ in variants}
@@ -172,8 +167,8 @@ def foreseen(row: Row, earlier: Sequence[Row], limits: Limits) -> tuple[str, flo
 
     Returns
     -------
-    trouble, least_seconds
-        In words, or empty; and the time that it takes at the least [s].
+    trouble, least_seconds : tuple
+        In words, or empty; and the least time that it takes [s].
     """
     mine = [r for r in earlier if r.variant == row.variant and r.unknowns < row.unknowns]
     mine.sort(key=lambda r: r.unknowns)
@@ -196,7 +191,7 @@ def foreseen(row: Row, earlier: Sequence[Row], limits: Limits) -> tuple[str, flo
 
 
 def extrapolated(unknowns: Sequence[int], values: Sequence[float | None], at: int) -> float:
-    """A power law through the last two values, linear at the least; at the least the last."""
+    """A power law through the last two values, of power 1 at least; no less than the last value."""
     last = values[-1] or 0.0
     power = 1.0
     if len(values) > 1 and values[-2]:
@@ -214,7 +209,7 @@ def judge_errors(rows: Sequence[Row]) -> dict[str, float]:
 
     Returns
     -------
-    references
+    references : dict of str to float
         By the rule.
     """
     references = {}
@@ -230,12 +225,6 @@ def judge_errors(rows: Sequence[Row]) -> dict[str, float]:
             assert row.stiffness is not None
             row.error = abs(row.stiffness / references[rule] - 1.0)
     return references
-
-
-def best(rows: Iterable[Row], tool: str) -> Row | None:
-    """The fastest row of a tool that reaches the common accuracy."""
-    fit = [r for r in rows if r.variant.tool == tool and r.reaches and r.seconds is not None]
-    return min(fit, key=lambda r: r.seconds or 0.0, default=None)
 
 
 def fastest_peer(rows: Iterable[Row], ours: str = "this_project") -> Row | None:

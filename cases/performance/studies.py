@@ -12,9 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.beam import Beam, BeamSection, Support, unit_load_response
-from fe_drivetrain.cases.performance import (
-    tilt,
-)
+from fe_drivetrain.cases.performance import tilt
 from fe_drivetrain.cases.performance.choices import (
     CURVED,
     ELEMENTS,
@@ -31,15 +29,8 @@ from fe_drivetrain.cases.performance.choices import (
     shaft_outcomes,
     warm_up,
 )
-from fe_drivetrain.cases.performance.growth import (
-    MATERIAL,
-    STEPPED,
-    Grown,
-    grown,
-)
-from fe_drivetrain.cases.performance.precision import (
-    cheapest_within,
-)
+from fe_drivetrain.cases.performance.growth import MATERIAL, STEPPED, Grown, grown
+from fe_drivetrain.cases.performance.precision import cheapest_within
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import GridConvergence, grid_convergence, richardson
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
@@ -102,17 +93,17 @@ class Study:
 
     Attributes
     ----------
-    title
+    title : str
         Of what the quantities are.
-    quantities
+    quantities : tuple of str
         Their names.
-    outcomes
+    outcomes : list of Outcome
         Of each choice.
-    reference, uncertainty
+    reference, uncertainty : ndarray
         (q,) each quantity, and half the width of its band.
-    limits
+    limits : dict of str to list
         Series of meshes by name, and what each tends to, a `GridConvergence` per quantity.
-    beam
+    beam : tuple or None
         Values (q,) and wall time of beam theory, where there is one.
     """
 
@@ -199,8 +190,10 @@ def meridian_stiffness(shaft: Shaft, material: Material, order: int, layers: int
 
     Returns
     -------
-    (3,) torsional [N m/rad], bending [N m/rad] as a pure moment over the tilt of the front face,
-    which is free to move sideways, and axial [N/m]; each from above, as of all such elements.
+    ndarray
+        (3,) torsional [N m/rad], bending [N m/rad] as a pure moment over the tilt of the front
+        face, which is free to move sideways, and axial [N/m]; each from above, as of all such
+        elements.
     """
     K = end_stiffness(shaft, material, order=order, layers=layers)[:6, :6]
     return np.array([K[3, 3], 1.0 / np.linalg.inv(K)[5, 5], K[0, 0]])

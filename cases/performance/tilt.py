@@ -44,7 +44,7 @@ from fe_drivetrain.solve import reduce
 QUANTITIES = tuple((plane.name, kind) for kind in ("energy", "averaged seat") for plane in PLANES)
 
 #: Element sizes that converge together; the shaft stays coarse, since its ends and its bending
-#: converge fast and K_R leaves its own give out.
+#: converge fast and K_R does not count its deformation.
 BALANCED = MeshSizes(
     shaft=0.25, bearing=0.08, housing=0.07, bearing_edge=0.035, elements_per_turn=8
 )
@@ -67,13 +67,15 @@ class TiltMesh:
 
     Attributes
     ----------
-    points, cells
-        (n, 3), m; (ne, 4) or (ne, 10) node ids.
-    cells_of
+    points : ndarray
+        (n, 3), m.
+    cells : ndarray of int
+        (ne, 4) or (ne, 10) node ids.
+    cells_of : dict of str to ndarray of int
         Indices of each part's cells.
-    base
+    base : ndarray of int
         Nodes of the housing's base.
-    hub, seat
+    hub, seat : tuple of two ndarrays
         Nodes of the shaft's front face and of the bearing's seat, and the integrals of their shape
         functions [m^2].
     """
@@ -164,7 +166,7 @@ def tilt_outcomes(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The bonded main bearing without gearbox stiffness.
     """
     scene = scene.model_copy(update={"mesh": sizes})

@@ -13,6 +13,7 @@ from .sections import BeamSection as BeamSection
 from .sections import cowper_shear_coefficient as cowper_shear_coefficient
 from .sections import element_integrals as element_integrals
 from .shaft import BeamSolution as BeamSolution
+from .shaft import UnitLoadResponse as UnitLoadResponse
 from .shaft import shaft_stiffness as shaft_stiffness
 from .shaft import solve as solve
 from .shaft import unit_load_response as unit_load_response

@@ -3,6 +3,7 @@ from .calculix_integration import four_point_model as four_point_model
 from .calculix_results import ROUNDING as ROUNDING
 from .calculix_results import DeckResponse as DeckResponse
 from .calculix_results import read_response as read_response
+from .craig_bampton import CraigBampton as CraigBampton
 from .craig_bampton import craig_bampton_shaft as craig_bampton_shaft
 from .craig_bampton import free_frequencies as free_frequencies
 from .files import FORMATS as FORMATS

@@ -4,7 +4,7 @@ Nested dissection of a solid whose cross-section has w nodes, n unknowns in all,
 about n w^(1/2) entries at n w^(3/2) operations (George 1973 for squares and cubes; a slender solid
 is a row of cubes). The width comes from the levels of one breadth-first search, so that slender
 and chunky solids of one size are told apart. The constants were fitted to the grid of
-``cases/performance/solver_grid.py`` on two cores; on other machines their ratios are what counts.
+``cases/performance/solvers.py`` on two cores; on other machines their ratios are what counts.
 """
 
 import math

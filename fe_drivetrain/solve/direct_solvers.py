@@ -2,7 +2,7 @@
 
 Each function factorises once and returns the solve for many right-hand sides, and the factor's
 memory. The orderings are those that measured best for elasticity on three-dimensional meshes, see
-``cases/performance/solver_grid.py``.
+``cases/performance/solvers.py``.
 """
 
 import importlib.util

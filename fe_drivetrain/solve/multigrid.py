@@ -31,7 +31,7 @@ _PATIENCE = 40
 
 @dataclass(frozen=True)
 class Options:
-    """How a hierarchy is made; the defaults measured best, ``cases/performance/solver_grid.py``.
+    """How a hierarchy is made; the defaults measured best, ``cases/performance/solvers.py``.
 
     Attributes
     ----------

@@ -7,10 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from fe_drivetrain.cases.performance.tools.runner import (
-        Clock,
-        Problem,
-    )
+    from fe_drivetrain.cases.performance.tools.runner import Clock, Problem
 
 NAME = "scikit-fem"
 INSTALL = "pip install scikit-fem pyamg pypardiso"
@@ -35,7 +32,7 @@ def load(problem: Problem) -> Any:
     from skfem import MeshTet2
 
     mesh = MeshTet2(problem.points.T.copy(), problem.cells.T.copy())
-    # scikit-fem numbers the nodes anew
+    # scikit-fem numbers the nodes again
     _, number = cKDTree(mesh.doflocs.T).query(problem.points)
     n = len(problem.points)
     keys = _keys(mesh.facets.T, n)
