@@ -169,6 +169,6 @@ def test_a_hierarchy_that_is_not_positive_is_found_out(monkeypatch):
     right = multigrid.largest_eigenvalue
     monkeypatch.setattr(multigrid, "largest_eigenvalue", lambda *given: right(*given) / 3.0)
     solution = solvers.factorise(system, "multigrid").solve(F)
-    assert solution.method != "multigrid"
-    assert "multigrid stopped" in solution.reason
-    assert solution.residual < 1e-9
+    assert solution.diagnostics.method != "multigrid"
+    assert "multigrid stopped" in solution.diagnostics.reason
+    assert solution.diagnostics.residual < 1e-9

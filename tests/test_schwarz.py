@@ -178,7 +178,7 @@ def test_patches_take_the_place_of_multigrid_where_no_factor_fits(tube, monkeypa
     monkeypatch.setattr("fe_drivetrain.solve.cost_model.DIRECT", costly)
     monkeypatch.setattr("fe_drivetrain.solve.cost_model.available_memory", lambda: 2.0 * 2**30)
     solution = solvers.solve(system, F, "multigrid")
-    assert solution.method == "schwarz"
-    assert "multigrid stopped" in solution.reason
+    assert solution.diagnostics.method == "schwarz"
+    assert "multigrid stopped" in solution.diagnostics.reason
     assert energy_error(system, F, solution.x) < 1e-8
-    assert solvers.solve(system, F).method == "schwarz"
+    assert solvers.solve(system, F).diagnostics.method == "schwarz"

@@ -68,13 +68,13 @@ def test_recovers_a_known_solution(cube, method, rng):
     x, F = known(system, elimination, rng)
     solution = solve(system, F, method, tolerance=1e-12)
     np.testing.assert_allclose(solution.x, x, atol=1e-9 * np.abs(x).max())
-    assert solution.method == method
-    assert solution.reason == "as asked"
-    assert solution.residual < 1e-10
-    assert solution.energy_error < 1e-12
-    assert solution.bytes > 0
-    assert (solution.iterations > 0) == (method in ITERATIVE)
-    assert 0.0 < solution.round_off < 1e-10
+    assert solution.diagnostics.method == method
+    assert solution.diagnostics.reason == "as asked"
+    assert solution.diagnostics.residual < 1e-10
+    assert solution.diagnostics.energy_error < 1e-12
+    assert solution.diagnostics.bytes > 0
+    assert (solution.diagnostics.iterations > 0) == (method in ITERATIVE)
+    assert 0.0 < solution.diagnostics.round_off < 1e-10
 
 
 @pytest.mark.parametrize("method", EACH)
@@ -102,14 +102,14 @@ def test_residual_is_the_true_one(cube, method, rng):
     _, F = known(system, elimination, rng)
     solution = solve(system, F, method, tolerance=1e-3)
     true = np.linalg.norm(system.K @ solution.x - F, axis=0) / np.linalg.norm(F, axis=0)
-    assert solution.residual == pytest.approx(true.max())
+    assert solution.diagnostics.residual == pytest.approx(true.max())
 
 
 @pytest.mark.parametrize("method", EACH)
 def test_zero_load_is_no_division_by_zero(cube, method):
     system, _ = cube
     solution = solve(system, np.zeros((system.K.shape[0], 1)), method)
-    assert solution.residual == 0.0
+    assert solution.diagnostics.residual == 0.0
     assert np.abs(solution.x).max() == 0.0
 
 
@@ -138,8 +138,8 @@ def test_an_iteration_that_stalls_falls_back_and_says_so(cube, rng, monkeypatch,
     x, F = known(system, elimination, rng)
     monkeypatch.setattr(multigrid, "MAX_ITERATIONS", 3)
     solution = solve(system, F, method)
-    assert solution.method in direct_solvers.PACKAGES
-    assert f"{method} stopped after 3 iterations" in solution.reason
+    assert solution.diagnostics.method in direct_solvers.PACKAGES
+    assert f"{method} stopped after 3 iterations" in solution.diagnostics.reason
     np.testing.assert_allclose(solution.x, x, atol=1e-9 * np.abs(x).max())
 
 
@@ -157,9 +157,9 @@ def test_auto_names_its_choice_and_the_others(cube, rng):
     _, F = known(system, elimination, rng)
     solution = solve(system, F)
     costs = cost_model.predict(system, F.shape[1])
-    assert solution.method == costs[0].method
+    assert solution.diagnostics.method == costs[0].method
     for each in costs:
-        assert each.method in solution.reason
+        assert each.method in solution.diagnostics.reason
     assert [c.seconds for c in costs] == sorted(c.seconds for c in costs)
 
 
@@ -274,5 +274,5 @@ def test_doubt_by_rounding_is_told():
     F = np.zeros((block.points.size, 1))
     F[3 * block.face_nodes("x1") + 2] = 1.0
     solution = solve(system, F, "superlu")
-    assert 1e-4 < solution.round_off < 0.1
-    assert "rounding may change the answer" in solution.reason
+    assert 1e-4 < solution.diagnostics.round_off < 0.1
+    assert "rounding may change the answer" in solution.diagnostics.reason

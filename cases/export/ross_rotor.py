@@ -213,7 +213,7 @@ def largest_errors(rotor: ross_rotor.Rotor, exact: UnitLoadResponse) -> Floats:
     pairs = []
     for unit in np.eye(15):
         loads, gravity = unit[:12].reshape(2, 6), unit[12:]
-        u = rotor.deflections(dict(zip(at, loads, strict=True)), gravity)
+        u = rotor.deflections(dict(zip(at, loads, strict=True)), gravity.tolist())
         expected = exact.solution(loads, gravity)
         carried = rotor.reactions(u)
         pairs.append(

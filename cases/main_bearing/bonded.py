@@ -148,7 +148,7 @@ def run(run: Run, page: Page) -> None:
                 "condensed at the bearing's centre, gearbox springs removed, base fixed",
             )
         ],
-        solved.response.n_unknowns,
+        solved.response.diagnostics.n_unknowns,
         tilt.by_plane,
     )
     spring_error, matrix_error = (

@@ -51,7 +51,7 @@ def run(run: Run, page: Page) -> None:
         shown.check_solution(page, solved, label)
         shown.check_solution(page, tilt.free, f"{label}, without gearbox")
     solutions = {label: solved for label, (solved, _, _) in levels.items()}
-    unknowns = [s.response.n_unknowns for s in solutions.values()]
+    unknowns = [s.response.diagnostics.n_unknowns for s in solutions.values()]
     by_level = [quantities(solved, tilt) for solved, tilt, _ in levels.values()]
     values = {q: [level[q] for level in by_level] for q in by_level[0]}
     found = {

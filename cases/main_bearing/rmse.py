@@ -282,6 +282,6 @@ def write_stiffness(run: Run, bonded: Solved, tilt: Tilt, stiffness: Floats) -> 
                 "from the strain energy of bearing and housing; the joint leaves rotations free",
             ),
         ],
-        bonded.response.n_unknowns,
+        bonded.response.diagnostics.n_unknowns,
         tilt.by_plane,
     )

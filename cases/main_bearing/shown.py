@@ -117,13 +117,13 @@ def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
                 "model": label,
                 "elements": len(s.model.mesh.cells),
                 "nodes": len(s.model.mesh.points),
-                "unknowns": s.response.n_unknowns,
+                "unknowns": s.response.diagnostics.n_unknowns,
                 "minimum scaled Jacobian": s.quality.minimum_scaled_jacobian,
-                "solver": s.response.method,
-                "iterations": s.response.iterations or None,
-                "set-up and solve [s]": s.response.seconds,
-                "relative residual": s.response.residual,
-                "energy error": s.response.energy_error,
+                "solver": s.response.diagnostics.method,
+                "iterations": s.response.diagnostics.iterations or None,
+                "set-up and solve [s]": s.response.diagnostics.seconds,
+                "relative residual": s.response.diagnostics.residual,
+                "energy error": s.response.diagnostics.energy_error,
                 "equilibrium error": s.response.equilibrium_error,
                 "superposition error": s.response.superposition_error,
             }
@@ -136,7 +136,7 @@ def _choices(solutions: Mapping[str, Solved]) -> str:
     """Which solver, and why, of each model that gives another reason."""
     reasons: dict[str, str] = {}
     for label, s in solutions.items():
-        reasons.setdefault(s.response.reason, label)
+        reasons.setdefault(s.response.diagnostics.reason, label)
     return "; ".join(f"({label}): {reason}" for reason, label in reasons.items())
 
 

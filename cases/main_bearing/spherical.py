@@ -200,7 +200,7 @@ def run(run: Run, page: Page) -> None:
             )
             for form in FORMS
         ],
-        main.response.n_unknowns,
+        main.response.diagnostics.n_unknowns,
     )
     along_z = [u[2, 2] / 1e9 for u in unit.values()]
     page.answer(

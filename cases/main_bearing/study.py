@@ -140,7 +140,7 @@ def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None
         run.report(f"warning: {label}: {warning}")
     with run.step(f"solve 10 unit loads ({label})"):
         response = unit_load_response(model, solver(run))
-    run.report(f"{label}: {response.method}, {response.reason}")
+    run.report(f"{label}: {response.diagnostics.method}, {response.diagnostics.reason}")
     return Solved(scene, replace(model, part_stiffness={}), response, mesh_quality)
 
 

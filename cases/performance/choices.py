@@ -282,17 +282,17 @@ def solved(
         solution = runs[0]
         steps = (
             *before,
-            float(np.median([s.setup_seconds for s in runs])),
-            float(np.median([s.solve_seconds for s in runs])),
+            float(np.median([s.diagnostics.setup_seconds for s in runs])),
+            float(np.median([s.diagnostics.solve_seconds for s in runs])),
         )
         yield Outcome(
             element=element,
             mesh=mesh,
             solve=how,
-            used=solution.method,
+            used=solution.diagnostics.method,
             unknowns=system.n_free,
-            iterations=solution.iterations,
-            bytes=solution.bytes,
+            iterations=solution.diagnostics.iterations,
+            bytes=solution.diagnostics.bytes,
             seconds=dict(zip(STEPS, steps, strict=True)),
             values=quantities(solution.x),
         )

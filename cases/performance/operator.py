@@ -122,7 +122,8 @@ def run(run: Run, page: Page) -> None:
         own / solved,
         SHARE,
         why="assembly must not be what a user waits for",
-        source=f"measured side by side: {own:.3f} s and {solved:.2f} s by {solution.method}",
+        source=f"measured side by side: {own:.3f} s and {solved:.2f} s by "
+        f"{solution.diagnostics.method}",
     )
     page.vanishes(
         "largest difference from scikit-fem's matrix, relative to its largest entry",
@@ -146,7 +147,7 @@ def run(run: Run, page: Page) -> None:
                 ("scikit-fem: basis and linear_elasticity", generic),
                 ("ours, sparsity and values", own),
                 ("ours, values with the sparsity kept", reused),
-                (f"set-up and solve of one load by {solution.method}", solved),
+                (f"set-up and solve of one load by {solution.diagnostics.method}", solved),
             )
         ],
     )

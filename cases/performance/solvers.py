@@ -121,9 +121,11 @@ def timed(problem: Problem, method: str, repetitions: int) -> Timing:
         solver = factorise(problem.system, method)
         one = solver.solve(np.ascontiguousarray(problem.loads[:, :1]))
         many = solver.solve(problem.loads)
-        found.append((solver.setup_seconds, one.solve_seconds, many.solve_seconds))
+        found.append(
+            (solver.setup_seconds, one.diagnostics.solve_seconds, many.diagnostics.solve_seconds)
+        )
     setup, first, twelve = np.min(found, axis=0).tolist()
-    return Timing(setup, first, twelve, solver.bytes, many.iterations)
+    return Timing(setup, first, twelve, solver.bytes, many.diagnostics.iterations)
 
 
 @case(
@@ -412,12 +414,12 @@ def check_stop(page: Page, name: str, problem: Problem) -> Record:
         "solid": name,
         "unknowns": f"{system.n_free:,}",
         "residual, direct": direct_residual,
-        "residual": solution.residual,
-        "energy error, estimated": solution.energy_error,
+        "residual": solution.diagnostics.residual,
+        "energy error, estimated": solution.diagnostics.energy_error,
         "error of stiffness": stiffness,
-        "solver": solution.method,
-        "iterations": solution.iterations or None,
-        "remark": "" if solution.method == "multigrid" else solution.reason,
+        "solver": solution.diagnostics.method,
+        "iterations": solution.diagnostics.iterations or None,
+        "remark": "" if solution.diagnostics.method == "multigrid" else solution.diagnostics.reason,
     }
 
 

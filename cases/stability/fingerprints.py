@@ -83,7 +83,7 @@ def tube_answers(slenderness: Iterable[float], backwards: bool = False) -> dict[
             x = np.full(n, np.nan)
             try:
                 answer = factorise(system, method).solve(F)
-                if answer.method == method:
+                if answer.diagnostics.method == method:
                     x = answer.x[:, 0]
             except InputError:
                 pass

@@ -214,7 +214,7 @@ def check_protection(run: Run, page: Page) -> None:
             refused = True
     page.holds(
         "multigrid asked for at a penalty of 1e6: a direct factor instead",
-        instead.method != "multigrid",
+        instead.diagnostics.method != "multigrid",
         why="without it the answer would be that of an iteration that has not converged",
         source="the iteration does not converge there",
     )

@@ -139,7 +139,7 @@ def compare(run: Run, scene: Scene, label: str, mesh: Mesh) -> Compared:
         usual=differences(model, usual, theirs, loads),
         nodes=len(mesh.points),
         elements=len(mesh.cells),
-        unknowns=ours.n_unknowns,
+        unknowns=ours.diagnostics.n_unknowns,
         bytes=deck.stat().st_size,
         ours=seconds,
         theirs=theirs_seconds,

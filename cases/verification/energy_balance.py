@@ -45,7 +45,7 @@ def run(run: Run, page: Page) -> None:
             within=1e-9,
             why="the energy error at which the solver stops",
             source="Clapeyron: half the work of the loads is stored",
-            band=response.energy_error,
+            band=response.diagnostics.energy_error,
         )
         page.equals(
             f"{kind}: energy stored under a working load, gravity and gearbox weight",
@@ -56,7 +56,7 @@ def run(run: Run, page: Page) -> None:
             source="Clapeyron: half the work of the loads is stored",
             unit="J",
             measure="energy",
-            band=response.energy_error * float(done),
+            band=response.diagnostics.energy_error * float(done),
         )
         worst[kind] = max(imbalance, abs(float(kept / done) - 1.0))
 

@@ -37,9 +37,9 @@ def run(run: Run, page: Page) -> None:
         asymmetry = relative_asymmetry(work)
         row: Record = {
             "scene": kind,
-            "unknowns": response.n_unknowns,
-            "solver": response.method,
-            "energy error of the solver [-]": response.energy_error,
+            "unknowns": response.diagnostics.n_unknowns,
+            "solver": response.diagnostics.method,
+            "energy error of the solver [-]": response.diagnostics.energy_error,
             WORK: float(asymmetry.max()),
             HUB: float(relative_asymmetry(response.motions["hub"][:, :6]).max()),
             # with loads scaled to the same work of their own
@@ -55,7 +55,7 @@ def run(run: Run, page: Page) -> None:
                 within=1e-9,
                 why=STOPS,
                 source="Maxwell 1864, Betti 1872: W_ij = W_ji",
-                band=response.energy_error,
+                band=response.diagnostics.energy_error,
             )
         page.vanishes(
             f"{kind}: negative part of the least eigenvalue of the work matrix, scaled to a "
@@ -64,7 +64,7 @@ def run(run: Run, page: Page) -> None:
             within=1e-9,
             why=STOPS,
             source="strain energy is never negative",
-            band=response.energy_error,
+            band=response.diagnostics.energy_error,
         )
         page.add(heat_map(kind, asymmetry))
         rows.append(row)

@@ -211,7 +211,7 @@ def assembly_level(scene: Scene) -> LevelModel:
     response = unit_load_response(build_model(scene, mesh_scene(scene)))
     names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
     reactions = {name: response.reactions[name] for name in names}
-    cost = Cost(time.perf_counter() - start, response.n_unknowns)
+    cost = Cost(time.perf_counter() - start, response.diagnostics.n_unknowns)
     return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
 
 

@@ -194,5 +194,5 @@ def by_the_program(K: sparse.csr_array, F: Real) -> tuple[Real, float]:
             columns.append(np.full(n, np.nan))
             continue
         columns.append(found.x[:, 0])
-        residuals.append(found.residual)
+        residuals.append(found.diagnostics.residual)
     return np.column_stack(columns), max(residuals, default=float("nan"))

@@ -205,7 +205,13 @@ def bent(mesh: Mesh, method: str, condition: bool = False) -> Bent:
         return Bent(np.nan, np.nan, 0, f"{type(error).__name__}: {error}", number)
     # stiffness as load squared over twice the energy
     bending, by_shear = exact / np.einsum("nm,nm->m", right, found.x) - 1.0
-    return Bent(float(bending), float(by_shear), found.iterations, found.method, number)
+    return Bent(
+        float(bending),
+        float(by_shear),
+        found.diagnostics.iterations,
+        found.diagnostics.method,
+        number,
+    )
 
 
 def _end_facets(mesh: Mesh, x: float) -> Ints:

@@ -158,7 +158,13 @@ class Sprung:
             return None
         U = self.elimination.T @ found.x
         hub, gearbox = (model.points[name].motion @ U for name in ("hub", "gearbox"))
-        return Motion(hub, gearbox, found.energy_error, found.residual, found.method)
+        return Motion(
+            hub,
+            gearbox,
+            found.diagnostics.energy_error,
+            found.diagnostics.residual,
+            found.diagnostics.method,
+        )
 
 
 def sprung(scene: Scene, mesh: Mesh) -> Sprung:

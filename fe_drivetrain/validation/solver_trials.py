@@ -163,7 +163,12 @@ def answered(system: System, F: Floats, method: str) -> Answer:
         found = solvers.solve(system, F, method)
     except InputError as error:
         return Answer("", str(error), None, math.inf)
-    return Answer(found.method, found.reason, compliance(F, found.x), found.round_off)
+    return Answer(
+        found.diagnostics.method,
+        found.diagnostics.reason,
+        compliance(F, found.x),
+        found.diagnostics.round_off,
+    )
 
 
 def installed() -> list[str]:

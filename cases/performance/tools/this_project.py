@@ -68,6 +68,6 @@ def solve(problem: Problem, variant: str, clock: Clock) -> float:
     with clock.step("solve"):
         solution = solve_system(system, F, variant, TOLERANCE)
         moved = given + np.where(elimination.free[:, None], solution.x, 0.0)
-    clock.iterations = solution.iterations or None
-    clock.notes = {"method": solution.method, "reason": solution.reason}
+    clock.iterations = solution.diagnostics.iterations or None
+    clock.notes = {"method": solution.diagnostics.method, "reason": solution.diagnostics.reason}
     return float((moved.T @ (K @ moved))[0, 0])
