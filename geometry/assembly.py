@@ -37,15 +37,15 @@ def build(
 
     Parameters
     ----------
-    shaft
+    shaft : Shaft or None
         The shaft, or None for bearings and housings alone.
-    bearings
+    bearings : Sequence[Bearing]
         The bearings on the shaft.
-    housings
+    housings : Mapping[str, Housing]
         Housing of each bearing, by the bearing's name; a bearing may have none.
-    sizes
+    sizes : MeshSizes
         Element sizes.
-    bonded
+    bonded : frozenset[str]
         Names of the bearings whose outer face is bonded to the housing. It does not change the
         CAD model; it is checked here and used when the mesh is read.
 
@@ -190,9 +190,9 @@ def refuse_millimetres(part: str, long: float, wide: float) -> None:
 
     Parameters
     ----------
-    part
+    part : str
         What it is, for the message.
-    long, wide
+    long, wide : float
         Its extents along x and across, m.
 
     Raises

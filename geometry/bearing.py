@@ -115,7 +115,7 @@ class Bearing(Part):
 
         Parameters
         ----------
-        reach
+        reach : float
             Distance from the centre along x that the tool has to pass, m (cylindrical bores).
         """
         radius, edge, (low, high) = self.raceway_diameter / 2, self.edge_radius, self.span

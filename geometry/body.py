@@ -46,15 +46,15 @@ def name_and_size(
 
     Parameters
     ----------
-    name
+    name : str
         Of the body; a face's group is called NAME.FACE.
-    volume
+    volume : int
         Tag.
-    faces
+    faces : Mapping[str, Iterable[int]]
         Tags of the faces of each name.
-    sizes
+    sizes : BodySizes
         Element sizes.
-    copies
+    copies : int
         Of the volume in the body.
 
     Raises
@@ -177,11 +177,11 @@ def annulus(
 
     Parameters
     ----------
-    start, length
+    start, length : float
         Along x [m].
-    inner, outer
+    inner, outer : float
         Radii [m].
-    angle, turn
+    angle, turn : float
         Where it begins and how far it goes about x, from the z axis on [rad].
     """
     occ = gmsh.model.occ

@@ -62,9 +62,9 @@ class MeshSizes(Part):
 
         Parameters
         ----------
-        kinds
+        kinds : Iterable[str]
             Any of 'shaft', 'bearing', 'housing'.
-        factor
+        factor : float
             Above 1 for a finer mesh.
         """
         update: dict[str, float] = {kind: getattr(self, kind) / factor for kind in kinds}

@@ -14,9 +14,9 @@ class LocalSizes(NamedTuple):
 
     Attributes
     ----------
-    corners
+    corners : NDArray[np.float64]
         (n, 4, 3) corners of each tetrahedron, m.
-    sizes
+    sizes : NDArray[np.float64]
         (n, 4) element size at each corner, m.
     """
 

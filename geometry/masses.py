@@ -14,7 +14,8 @@ from .session import gmsh_session
 
 class Solid(NamedTuple):
     """Volume [m^3], centre of gravity [m], and inertia about it over the density [m^5], row by row,
-    of a solid of one density."""
+    of a solid of one density.
+    """
 
     volume: float
     centre: tuple[float, float, float]
@@ -27,9 +28,9 @@ def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tup
 
     Parameters
     ----------
-    bearing, housing
+    bearing, housing : Bearing, Housing
         The unit.
-    bore_diameter
+    bore_diameter : float
         Of the bearing [m].
     """
     occ = gmsh.model.occ

@@ -34,15 +34,15 @@ def meridian_triangles(
 
     Parameters
     ----------
-    shaft
+    shaft : Shaft
         Any.
-    size
+    size : float
         Largest edge length, m.
-    order
+    order : int
         Of the triangles, 1 to `HIGHEST_ORDER`; all their nodes on a fillet lie on its arc.
-    per_fillet
+    per_fillet : int
         Elements along each fillet.
-    corner
+    corner : float
         Edge length at every sharp corner of the outline, m.
 
     Returns

@@ -48,15 +48,15 @@ def dimension(
 
     Parameters
     ----------
-    default
+    default : Any
         Default value; required where left out.
-    of
+    of : str
         What the number measures, in a few words.
-    unit
+    unit : str
         Unit of the number.
-    source
+    source : str
         Where the default comes from: a catalogue, or 'assumed: reason'.
-    gt, ge
+    gt, ge : float or None
         Lower bounds, exclusive and inclusive. A length lies between `SMALLEST` and `LARGEST`, too,
         where it must be greater than 0; else it is at most `LARGEST`, with either sign.
     """

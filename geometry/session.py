@@ -21,9 +21,9 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
 
     Parameters
     ----------
-    name
+    name : str
         Name of the gmsh model.
-    threads
+    threads : int
         Threads for gmsh; one by default, because only then is the mesh sure to repeat.
 
     Raises

@@ -220,9 +220,9 @@ class Shaft(Part):
 
         Parameters
         ----------
-        x, width
+        x, width : float
             Centre and width of the seat, m.
-        name
+        name : str
             Name of the bearing, for the message.
 
         Returns
@@ -276,7 +276,7 @@ class Shaft(Part):
 
         Parameters
         ----------
-        seats
+        seats : Iterable[tuple[float, float]]
             Intervals (low, high) of x, m, each to become a cylindrical face of its own.
 
         Returns
@@ -336,7 +336,7 @@ def revolve(outline: Iterable[Segment]) -> int:
 
     Parameters
     ----------
-    outline
+    outline : Iterable[Segment]
         Segments that follow one another and close, radii >= 0.
 
     Returns

@@ -44,9 +44,9 @@ class InSeries(NamedTuple):
 
     Attributes
     ----------
-    damper
+    damper : float
         K^2 sum(C_i / K_i^2) [N m s/rad].
-    ratio, of_five
+    ratio, of_five : float
         Damping ratio of two masses with it, and of five masses.
     """
 

@@ -40,13 +40,13 @@ class ByTables(NamedTuple):
 
     Attributes
     ----------
-    letter, name
+    letter, name : str
         Of the drivetrain, and of its table.
-    table, system, modes
+    table, system, modes : Drivetrain, Torsional, Modes
         As printed; a mass for each gear, generator free.
-    seen
+    seen : Ints
         Numbers of the modes that are in Table 6.4.
-    f, band
+    f, band : Floats
         Their frequencies and what rounding of the inputs leaves [Hz].
     """
 

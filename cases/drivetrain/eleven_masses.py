@@ -56,12 +56,12 @@ class Restored(NamedTuple):
 
     Attributes
     ----------
-    carrier, planet
+    carrier, planet : float
         [kg m^2].
-    spread
+    spread : float
         Half width of the carrier and its three planets, by the last digits of what they are solved
         for [kg m^2].
-    frequencies
+    frequencies : Floats
         Of the table's nine modes [Hz].
     """
 

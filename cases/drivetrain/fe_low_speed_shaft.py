@@ -67,11 +67,11 @@ class Solid(NamedTuple):
 
     Attributes
     ----------
-    unknowns, stiffness
+    unknowns, stiffness : list[int], list[float]
         Of each mesh, ends rigid [N m/rad].
-    averaged
+    averaged : float
         On the first mesh, the front face free to deform [N m/rad].
-    series
+    series : GridConvergence
         The convergence of the stiffness.
     """
 

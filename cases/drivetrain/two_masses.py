@@ -35,13 +35,13 @@ class Restored(NamedTuple):
 
     Attributes
     ----------
-    rotor
+    rotor : float
         [kg m^2].
-    shafts, low_speed_shaft
+    shafts, low_speed_shaft : float
         All in series, and the first of them, all others as tabled [N m/rad].
-    omega
+    omega : Floats
         Both frequencies, generator fixed [rad/s].
-    free
+    free : float
         Frequency above zero, generator free [Hz].
     """
 

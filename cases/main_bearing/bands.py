@@ -117,9 +117,9 @@ def start(
 
     Parameters
     ----------
-    label
+    label : str
         Of the case's own solution.
-    solved, tilted
+    solved, tilted : bool
         Whether with gearbox springs, and whether without.
     """
     return Coarser(

@@ -49,9 +49,9 @@ class Linear:
 
     Attributes
     ----------
-    matrix
+    matrix : Floats
         (6, 6): row i is what the hub load i puts on the bearing.
-    constant
+    constant : Floats
         (6,) what it carries without hub loads [N, N m].
     """
 
@@ -113,17 +113,17 @@ class Comparison:
 
     Attributes
     ----------
-    fe
+    fe : dict[str, Floats]
         (m, n, 6) reactions of the main bearing [N, N m] by kind, "spherical" and "bonded".
-    pairs
+    pairs : dict[str, tuple[str, Floats]]
         The kind of FE that each comparison is with, and the beam's (m, n, 6) reactions.
-    mean_error, correlation
+    mean_error, correlation : dict[str, float]
         Of the resultant radial force, by comparison [%] and [-].
-    headline, quantities, estimators, causes
+    headline, quantities, estimators, causes : list[Record]
         Records of tables.
-    with_their_stiffness
+    with_their_stiffness : float
         Mean error of the pinned beam against the closed form with the thesis's own K_R [%].
-    seconds
+    seconds : float
         Wall time of turning all load steps into FE reactions [s].
     """
 

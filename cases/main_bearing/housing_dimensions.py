@@ -76,13 +76,13 @@ class Form:
 
     Attributes
     ----------
-    title
+    title : str
         In words.
-    bolted
+    bolted : bool
         Held at four washers instead of the whole underside.
-    ring
+    ring : float or None
         Width of the ring on the shaft [m]; None for as wide as the housing.
-    steel
+    steel : bool
         Whether the housing is of the bearing's steel.
     """
 
@@ -112,9 +112,9 @@ class Unit:
 
     Attributes
     ----------
-    K_R
+    K_R : Floats
         (2, 3) by plane (vertical, horizontal) and estimator of `study.ESTIMATORS` [N m/rad].
-    nodes
+    nodes : int
         Of the mesh.
     """
 
@@ -195,11 +195,11 @@ class Sampled:
 
     Attributes
     ----------
-    x, K_R
+    x, K_R : Floats
         (n, d) dimensions [m] and (n, 2, 3) K_R [N m/rad].
-    refused
+    refused : int
         Combinations that are no housing.
-    surfaces
+    surfaces : tuple[Surface, ...]
         Of both planes, by estimator.
     """
 
@@ -232,13 +232,13 @@ class Member:
 
     Attributes
     ----------
-    form, x
+    form, x : Form, Floats
         What it is: (d,) dimensions [m].
-    K_R
+    K_R : Floats
         (2, 3) [N m/rad].
-    miss
+    miss : float
         Largest relative distance of what was calibrated from what was wanted.
-    solutions
+    solutions : int
         How many it took.
     """
 
@@ -270,11 +270,11 @@ def member(
 
     Parameters
     ----------
-    scene, form, surface, start, free, wanted, tolerance, most, ratio
-        See `calibration.calibrated`.
-    estimator
+    scene, form, surface, start, free, wanted, tolerance, most, ratio : see `calibrated`
+        As of `fe_drivetrain.compare.calibrated`.
+    estimator : int
         Place in `study.ESTIMATORS`.
-    mesh
+    mesh : MeshSizes or None
         Sizes; those of the samples where not given.
     """
     known: dict[bytes, Floats] = {}
@@ -316,9 +316,9 @@ def reach(
 
     Parameters
     ----------
-    scene, surface, form, start, free, wanted
-        As for `member`.
-    swept
+    scene, surface, form, start, free, wanted : see `member`
+        As there.
+    swept : int
         The dimension.
     """
     possible = []

@@ -38,19 +38,19 @@ class HubLoads:
 
     Attributes
     ----------
-    time
+    time : Floats
         (n,) [s].
-    loads
+    loads : Floats
         (m, n, 6) [N, N m].
-    names
+    names : tuple[str, ...]
         (m,) of the histories.
-    conditions
+    conditions : tuple[Condition, ...]
         (m,) of a surrogate; empty for the user's own files.
-    statement
+    statement : str
         What the loads are, for the page.
-    assumptions
+    assumptions : list[tuple[str, float, str, str]]
         (name, value, unit, source) of the surrogate.
-    seed
+    seed : int or None
         None for the user's own files.
     """
 

@@ -35,14 +35,14 @@ class Reacted:
 
     Attributes
     ----------
-    scene
+    scene : Scene
         As it was solved.
-    loads, motions
+    loads, motions : Floats
         (m, 6) what the drivetrain puts on the housing's base, about the bearing's centre [N, N m],
         and the mean motion of the seat [m, rad].
-    stiffness
+    stiffness : Floats
         (6, 6) condensed, from unit loads without a gearbox.
-    fit
+    fit : secant_stiffness.Spring
         The spring that the load cases show.
     """
 

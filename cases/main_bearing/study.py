@@ -55,11 +55,11 @@ def scene_of(
 
     Parameters
     ----------
-    kind
+    kind : str
         "spherical" or "bonded". A user's scene is made to have that interface.
-    own_keys
+    own_keys : tuple[str, ...]
         Settings that are not changes of the scene.
-    coarsen
+    coarsen : bool
         Whether ``--quick`` coarsens the mesh.
 
     Raises
@@ -130,7 +130,7 @@ def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None
 
     Parameters
     ----------
-    meshed
+    meshed : Meshed or None
         The mesh, where there is one already.
     """
     mesh, mesh_quality = mesh_of(run, scene, label) if meshed is None else meshed
@@ -157,11 +157,11 @@ class Tilt:
 
     Attributes
     ----------
-    by_plane
+    by_plane : dict[str, dict[str, float]]
         K_R [N m/rad] by plane ("vertical", "horizontal") and estimator.
-    matrix
+    matrix : Floats
         (6, 6) condensed stiffness at the bearing's centre.
-    free
+    free : Solved
         The solution without gearbox springs.
     """
 
@@ -179,9 +179,9 @@ def solve_tilt(run: Run, scene: Scene, label: str, meshed: Meshed) -> Tilt:
 
     Parameters
     ----------
-    scene, meshed
+    scene, meshed : Scene, Meshed
         With its gearbox springs, and its mesh.
-    label
+    label : str
         Of the solution without them.
     """
     free = solve_scene(run, without_gearbox(scene), label, meshed)

@@ -65,20 +65,20 @@ class Compared:
 
     Attributes
     ----------
-    label
+    label : str
         The interface.
-    loads
+    loads : tuple[str, ...]
         The m unit loads.
-    differences
+    differences : Mapping[str, Floats]
         (m,) by quantity: largest difference to the project's answer with ccx's integration,
         relative to the largest value of that load.
-    usual
+    usual : Mapping[str, Floats]
         The same to the project's usual answer.
-    nodes, elements, unknowns, bytes
+    nodes, elements, unknowns, bytes : int
         Size of mesh, system and deck.
-    ours, theirs
+    ours, theirs : float
         Wall time of assembly and solve, and of ccx from deck to answer [s].
-    reactions
+    reactions : tuple[Floats, Floats]
         (6, m) of the bearing, by the project and by ccx [N, N m].
     """
 

@@ -44,17 +44,17 @@ class Bent(NamedTuple):
 
     Attributes
     ----------
-    tip
+    tip : float
         Mean deflection from the tangent at the root [m].
-    shear
+    shear : float
         Cowper's coefficient that is left beside bending.
-    error
+    error : float
         Largest difference from the exact displacements, over the largest.
-    peak, reference
+    peak, reference : float
         Shear stress on the neutral axis at the skin or the centre, computed and exact [Pa].
-    largest
+    largest : float
         Exact stress of that section, the largest [Pa].
-    unknowns, per_turn
+    unknowns, per_turn : int
         Of the mesh.
     """
 

@@ -32,17 +32,17 @@ class Found:
 
     Attributes
     ----------
-    ratios
+    ratios : tuple[tuple[int, int], ...]
         Divisions of slave and master.
-    tied
+    tied : dict[TieKind, list[Stiffnesses]]
         By kind of tie, one for each ratio.
-    entries
+    entries : dict[TieKind, list[int]]
         Of a row of the tie, mean; likewise.
-    whole
+    whole : dict[int, Stiffnesses]
         By divisions.
-    across
+    across : GridConvergence
         Convergence of the whole bar's stiffness across [N/m].
-    exact
+    exact : dict[str, float]
         References by quantity [N m/rad, N m/rad, N/m].
     """
 

@@ -111,11 +111,11 @@ class Reference:
 
     Attributes
     ----------
-    value
+    value : float
         In the unit of the stiffness.
-    doubt
+    doubt : float
         Its uncertainty.
-    source
+    source : str
         Where it comes from.
     """
 

@@ -22,7 +22,7 @@ SAME_STATION = 1e-9
 class Support:
     """A connection of one station to the ground.
 
-    Parameters
+    Attributes
     ----------
     name : str
         Used in errors and to find the reaction.
@@ -84,7 +84,7 @@ class Support:
 class Beam:
     """A shaft of sections on supports.
 
-    Parameters
+    Attributes
     ----------
     sections : sequence of BeamSection or RigiditySection
         From the upwind end on.

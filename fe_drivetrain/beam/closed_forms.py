@@ -42,7 +42,7 @@ _MAY_BE_ZERO = ("axial_stiffness", "tilt_stiffness", "yaw_stiffness", "gearbox_w
 class MainBearingBeam:
     """Shaft on one main bearing and a gearbox; defaults are Table 3.1 of Stirling 2023.
 
-    Parameters
+    Attributes
     ----------
     overhang : float
         L1, hub to main bearing, m.
@@ -214,6 +214,7 @@ def pinned_model(loads: ArrayLike, parameters: MainBearingBeam) -> Floats:
     loads : array_like, (..., 6)
         Fx, Fy, Fz, Mx, My, Mz on the shaft at the hub, N and N m.
     parameters : MainBearingBeam
+        The drivetrain.
 
     Returns
     -------
@@ -282,6 +283,7 @@ def main_bearing_frame(
     Parameters
     ----------
     parameters : MainBearingBeam
+        The drivetrain.
     bearing : array_like, (6,) or (6, 6), optional
         Stiffness of the main bearing, for instance condensed from a housing; by default rigid
         against displacement, `tilt_stiffness` and `yaw_stiffness` against rotation.

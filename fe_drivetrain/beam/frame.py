@@ -32,13 +32,13 @@ class CrossSection:
 
     Attributes
     ----------
-    area
+    area : float
         [m^2].
-    shear_areas
+    shear_areas : tuple[float, float]
         Effective in forces along the section's first and second axis [m^2].
-    torsion
+    torsion : float
         Torsion constant [m^4].
-    inertias
+    inertias : tuple[float, float]
         Second moments about the first and about the second axis [m^4].
     """
 
@@ -53,9 +53,9 @@ def round_section(outer: float, poisson_ratio: float, inner: float = 0.0) -> Cro
 
     Parameters
     ----------
-    outer, inner
+    outer, inner : float
         Diameters [m].
-    poisson_ratio
+    poisson_ratio : float
         For Cowper's shear coefficient (Cowper 1966).
     """
     area = np.pi / 4 * (outer**2 - inner**2)
@@ -88,9 +88,9 @@ def annular_sector(inner: float, outer: float, angle: float, poisson_ratio: floa
 
     Parameters
     ----------
-    inner, outer
+    inner, outer : float
         Radii [m].
-    angle
+    angle : float
         Of the sector [rad].
     """
     area = angle / 2 * (outer**2 - inner**2)
@@ -135,13 +135,13 @@ class Member:
 
     Attributes
     ----------
-    nodes
+    nodes : tuple[int, int]
         Their numbers.
-    ends
+    ends : tuple[Floats, Floats]
         Where the beam begins and ends, (3,) each [m].
-    section
+    section : CrossSection
         Its section.
-    first_axis
+    first_axis : Floats
         (3,) direction of the section's first axis, made square to the beam.
     """
 
@@ -157,13 +157,13 @@ class Follower:
 
     Attributes
     ----------
-    name, position
+    name, position : str, Floats
         Of the point; (3,) [m].
-    nodes
+    nodes : Sequence[int]
         (k,) that the places belong to.
-    places
+    places : Floats
         (k, 3) [m].
-    weights
+    weights : Floats
         (k,) of each.
     """
 
@@ -180,13 +180,13 @@ class SpatialFrame:
 
     Attributes
     ----------
-    positions
+    positions : Floats
         (n, 3) of the nodes [m].
-    members
+    members : Sequence[Member]
         The beams.
-    material
+    material : Material
         Of all.
-    inertias
+    inertias : dict[int, Floats]
         (6, 6) mass matrix about the node, of nodes that are bodies of their own [kg, kg m,
         kg m^2].
     """

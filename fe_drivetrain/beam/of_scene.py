@@ -23,14 +23,14 @@ def beam_of_scene(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene. Shoulder fillets are left out; the flange is a section of its own.
-    bearing_stiffness
+    bearing_stiffness : Mapping[str, ArrayLike]
         For each bearing (6,) or (6, 6) stiffness of bearing and housing; inf is rigid. A beam
         cannot know what a housing does, so none is assumed.
-    shear
+    shear : bool
         Whether shear deforms the shaft.
-    rings
+    rings : bool
         Whether the body of each bearing stiffens the shaft over its width as if turned from one
         piece with it: stiffer than the solid, as a shaft without rings is softer.
     """
@@ -93,9 +93,9 @@ def main_bearing_beam(scene: Scene, tilt: float = 0.0, yaw: float = 0.0) -> Main
 
     Parameters
     ----------
-    scene
+    scene : Scene
         One bearing, a uniform shaft, equal radial gearbox stiffness along y and z.
-    tilt, yaw
+    tilt, yaw : float
         K_R about y and about z [N m/rad]; 0 is pinned.
 
     Raises

@@ -62,7 +62,7 @@ def cowper_shear_coefficient(poisson_ratio: float, diameter_ratio: ArrayLike = 0
 class BeamSection:
     """A length of shaft, cylindrical or conical, solid or bored.
 
-    Parameters
+    Attributes
     ----------
     length : float
         Length along x, m.
@@ -112,7 +112,7 @@ class BeamSection:
 class RigiditySection:
     """A uniform length of shaft given by its rigidities rather than its shape.
 
-    Parameters
+    Attributes
     ----------
     length : float
         Length along x, m.
@@ -158,7 +158,7 @@ Section = BeamSection | RigiditySection
 class ElementIntegrals:
     """Flexibility and weight of a length of shaft, clamped at its left end.
 
-    Parameters
+    Attributes
     ----------
     flexibility : ndarray, (6, 6)
         Motion of the right end per unit force there.

@@ -46,7 +46,7 @@ _AXES = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 class BeamSolution:
     """Displacements and reactions of load cases.
 
-    Parameters
+    Attributes
     ----------
     stations : ndarray, (S,) or ()
         Where displacements are given, m; for a scalar they have no axis S.
@@ -80,7 +80,7 @@ class UnitLoadResponse:
 
     The axis L, or S, is there when the stations were given as a sequence, not for a scalar.
 
-    Parameters
+    Attributes
     ----------
     load_stations : ndarray, (L,) or ()
         Where loads may act, m.
@@ -171,6 +171,7 @@ def unit_load_response(
     Parameters
     ----------
     beam : Beam
+        The shaft on its supports.
     load_stations : array_like, (L,) or scalar
         m.
     at : array_like, (S,) or scalar, optional
@@ -257,6 +258,7 @@ def solve(
     Parameters
     ----------
     beam : Beam
+        The shaft on its supports.
     load_stations : array_like, (L,) or scalar
         m.
     loads : array_like, (..., L, 6), or (..., 6) for a scalar load station
@@ -284,6 +286,7 @@ def shaft_stiffness(beam: Beam, first: float, second: float) -> Floats:
     Parameters
     ----------
     beam : Beam
+        The shaft on its supports.
     first, second : float
         Stations, m, first < second.
 

@@ -44,9 +44,9 @@ class Cache:
 
     Attributes
     ----------
-    folder
+    folder : Path or None
         Where they are kept, in one folder a kind; None keeps nothing.
-    limit
+    limit : int
         Most bytes of all that is kept.
     """
 
@@ -63,9 +63,9 @@ class Cache:
 
         Parameters
         ----------
-        kind
+        kind : Kind
             What it is.
-        content
+        content : Mapping[str, Any]
             All that it depends on, as plain data that JSON can hold.
         """
         file = self._file(kind, content)

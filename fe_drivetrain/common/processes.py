@@ -97,7 +97,7 @@ class Processes:
         ----------
         function : callable
             Of a module that can be imported.
-        *arguments
+        *arguments : Any
             Anything that can be pickled.
 
         Returns

@@ -34,13 +34,13 @@ class Surface:
 
     Attributes
     ----------
-    centre
+    centre : Floats
         (d,) dimensions about which the polynomial is written.
-    powers
+    powers : Floats
         (t, d) powers of the logs in each term.
-    coefficients
+    coefficients : Floats
         (t, k).
-    errors
+    errors : Floats
         (n, k) log of each sample's result less that of a surface fitted to the others.
     """
 
@@ -76,13 +76,13 @@ class Calibrated:
 
     Attributes
     ----------
-    x
+    x : Floats
         (d,) the dimensions.
-    values
+    values : Floats
         (k,) what the model gives there.
-    miss
+    miss : float
         Largest relative distance of a value from what was wanted.
-    evaluations
+    evaluations : int
         Of the model.
     """
 
@@ -104,9 +104,9 @@ def fitted(x: Floats, values: Floats, order: int = 2) -> Surface:
 
     Parameters
     ----------
-    x, values
+    x, values : Floats
         (n, d) dimensions and (n, k) results, all positive.
-    order
+    order : int
         1: each result a product of powers. 2: powers that change with the dimensions.
 
     Raises
@@ -151,14 +151,14 @@ def nearest(
 
     Parameters
     ----------
-    surface
+    surface : Surface
         Through samples.
-    start
+    start : Floats
         (d,) within the bounds; what is not free stays there.
-    free
+    free : Sequence[int]
         Which dimensions may change; where there are more of them than results, those that come
         out are near the start.
-    low, high
+    low, high : Floats
         (d,) bounds.
     """
     index = np.array(free)
@@ -207,17 +207,17 @@ def calibrated(
 
     Parameters
     ----------
-    evaluate
+    evaluate : Evaluate
         The model, expensive.
-    surface
+    surface : Surface
         Its surface, or that of a coarser one.
-    start, free, wanted, low, high
+    start, free, wanted, low, high : Floats, Sequence[int], Floats, Floats, Floats
         As for `nearest`.
-    tolerance
+    tolerance : float
         Relative, of every result.
-    most
+    most : int
         Rounds; the best one is the answer.
-    ratio
+    ratio : Floats or float
         (k,) of the surface over the model, as far as it is known beforehand.
     """
     x = nearest(surface, start, free, wanted * ratio, low, high)

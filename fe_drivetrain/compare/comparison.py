@@ -29,7 +29,7 @@ BLOCK = 1 << 14
 class Comparison:
     """Every statistic of a model against a reference; arrays (N, k) by history and quantity.
 
-    Parameters
+    Attributes
     ----------
     names, units : tuple of str, (k,)
         Of the quantities.
@@ -148,7 +148,7 @@ def compare_streamed(
     chunks : callable
         Called twice; gives the same chunks in the same order each time. Twice, because what the
         percentage leaves out, and the residuals of the model uncertainty, depend on sums over all.
-    names, units, negligible, exclude_below
+    names, units, negligible, exclude_below : see `compare`
         As for `compare`.
 
     Returns

@@ -52,23 +52,23 @@ class GridConvergence:
 
     Attributes
     ----------
-    sizes, values
+    sizes, values : tuple[float, ...]
         As given, coarse first.
-    behaviour
+    behaviour : Behaviour
         "monotone", "oscillatory", "divergent" or "converged", by the last three values.
-    order
+    order : float
         Observed order of convergence; NaN where there is none.
-    extrapolated
+    extrapolated : float
         The value at element size zero; the finest value where no order is seen and none is given.
-    extrapolated_uncertainty
+    extrapolated_uncertainty : float
         Half width of the band that the limit is expected in, in the unit of the values.
-    uncertainty
+    uncertainty : float
         Half width of the band of the finest value, in its unit.
-    gci_fine, gci_coarse
+    gci_fine, gci_coarse : float
         Grid convergence index of the two finest meshes and of the two before, relative to the
         finer value of each (GCI21, GCI32); NaN where there is no order. ``uncertainty`` is at
         least ``gci_fine`` times the finest value, and more where the order is in doubt.
-    asymptotic_ratio
+    asymptotic_ratio : float
         gci_coarse / (r^p gci_fine), 1 in the asymptotic range. With the order observed on the same
         three meshes it equals the ratio of the two finest values, whatever the series, and so
         tests nothing; it does with an expected order.
@@ -134,20 +134,20 @@ def grid_convergence(
 
     Parameters
     ----------
-    sizes
+    sizes : ArrayLike
         (n,) element sizes, coarse first, in any unit; of cell counts N in d dimensions N^(-1/d).
-    values
+    values : ArrayLike
         (n,) what was computed with them.
-    safety
+    safety : float
         Factor on the distance to the limit: 1.25 with three meshes (Roache 1994).
-    expected_order
+    expected_order : float or None
         Of the theory. A higher observed order is not believed; where the two are more than a tenth
         apart, the safety factor is 3 (Oberkampf and Roy 2010, section 8.7; recalled, not re-read).
-    least_order
+    least_order : float or None
         Order to count on at the worst, as where stress is singular. The band then holds that limit
         too, and where no order is observed, it is the one that is used. Oberkampf and Roy take 0.5
         for the least that is believed.
-    round_off
+    round_off : float
         Differences below this share of the values are none.
 
     Raises
@@ -214,7 +214,7 @@ def richardson(sizes: ArrayLike, values: ArrayLike, order: float) -> float:
 
     Parameters
     ----------
-    sizes, values
+    sizes, values : ArrayLike
         (2,), coarse first.
     """
     h, v = np.asarray(sizes, dtype=float), np.asarray(values, dtype=float)
@@ -226,7 +226,7 @@ def observed_order(sizes: ArrayLike, values: ArrayLike) -> float:
 
     Parameters
     ----------
-    sizes, values
+    sizes, values : ArrayLike
         (3,), coarse first.
     """
     h, v = np.asarray(sizes, dtype=float), np.asarray(values, dtype=float)

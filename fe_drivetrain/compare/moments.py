@@ -19,9 +19,9 @@ from fe_drivetrain.common.arrays import Floats
 class Moments:
     """Sums over samples of a reference and a model, from which all but two statistics follow.
 
-    Parameters
+    Attributes
     ----------
-    count
+    count : int
         Samples.
     origin : (3, k)
         Of reference, model and their difference: a value near their means.

@@ -158,7 +158,7 @@ def model_uncertainty(reference: ArrayLike, model: ArrayLike) -> tuple[Floats, F
 class GroupStatistics:
     """Mean and spread over each group of histories.
 
-    Parameters
+    Attributes
     ----------
     groups : tuple, (g,)
         Labels in order of first appearance.

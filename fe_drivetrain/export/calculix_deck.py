@@ -42,15 +42,15 @@ def write_inp(
 
     Parameters
     ----------
-    model
+    model : Model
         The model.
-    path
+    path : str or Path
         The file, which appears whole or not at all; CalculiX wants it to end in ``.inp``.
-    loads
+    loads : Sequence[str]
         Which of `model.LOADS`, a step each: ccx factorises again for every step.
-    solver
+    solver : str
         Of CalculiX, as in "SPOOLES"; its own choice where not given.
-    fields
+    fields : bool
         Whether displacements and stresses go to a .frd file, too, to look at.
 
     Raises

@@ -28,21 +28,21 @@ class DeckPlan:
 
     Attributes
     ----------
-    positions
+    positions : Floats
         (n, 3) of all nodes; those of the mesh come first [m].
-    names
+    names : Mapping[int, str]
         What each node beyond the mesh is, by its index.
-    references
+    references : Mapping[str, tuple[int, int]]
         Indices of the two nodes of each reference point.
-    groups
+    groups : Sequence[tuple[str, Ints]]
         Equations: what they are, and the (m,) degrees of freedom that they give.
-    T
+    T : sparse.csr_array
         (3 n, 3 n) all degrees of freedom from those that no equation gives.
-    held
+    held : Ints
         (m,) degrees of freedom of reference points that are zero.
-    springs
+    springs : Sequence[tuple[int, float]]
         Degree of freedom and stiffness of springs to ground [N/m, N m/rad].
-    loads
+    loads : Floats
         (3 n, m) the unit loads at nodes and reference points.
     """
 

@@ -32,15 +32,15 @@ class Printed:
 
     Attributes
     ----------
-    quantity
+    quantity : str
         "displacements", "forces" or "total internal energy".
-    set_name
+    set_name : str
         Of the nodes or elements.
-    time
+    time : float
         Total time, which counts the steps.
-    nodes
+    nodes : Ints
         (n,) node numbers of the deck, from 1 on; empty for totals.
-    values
+    values : Floats
         (n, 3) [m, N], or (1, 1) [J].
     """
 
@@ -59,17 +59,17 @@ class DeckResponse:
 
     Attributes
     ----------
-    displacements
+    displacements : Floats
         (n_nodes, 3, m) [m].
-    motions
+    motions : Mapping[str, Floats]
         (6, m) by reference point [m, rad].
-    reactions
+    reactions : Mapping[str, Floats]
         (6, m) by name, "NAME" of each bearing and "gearbox": what the drivetrain puts on its
         surroundings [N, N m]; moments about the bearing's centre, or the gearbox.
-    base_forces
+    base_forces : Mapping[str, Floats]
         (n, 3, m) by bearing: forces that the support puts on the nodes of the housing's base,
         in the order of ``mesh.face_nodes`` [N].
-    strain_energy
+    strain_energy : Mapping[str, Floats]
         (m,) by part [J].
     """
 
@@ -104,11 +104,11 @@ def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) 
 
     Parameters
     ----------
-    model
+    model : Model
         The model that the deck was written from.
-    path
+    path : str or Path
         The .dat file.
-    loads
+    loads : Sequence[str]
         Those of its deck.
 
     Raises

@@ -47,17 +47,17 @@ class CraigBampton:
 
     Attributes
     ----------
-    points
+    points : tuple[str, ...]
         Names of the n points.
-    positions
+    positions : Floats
         (n, 3) [m].
-    point_stiffness, point_mass
+    point_stiffness, point_mass : Floats
         (6 n, 6 n) of the points alone (Guyan).
-    omega
+    omega : Floats
         (m,) circular frequencies of the modes, ascending [rad/s]; each has unit mass.
-    coupling
+    coupling : Floats
         (6 n, m) mass between points and modes.
-    origin
+    origin : Origin
         Where it comes from.
     """
 
@@ -123,14 +123,14 @@ def craig_bampton_shaft(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    modes
+    modes : int
         How many, the lowest; bending modes come in pairs, and no pair is parted, so it may be one
         more. 0 is Guyan's condensation.
-    at
+    at : Sequence[str] or None
         Points that are kept, and stand still; all where not given.
-    size, order, rings
+    size, order, rings : float or None, int or None, bool
         As for `fe_drivetrain.fidelity.shafts.meridian_shaft`.
 
     Raises
@@ -198,9 +198,9 @@ def free_frequencies(
 
     Parameters
     ----------
-    scene, size, order, rings
+    scene, size, order, rings : Scene, float or None, int or None, bool
         As for `craig_bampton_shaft`.
-    count
+    count : int
         How many of each harmonic, 0 and 1, rigid motions not counted.
 
     Returns

@@ -52,13 +52,13 @@ def write(path: str | Path, element: Superelement, format: str, overwrite: bool 
 
     Parameters
     ----------
-    path
+    path : str or Path
         The file.
-    element
+    element : Superelement
         What is written.
-    format
+    format : str
         A name of `FORMATS`.
-    overwrite
+    overwrite : bool
         Whether an existing file is replaced.
 
     Raises

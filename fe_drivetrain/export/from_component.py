@@ -33,16 +33,16 @@ def component_superelement(
 
     Parameters
     ----------
-    component
+    component : Component
         The component.
-    what
+    what : str
         "body": the free body, with its mass. "supported": on its bushings, or held at its flange.
-    at
+    at : Sequence[str] or None
         Points that are kept. Where not given, all of the body, and of the supported component
         those that loads come in by.
-    level
+    level : int
         1 frame of beams (without mass), 3 solid.
-    solids
+    solids : tuple[SolidComponent, SolidComponent] or None
         The component's solid, and that with mesh sizes times `scene_superelements.COARSER`, where
         they are solved already.
 

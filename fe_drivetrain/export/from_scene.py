@@ -29,11 +29,11 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    level
+    level : int
         1 beam (without mass), 2 meridian, 3 solid with the rings of its bearings.
-    at
+    at : Sequence[str] or None
         Points that are kept; all where not given.
 
     Raises

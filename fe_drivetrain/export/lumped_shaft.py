@@ -54,11 +54,11 @@ def rigid_mass(mass: float, centre: Floats, inertia: Floats) -> Floats:
 
     Parameters
     ----------
-    mass
+    mass : float
         [kg].
-    centre
+    centre : Floats
         (3,) of its mass from the point [m].
-    inertia
+    inertia : Floats
         (3, 3) about the point [kg m^2].
     """
     x, y, z = mass * np.asarray(centre)

@@ -35,17 +35,17 @@ def superelement_of(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    what
+    what : str
         "shaft": the free shaft. "drivetrain": the shaft on its supports; up to level 3 its
         housings are springs, solved apart, and what their two ways to hold the shaft differ by is
         the band (errors of the meshes are not in it). "seats": all bearings with their housings,
         one node a seat. Or the name of a bearing: it and its housing, on the ground.
-    at
+    at : Sequence[str] or None
         Names of points: "hub", "gearbox", those of bearings. Where not given, all points of the
         shaft, and the hub of the drivetrain.
-    level
+    level : int or str
         Of the ladder, or "auto": 2 of shaft and drivetrain, 4 of a bearing.
 
     Raises

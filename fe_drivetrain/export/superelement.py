@@ -28,15 +28,15 @@ class Origin:
 
     Attributes
     ----------
-    scene
+    scene : str
         Title.
-    scene_hash
+    scene_hash : str
         SHA-256 of the scene's values.
-    level
+    level : str
         Of the ladder, with its name.
-    mesh
+    mesh : str
         In words.
-    program
+    program : str
         Name and version.
     """
 
@@ -53,22 +53,22 @@ class Superelement:
 
     Attributes
     ----------
-    name
+    name : str
         Letters, digits and "_": other programs know it by that.
-    points
+    points : tuple[str, ...]
         Names of the n points.
-    positions
+    positions : Floats
         (n, 3) [m], in `FRAME`.
-    stiffness
+    stiffness : Floats
         (6 n, 6 n), symmetric: `components.MOTIONS` of each point to forces and moments there.
-    mass
+    mass : Floats or None
         (6 n, 6 n), symmetric; None where there is none.
-    supported
+    supported : bool
         Whether the scene's supports are in it; else it is free, and has six rigid motions.
-    band
+    band : float or None
         Half width of the uncertainty of the stiffness, of any entry relative to the diagonal
         entries of its row and column; None where it is not known.
-    origin
+    origin : Origin
         Where it comes from.
     """
 

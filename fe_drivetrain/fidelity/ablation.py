@@ -22,9 +22,9 @@ class Effect:
 
     Attributes
     ----------
-    detail
+    detail : str
         What was left out.
-    change
+    change : float
         Of the quantity, relative: with its sign for one load, else of the whole row.
     """
 
@@ -43,13 +43,13 @@ def effects(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    quantity
+    quantity : Quantity
         What is asked for.
-    level
+    level : int
         1 or 2, see `levels.shaft_level`.
-    housings
+    housings : Mapping[str, Floats]
         Stiffness of each bearing unit, faces held in shape (`bearing_units.unit_stiffness`).
     """
     length = scene.shaft.length

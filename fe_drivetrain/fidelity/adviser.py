@@ -41,10 +41,10 @@ class Quantity:
 
     Attributes
     ----------
-    name
+    name : str
         "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
         "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
-    load
+    load : Floats or None
         (10,) factors of `model.LOADS`; None for a reaction to all hub loads, one at a time.
     """
 
@@ -95,17 +95,17 @@ class LevelResult:
 
     Attributes
     ----------
-    model
+    model : LevelModel
         The model that was solved.
-    values
+    values : Floats
         Of the quantity.
-    seconds
+    seconds : float
         Wall time of all that its value needs; what its estimate takes comes on top.
-    estimate
+    estimate : float
         Error expected before any more expensive model is run, relative: 0 where statics decides;
         half the range of its two bounds and the change from beam to meridian where housings are
         springs; the band of the mesh where it is the assembly; NaN where it has none.
-    error
+    error : float
         Difference to the last result, relative.
     """
 
@@ -122,13 +122,13 @@ class Advice:
 
     Attributes
     ----------
-    quantity, tolerance
+    quantity, tolerance : Quantity, float
         What was asked, the tolerance relative.
-    results
+    results : Sequence[LevelResult]
         From cheap to expensive.
-    chosen
+    chosen : int or None
         Index of the cheapest result that is within the tolerance; None where none is.
-    springs
+    springs : Mapping[str, Floats]
         Stiffness of the bearing units, faces held in shape, where the ladder went so far.
     """
 
@@ -184,15 +184,15 @@ def advise(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene; its mesh sizes are the top level's.
-    quantity
+    quantity : Quantity
         What is asked for.
-    tolerance
+    tolerance : float
         Allowed error, relative.
-    to_the_top
+    to_the_top : bool
         Whether to go on to the assembly where a cheaper level is known to be enough.
-    report
+    report : callable
         Called with what is being done.
 
     Raises

@@ -46,15 +46,15 @@ def unit_stiffness(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    name
+    name : str
         Of the bearing.
-    coupling
+    coupling : Coupling
         Of the face to its reference point.
-    method
+    method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
-    ring
+    ring : bool
         Whether such a ring gives; else it is rigid, or part of a solid shaft, and the face is that
         of the housing, or of the rollers.
 
@@ -123,9 +123,9 @@ def scene_supports(scene: Scene, housings: Mapping[str, Floats]) -> dict[str, Fl
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene; what its gearbox holds rigidly has inf on the diagonal.
-    housings
+    housings : Mapping[str, Floats]
         (6, 6) of each bearing unit by name, see `unit_stiffness`.
     """
     supports = {unit.bearing.name: housings[unit.bearing.name] for unit in scene.bearing_units}

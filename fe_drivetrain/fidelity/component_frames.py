@@ -55,9 +55,9 @@ def housing_frame(component: HousingComponent, ring_gives: bool) -> Condensed:
 
     Parameters
     ----------
-    component
+    component : HousingComponent
         The component.
-    ring_gives
+    ring_gives : bool
         Whether the ring is a ring of beams, too, rigid only where the arms meet it; else it is
         rigid altogether.
     """

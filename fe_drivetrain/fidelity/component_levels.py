@@ -81,9 +81,9 @@ def frame_level(component: Component, ring_gives: bool = True) -> LevelModel:
 
     Parameters
     ----------
-    component
+    component : Component
         The component.
-    ring_gives
+    ring_gives : bool
         Of a housing, whether the ring is of beams, too.
     """
     start = time.perf_counter()
@@ -108,9 +108,9 @@ def solid_level(component: Component, solid: SolidComponent | None = None) -> Le
 
     Parameters
     ----------
-    component
+    component : Component
         The component.
-    solid
+    solid : SolidComponent or None
         It, where it is solved already.
     """
     start = time.perf_counter()
@@ -174,10 +174,10 @@ class GearboxSprings(NamedTuple):
 
     Attributes
     ----------
-    stiffness
+    stiffness : tuple[float, ...]
         Six values along and about x, y, z at the ring's middle, each with the other motions held
         [N/m, N m/rad].
-    left_out
+    left_out : dict[str, float]
         Couplings that six springs cannot have, as in "ux-rz", each over the root of the product of
         the two stiffnesses that it couples; those below `NAMED_FROM` are not named.
     """
@@ -191,7 +191,7 @@ def gearbox_springs(ring: Floats) -> GearboxSprings:
 
     Parameters
     ----------
-    ring
+    ring : Floats
         (6, 6), of `LevelModel.stiffness` at "ring" or of `stiffness_on_supports`.
     """
     share = scaled_to_unit_diagonal(ring)
@@ -210,10 +210,10 @@ class PinMotions:
 
     Attributes
     ----------
-    wind_up
+    wind_up : float
         Torque over the turn of the pins' middles about the axis, their way along the circle over
         its radius [N m/rad].
-    tilt
+    tilt : float
         Turn of a pin about the radius through it, for 1 N m of torque [rad/(N m)]: what takes the
         planet's teeth out of line.
     """

@@ -39,7 +39,7 @@ class SolidComponent(CondensedSolid):
 
     Attributes
     ----------
-    sizes
+    sizes : BodySizes
         The element sizes of its mesh.
     """
 
@@ -51,9 +51,9 @@ def solid_component(component: Component, method: str = "auto") -> SolidComponen
 
     Parameters
     ----------
-    component
+    component : Component
         The component; its supports have no part in this.
-    method
+    method : str
         Solver, see `fe_drivetrain.solve.solvers.factorise`.
 
     Raises

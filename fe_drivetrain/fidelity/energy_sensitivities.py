@@ -33,7 +33,7 @@ def energy_slopes(model: Model, response: Response) -> dict[str, Floats]:
 
     Parameters
     ----------
-    model, response
+    model, response : Model, Response
         A solved scene.
 
     Returns
@@ -85,9 +85,9 @@ def moment_elasticities(model: Model, response: Response, load: str) -> dict[str
 
     Parameters
     ----------
-    model, response
+    model, response : Model, Response
         A scene with one bearing, a gearbox spring along z, and none about y.
-    load
+    load : str
         Of `model.LOADS`.
 
     Raises

@@ -46,9 +46,9 @@ class Cost:
 
     Attributes
     ----------
-    seconds
+    seconds : float
         Wall time, meshes and solutions included.
-    unknowns
+    unknowns : int
         Of its largest system.
     """
 
@@ -62,18 +62,18 @@ class LevelModel:
 
     Attributes
     ----------
-    level
+    level : int
         0 to 4.
-    title
+    title : str
         Of the level, with what its housings are.
-    neglects
+    neglects : tuple[str, ...]
         What it leaves out.
-    cost
+    cost : Cost
         What it took.
-    reaction_matrices
+    reaction_matrices : Mapping[str, Floats]
         (6, 10) by bearing, and "gearbox": what the drivetrain puts on its surroundings, moments
         about the bearing's centre; NaN where the level cannot tell.
-    points, compliance
+    points, compliance : tuple[str, ...], Floats
         Names of n points, and (6 n, 6 n) motions of each for unit forces and moments at each, on
         the scene's supports; no points at level 0.
     """
@@ -165,13 +165,13 @@ def shaft_level(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    level
+    level : int
         1 beam, 2 meridian, 3 solid.
-    housings
+    housings : Mapping[str, Floats] or None
         (6, 6) stiffness of each bearing unit by name, see `housing_springs`; rigid where not given.
-    body
+    body : Condensed or None
         The condensed shaft, where there is one already.
     """
     start = time.perf_counter()
@@ -222,9 +222,9 @@ def housing_springs(
 
     Parameters
     ----------
-    scene, coupling
+    scene, coupling : Scene, Coupling
         See `bearing_units.unit_stiffness`.
-    level
+    level : int
         Of the shaft that they are for: a solid one (3) has all rings itself.
     """
     start = time.perf_counter()

@@ -38,11 +38,11 @@ class Solved:
 
     Attributes
     ----------
-    body
+    body : Condensed
         The free shaft.
-    springs
+    springs : Mapping[str, Floats]
         (6, 6) stiffness of each bearing unit.
-    model
+    model : LevelModel
         The shaft on them.
     """
 
@@ -57,14 +57,14 @@ class Number:
 
     Attributes
     ----------
-    name
+    name : str
         "main_bearing.My" for the load given, "main_bearing.My of hub.Fz" for a unit of one load,
         "hub.stiffness.uz", "shaft.torsional", "main_bearing.tilt".
-    unit
+    unit : str
         Unit of the value.
-    of
+    of : callable
         Its value for a solved scene.
-    quantity
+    quantity : Quantity or None
         The adviser's name for it, if the adviser knows it.
     """
 
@@ -133,11 +133,11 @@ def numbers(scene: Scene, names: Sequence[str], load: Floats | None = None) -> l
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    names
+    names : Sequence[str]
         Of `known_names`.
-    load
+    load : Floats or None
         (10,) factors of `model.LOADS` for reactions; where not given, a reaction stands for six
         numbers, one for a unit of each hub load.
 

@@ -71,11 +71,11 @@ def beam_shaft(scene: Scene, shear: bool = True, rings: bool = True) -> Condense
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    shear
+    shear : bool
         Whether shear deforms it.
-    rings
+    rings : bool
         Whether it has its rings, see `ringed_shaft`; to a beam they are wholly part of it, which is
         stiffer than a solid is.
     """
@@ -134,15 +134,15 @@ def meridian_shaft(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene; housings have no part in this.
-    size
+    size : float or None
         Largest edge length [m]; the largest diameter where not given, for elements are of high
         order and graded to steps and to the ends of seats: stiffness is right to 1e-4, of shafts
         with fillets to 4e-4.
-    order
+    order : int or None
         See `fe_drivetrain.revolution.meridian_mesh.meridian`.
-    rings
+    rings : bool
         Whether it has its rings, see `ringed_shaft`.
     """
     names, positions = reference_points(scene)
@@ -173,9 +173,9 @@ def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene; the housings have no part in this.
-    method
+    method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
     """
     names, positions = reference_points(scene)

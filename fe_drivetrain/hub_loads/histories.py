@@ -42,15 +42,15 @@ Attribute = float | int | str
 class LoadHistory:
     """Hub loads against time, in the shaft frame that does not rotate.
 
-    Parameters
+    Attributes
     ----------
-    name
+    name : str
         What the history is called in tables and messages.
     time : (n,) [s]
         Uniform to within ``STEP_TOLERANCE``, increasing, at least ``MIN_SAMPLES`` long.
     loads : (n, 6) [N, N, N, N m, N m, N m]
         Fx, Fy, Fz, Mx, My, Mz of the rotor on the shaft, at the hub.
-    attributes
+    attributes : Mapping[str, Attribute]
         What is known of the conditions: wind_speed [m/s], turbulence, shear, seed, source.
 
     Raises
@@ -110,9 +110,13 @@ def require_sound(
 
     Parameters
     ----------
-    time : (n,) [s]
-    columns : name to (n,)
-    rows : (n,)
+    source : str
+        The file, for messages.
+    time : ndarray, (n,)
+        [s].
+    columns : mapping
+        Values (n,) by name.
+    rows : sequence of int, (n,)
         Line of each sample in a text file; without it samples are counted from 1.
     """
 

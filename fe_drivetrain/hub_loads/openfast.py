@@ -58,13 +58,13 @@ def read_openfast(
 
     Parameters
     ----------
-    path
+    path : str or path-like
         File to read; units are the file's own.
-    gage_distance [m]
-        ShftGagL of the ElastoDyn input, to carry strain-gage moments to the hub where the file has
+    gage_distance : float or None
+        ShftGagL of the ElastoDyn input [m], to carry strain-gage moments to the hub where the file has
         no others.
-    azimuth_blade1_up [rad]
-        AzimB1Up of the ElastoDyn input: the azimuth that is printed when blade 1 points up.
+    azimuth_blade1_up : float
+        AzimB1Up of the ElastoDyn input [rad]: the azimuth that is printed when blade 1 points up.
 
     Raises
     ------

@@ -75,15 +75,15 @@ RATE = 20.0
 class Condition:
     """The wind of one history.
 
-    Parameters
+    Attributes
     ----------
-    wind_speed [m/s]
-        Mean at hub height, within the operating range.
-    turbulence
+    wind_speed : float
+        Mean at hub height [m/s], within the operating range.
+    turbulence : str
         ``"low"``, ``"medium"``, ``"high"`` (IEC classes C, B, A) or ``"none"``.
-    shear
+    shear : float
         Power-law exponent, 0 to 1.
-    seed
+    seed : int
         Of the random numbers, not negative.
 
     Raises
@@ -182,9 +182,13 @@ def hub_loads(
 
     Parameters
     ----------
-    condition
-    duration [s], rate [Hz]
-    rotor
+    condition : Condition
+        The wind.
+    duration : float
+        Length of the history [s].
+    rate : float
+        Samples per second [Hz].
+    rotor : Rotor or None
         The default rotor if not given.
 
     Raises
@@ -214,13 +218,13 @@ def hub_load_set(
 
     Parameters
     ----------
-    conditions
+    conditions : Sequence[Condition] or None
         ``surrogate_grid()`` if not given.
-    duration [s], rate [Hz], rotor
+    duration, rate, rotor : float, float, Rotor or None
         As for ``hub_loads``.
-    cache
+    cache : bool or str or path-like
         Whether to keep histories in the user's cache, or another folder for them.
-    progress
+    progress : callable or None
         Called with the number done and the number of all.
 
     Raises

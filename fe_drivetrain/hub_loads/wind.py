@@ -75,8 +75,12 @@ def kaimal_spectrum(frequency: ArrayLike, wind_speed: float, sigma: float, lengt
 
     Parameters
     ----------
-    frequency : array [Hz]
-    wind_speed [m/s], sigma [m/s], length [m]
+    frequency : array_like
+        [Hz].
+    wind_speed, sigma : float
+        Mean and standard deviation of the speed [m/s].
+    length : float
+        Integral length scale L [m].
     """
     passage = length / wind_speed
     f = np.asarray(frequency, dtype=float)
@@ -109,9 +113,10 @@ class DiscTurbulence:
 
     Attributes
     ----------
-    radius : (r,) [m]
+    radius : array_like, (r,)
+        Of the rings [m].
         Rings of the disc.
-    samples, rate
+    samples, rate : int, float
         Length n of a history and its samples a second [Hz].
     factors : (M + 1, k, r, r)
         For each azimuth harmonic and frequency line, the lower Cholesky factor of the rings'
@@ -162,10 +167,18 @@ def disc_turbulence(
 
     Parameters
     ----------
-    radius : (r,) [m]
-    harmonics
+    radius : array_like, (r,)
+        Of the rings [m].
+    harmonics : int
         Highest azimuth harmonic M.
-    wind_speed [m/s], length [m], coherence_length [m], duration [s], rate [Hz]
+    wind_speed : float
+        Mean [m/s].
+    length, coherence_length : float
+        Integral length scale, and that of the coherence [m].
+    duration : float
+        Length of the histories [s].
+    rate : float
+        Samples per second [Hz].
     """
     r = np.asarray(radius, dtype=float)
     samples = round(duration * rate)
@@ -203,9 +216,10 @@ def at_azimuth(coefficients: Singles, azimuth: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    coefficients : (2 M + 1, r, n)
+    coefficients : ndarray, (2 M + 1, r, n)
         As ``DiscTurbulence.draw`` gives them.
-    azimuth : (n,) [rad]
+    azimuth : array_like, (n,)
+        [rad].
     """
     psi = np.asarray(azimuth, dtype=float)
     m = (len(coefficients) - 1) // 2

@@ -28,11 +28,11 @@ class Constraint:
 
     Attributes
     ----------
-    name
+    name : str
         What the rows are, for messages.
-    rows
+    rows : sparse.csr_array
         (m, n_dofs) coefficients.
-    pivots
+    pivots : Ints
         (m,) the degree of freedom that each row is solved for.
     """
 
@@ -47,11 +47,11 @@ class ReferencePoint:
 
     Attributes
     ----------
-    name
+    name : str
         What the point is: "hub", "gearbox", ...
-    position
+    position : Floats
         (3,) [m].
-    motion
+    motion : sparse.csr_array
         (6, n_dofs): displacement [m] and rotation [rad] of the point from all degrees of freedom.
         Its transpose spreads a force and a moment at the point over the degrees of freedom.
     """
@@ -89,11 +89,11 @@ def sliding_sphere(
 
     Parameters
     ----------
-    inner, outer
+    inner, outer : Ints
         (n,) nodes of the convex and of the concave side, pairwise at the same place.
-    points
+    points : Floats
         (n_nodes, 3) node coordinates [m].
-    centre
+    centre : Floats
         (3,) centre of the sphere [m].
     """
     normal = points[outer] - centre
@@ -122,13 +122,13 @@ def averaged_sphere(
 
     Parameters
     ----------
-    inner, outer
+    inner, outer : Ints
         (n,) nodes of the convex and of the concave side.
-    inner_weights, outer_weights
+    inner_weights, outer_weights : Floats
         Integrals of the shape functions over the face at those nodes [m^2].
-    groups
+    groups : Ints
         (2 n,) group number from 0 on of each node, inner ones first.
-    first_dof
+    first_dof : int
         First of the 3 n_groups degrees of freedom that are the groups' sums.
     """
     nodes = np.concatenate([inner, outer])
@@ -183,11 +183,11 @@ def centred_weights(weights: Floats, points: Floats, centre: Floats) -> Floats:
 
     Parameters
     ----------
-    weights
+    weights : Floats
         (n,) integrals of the shape functions over the face [m^2].
-    points
+    points : Floats
         (n, 3) [m].
-    centre
+    centre : Floats
         (3,) [m].
     """
     r = points - centre
@@ -204,13 +204,13 @@ def shared_motion(
 
     Parameters
     ----------
-    name, position
+    name, position : str, Floats
         Of the point that moves so.
-    motion
+    motion : sparse.csr_array
         (6, n_dofs) the motion from the nodes' displacements.
-    groups
+    groups : Sequence[Ints]
         Nodes of each group; together all that the motion has, none of them twice.
-    first
+    first : int
         First of the 6 len(groups) degrees of freedom.
     """
     n_dofs = motion.shape[1]
@@ -268,13 +268,13 @@ def averaged_point(
 
     Parameters
     ----------
-    nodes
+    nodes : Ints
         (n,) nodes of the face.
-    weights
+    weights : Floats
         (n,) integrals of the shape functions over the face [m^2].
-    points
+    points : Floats
         (n_nodes, 3) node coordinates [m].
-    position
+    position : Floats
         (3,) where the point is [m].
     """
     w = weights / weights.sum()
@@ -291,11 +291,11 @@ class Elimination:
 
     Attributes
     ----------
-    T
+    T : sparse.csr_array
         (n_dofs, n_dofs); the columns of eliminated degrees of freedom are empty.
-    free
+    free : NDArray[np.bool_]
         (n_dofs,) which degrees of freedom are left.
-    constraints
+    constraints : tuple[Constraint, ...]
         What was eliminated.
     """
 
@@ -308,7 +308,7 @@ class Elimination:
 
         Parameters
         ----------
-        residual
+        residual : Floats
             (n_dofs, n_loads) K u - f of the unconstrained system, which the constraints carry.
 
         Returns
@@ -328,7 +328,7 @@ class Elimination:
 
         Parameters
         ----------
-        right
+        right : Mapping[str, Floats]
             (m, n_loads) g of each constraint that is not homogeneous, by its name.
 
         Returns

@@ -34,9 +34,9 @@ class Joint:
 
     Attributes
     ----------
-    constraints
+    constraints : tuple[Constraint, ...]
         Its rows.
-    springs
+    springs : tuple[tuple[ReferencePoint, Floats], ...]
         Relative motions of bearing against housing, and their (6, 6) stiffness.
     """
 
@@ -72,9 +72,9 @@ def in_series(first: Floats, second: Floats) -> Floats:
 
     Parameters
     ----------
-    first
+    first : Floats
         Positive definite.
-    second
+    second : Floats
         As of `joint_stiffness`.
     """
     series = np.zeros((6, 6))
@@ -102,11 +102,11 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> 
 
     Parameters
     ----------
-    unit, mesh
+    unit, mesh : BearingUnit, Mesh
         Of interface "spring".
-    first_dof
+    first_dof : int
         First of 6 `SECTORS` degrees of freedom, the sectors' shares of the relative motion.
-    n_dofs
+    n_dofs : int
         Of the model.
     """
     name = f"{unit.bearing.name}.joint"
@@ -145,9 +145,9 @@ def roller_joint(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> Joint:
 
     Parameters
     ----------
-    unit, mesh
+    unit, mesh : BearingUnit, Mesh
         Of interface "rollers".
-    n_dofs
+    n_dofs : int
         Of the model.
     """
     rollers, bearing = _rollers(unit), unit.bearing
@@ -189,9 +189,9 @@ def roller_loads(unit: BearingUnit, motions: Mapping[str, Floats]) -> Floats:
 
     Parameters
     ----------
-    unit
+    unit : BearingUnit
         Of interface "rollers".
-    motions
+    motions : Mapping[str, Floats]
         (6, m) of "NAME.roller K", of bearing against housing.
 
     Returns

@@ -40,9 +40,9 @@ class WeakMotion:
 
     Attributes
     ----------
-    description
+    description : str
         What moves and how, as in "shaft can nearly turn about x through (0, 0, 0) m".
-    ratio
+    ratio : float
         Work of the springs over that of a spring of the bodies' own scale, Young's modulus times
         length, which is stretched by the largest displacement anywhere in the body.
     """
@@ -69,17 +69,17 @@ class _StrainFree:
 
     Attributes
     ----------
-    motions
+    motions : Floats
         (n_dofs, 6 n_bodies + n_extra) displacements; turning is measured by its `length`.
-    body_of_node
+    body_of_node : Ints
         (n_nodes,).
-    names
+    names : list[tuple[str, ...]]
         Of the parts of each body.
-    centres
+    centres : Floats
         (n_bodies, 3) that the bodies turn about [m].
-    length
+    length : float
         Turning by 1 / length moves the far end of the scene by about one [m].
-    extents
+    extents : Floats
         (n_bodies,) largest dimension of each body [m].
     """
 
@@ -124,11 +124,11 @@ def find_mechanisms(
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         The whole scene.
-    constraints
+    constraints : Sequence[Constraint]
         All interfaces and supports.
-    springs
+    springs : Sequence[tuple[ReferencePoint, Floats]]
         Reference points with their (6, 6) stiffness to ground.
     """
     free = _strain_free(mesh, _n_dofs(mesh, constraints, springs))
@@ -169,11 +169,11 @@ def weak_restraints(
 
     Parameters
     ----------
-    mesh, constraints, springs
+    mesh, constraints, springs : Mesh, Sequence[Constraint], Sequence[tuple[ReferencePoint, Floats]]
         As for `find_mechanisms`; the scene is no mechanism.
-    moduli
+    moduli : Mapping[str, float]
         Young's modulus of each part [Pa]; of a body of several parts the largest counts.
-    below
+    below : float
         Ratio of the restraint to the bodies' own stiffness that a motion must be below.
 
     Returns

@@ -93,16 +93,16 @@ def mortar_tie(
 
     Parameters
     ----------
-    name
+    name : str
         What is tied, for messages.
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    slave, master
+    slave, master : Ints
         (nf, k) facets in VTK's order, turned outward: triangles of 3 or 6, quadrilaterals of 4, 8
         or 9 nodes. The master face covers all of the slave face; it may be larger.
-    n_dofs
+    n_dofs : int
         Degrees of freedom of the whole model, three a node first.
-    multipliers
+    multipliers : Multipliers
         "standard" is the more accurate one, "dual" keeps the stiffness sparse on large faces (of
         more than about a thousand nodes); see above.
 
@@ -161,7 +161,7 @@ def node_tie(name: str, points: Floats, slave: Ints, master: Ints, n_dofs: int) 
 
     Parameters
     ----------
-    name, points, slave, master, n_dofs
+    name, points, slave, master, n_dofs : str, Floats, Ints, Ints, int
         As for `mortar_tie`.
 
     Raises
@@ -212,9 +212,9 @@ def settled(points: Floats, *ties: Constraint) -> Floats:
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m], as the ties were made with.
-    ties
+    *ties : Constraint
         Of `mortar_tie` or `node_tie`.
 
     Returns

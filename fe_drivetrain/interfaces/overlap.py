@@ -37,11 +37,11 @@ class Pieces:
 
     Attributes
     ----------
-    slave, master
+    slave, master : Ints
         (n,) facets.
-    area
+    area : Floats
         (n,) [m^2].
-    own, across
+    own, across : Floats
         (n, k, k) and (n, k, l): integrals of products of the slave's shape functions with
         themselves and with the master's [m^2].
     """
@@ -170,7 +170,7 @@ def _cut(polygons: Floats) -> tuple[Ints, Floats]:
 
     Parameters
     ----------
-    polygons
+    polygons : Floats
         (n, v, 2), anticlockwise.
 
     Returns

@@ -22,9 +22,9 @@ def marked(indicators: Floats, share: float = SHARE) -> Ints:
 
     Parameters
     ----------
-    indicators
+    indicators : Floats
         (n,) energy of the error in each cell.
-    share
+    share : float
         Of their sum, above 0 and at most 1.
 
     Returns
@@ -55,11 +55,11 @@ def refined_sizes(mesh: Mesh, cells: Ints, factor: float = FACTOR) -> LocalSizes
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         That was solved.
-    cells
+    cells : Ints
         Indices of the cells to refine.
-    factor
+    factor : float
         On their size; above 0 and below 1.
 
     Raises

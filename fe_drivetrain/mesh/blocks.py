@@ -31,11 +31,11 @@ class Block:
 
     Attributes
     ----------
-    points
+    points : Floats
         (n, 3) [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    faces
+    faces : dict[str, Ints]
         (n_facets, j) facets in VTK's order, turned outward, of ``x0``, ``x1``, ``y0``, ... as they
         were on the cube.
     """
@@ -61,13 +61,13 @@ def brick(
 
     Parameters
     ----------
-    divisions
+    divisions : tuple[int, int, int]
         Hexahedra along each direction.
-    nodes
+    nodes : int
         Of each element: hexahedra of 8, 20 or 27, or tetrahedra of 4 or 10, six in each hexahedron.
-    shape
+    shape : callable or None
         Of (n, 3) places in the unit cube: (n, 3) positions [m], right-handed.
-    edges
+    edges : Sequence[ArrayLike or None]
         For each direction the places of the elements' boundaries, from 0 to 1, in place of
         divisions of equal length.
 

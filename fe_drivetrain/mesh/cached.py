@@ -36,9 +36,9 @@ def cached_mesh(
 
     Parameters
     ----------
-    shaft, bearings, housings, sizes, bonded
-        As for `fe_drivetrain.mesh.generation.generate`.
-    cache
+    shaft, bearings, housings, sizes, bonded : see `fe_drivetrain.mesh.generation.generate`
+        As there.
+    cache : Cache or None
         The user's if not given.
 
     Returns

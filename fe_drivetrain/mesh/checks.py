@@ -32,18 +32,18 @@ class Fault:
 
     Attributes
     ----------
-    kind
+    kind : str
         "no position", "unused node", "inverted", "flat", "crack", "hanging node", "overlap",
         "pieces", "missing face", "wrong face" or "scale".
-    part
+    part : str
         Name of the part.
-    count
+    count : int
         How many elements, nodes or facets have it.
-    element
+    element : int
         The first element that has it, as `Mesh.cells` numbers them; -1 where it is none.
-    place
+    place : tuple[float, float, float]
         Where it is, m; of an element its centre.
-    sentence
+    sentence : str
         What is wrong, where, and how to fix it.
     """
 
@@ -78,11 +78,11 @@ def find_faults(
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         Any.
-    faces
+    faces : Iterable[str]
         Names of the faces that loads, supports and interfaces need.
-    joints
+    joints : Iterable[str] or None
         Names of the bearings whose outer face has nodes of its own at the places of its housing's;
         all where not given.
 
@@ -135,17 +135,17 @@ class _Facets:
 
     Attributes
     ----------
-    n_nodes
+    n_nodes : int
         Of the mesh.
-    keys
+    keys : Ints
         (4 ne,) one number for each triple of corners, ascending.
-    order
+    order : Ints
         (4 ne,) the facets that they belong to.
-    first, second
+    first, second : Ints
         (k,) facets of the pairs.
-    more
+    more : Ints
         Facets that a third cell has as well.
-    alone
+    alone : Ints
         (m,) facets of one cell only.
     """
 

@@ -42,7 +42,7 @@ class FacetKind(Nodal):
 
     Attributes
     ----------
-    degree
+    degree : int
         Of a quadrature that is exact to round-off for smooth loads on curved facets.
     """
 
@@ -90,13 +90,13 @@ class FacetPoints:
 
     Attributes
     ----------
-    values
+    values : Floats
         (n_q, k) shape functions.
-    positions
+    positions : Floats
         (n_facets, n_q, 3) [m].
-    normals
+    normals : Floats
         (n_facets, n_q, 3) unit normals, outward.
-    areas
+    areas : Floats
         (n_facets, n_q) what each point weighs [m^2].
     """
 
@@ -111,11 +111,11 @@ def facet_points(points: Floats, facets: Ints, degree: int | None = None) -> Fac
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    facets
+    facets : Ints
         (n_facets, k) node numbers in VTK's order, turned outward.
-    degree
+    degree : int or None
         Of the quadrature; that of the kind where not given.
     """
     kind = facet_kind(facets.shape[1])
@@ -138,9 +138,9 @@ def face_weights(points: Floats, facets: Ints, n_nodes: int, degree: int | None 
 
     Parameters
     ----------
-    points, facets, degree
+    points, facets, degree : Floats, Ints, int or None
         As for `facet_points`.
-    n_nodes
+    n_nodes : int
         Length of the result.
     """
     at = facet_points(points, facets, degree)
@@ -154,11 +154,11 @@ def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    n_nodes
+    n_nodes : int
         Length of the result.
     """
     kind = element_kind(cells.shape[1])

@@ -26,11 +26,11 @@ def write(
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         The mesh.
-    path
+    path : str or path-like
         File to write, ending in .vtu or .msh.
-    point_data
+    point_data : Mapping[str, npt.ArrayLike] or None
         Values at the nodes, (n,) or (n, k), by name.
 
     Raises

@@ -53,9 +53,9 @@ def generate(
 
     Parameters
     ----------
-    shaft, bearings, housings, sizes, bonded
-        As for `fe_drivetrain.geometry.build`.
-    local
+    shaft, bearings, housings, sizes, bonded : see `fe_drivetrain.geometry.build`
+        As there.
+    local : LocalSizes or None
         Smaller sizes where they are wanted, see `fe_drivetrain.mesh.adaptivity`.
 
     Returns
@@ -109,11 +109,11 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         The mesh as it was curved.
-    floor
+    floor : float
         Cells of a smaller scaled Jacobian are relaxed.
-    passes
+    passes : int
         How often at most; each halves what curvature is left.
     """
     points, moves = mesh.points.copy(), np.ones(len(mesh.points), dtype=bool)

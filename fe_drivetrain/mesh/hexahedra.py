@@ -52,13 +52,13 @@ class Hexahedra:
 
     Attributes
     ----------
-    points
+    points : Floats
         (n, 3), m.
-    cells
+    cells : Ints
         (ne, 8), (ne, 20) or (ne, 27) node ids in VTK's order.
-    front, rear
+    front, rear : Ints
         Ids of the nodes of the two end faces, ascending.
-    seats
+    seats : dict[str, Ints]
         Ids of the nodes of each bearing seat by its name, ascending.
     """
 
@@ -83,19 +83,19 @@ def shaft_hexahedra(
 
     Parameters
     ----------
-    shaft
+    shaft : Shaft
         Without fillets; bored or solid, stepped, tapered, with a flange or without.
-    size
+    size : float
         Largest length of an element along x and along the radius, m.
-    nodes
+    nodes : Nodes
         Of each element: 8, 20 or 27.
-    elements_per_turn
+    elements_per_turn : int
         Elements round the axis, a multiple of 4 where a length of the shaft is solid.
-    refinement
+    refinement : int
         Every element of the mesh for 1 is cut into so many along each of its three directions.
-    grading
+    grading : Grading
         Thinner layers at edges where stress is singular.
-    seats
+    seats : Mapping[str, tuple[float, float]] or None
         Ranges (low, high) of x of bearing seats by name, m; each gets its own nodes.
 
     Returns

@@ -15,11 +15,11 @@ class Renumbered(NamedTuple):
 
     Attributes
     ----------
-    points
+    points : Floats
         (n, 3), m.
-    cells
+    cells : Ints
         (ne, nodes of a cell) node ids.
-    number
+    number : Ints
         (n_before,) new id of each node of the mesh before, -1 for those left out.
     """
 
@@ -38,9 +38,9 @@ def straightened(points: Floats, cells: Ints) -> Floats:
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3), m.
-    cells
+    cells : Ints
         (ne, k) node ids in VTK's order.
 
     Returns
@@ -65,9 +65,9 @@ def first_order(points: Floats, cells: Ints) -> Renumbered:
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3), m.
-    cells
+    cells : Ints
         (ne, k) node ids in VTK's order.
 
     Raises

@@ -63,11 +63,11 @@ def jacobians(points: Floats, cells: Ints, at: Floats = CUBIC) -> Floats:
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3), m.
-    cells
+    cells : Ints
         (ne, 10) node ids.
-    at
+    at : Floats
         (q, 4) barycentric coordinates.
 
     Returns
@@ -100,7 +100,7 @@ def inverted_cells(mesh: Mesh, depth: int = 3) -> Ints:
 
     Parameters
     ----------
-    depth
+    depth : int
         How often an undecided element is split.
 
     Returns
@@ -142,15 +142,15 @@ class MeshQuality:
 
     Attributes
     ----------
-    minimum_scaled_jacobian
+    minimum_scaled_jacobian : float
         Least ratio of the Jacobian in a curved element to that of the straight-sided element
         with the same corners: 1 where every edge is straight, 0 or less where an element folds
         over (gmsh's minSJ). Sampled at the 20 points of the cubic lattice.
-    minimum_scaled_jacobian_of
+    minimum_scaled_jacobian_of : dict[str, float]
         The same, part by part.
-    elements, nodes
+    elements, nodes : int
         Their numbers.
-    inverted
+    inverted : int
         Number of elements not proved valid everywhere inside (`inverted_cells`).
     """
 

@@ -22,20 +22,20 @@ class Mesh:
 
     Attributes
     ----------
-    points
+    points : Floats
         (n, 3) positions of the nodes, m.
-    cells
+    cells : Ints
         (ne, 10) node ids in VTK's order, which is scikit-fem's too.
-    part
+    part : Ints
         (ne,) index into `part_names`.
-    part_names
+    part_names : tuple[str, ...]
         Names of the parts.
-    faces
+    faces : dict[str, Ints]
         (nf, 6) node ids of the six-node triangles of each named face, normal outward from the
         part whose name the face's name begins with.
-    named_points
+    named_points : dict[str, int]
         Node id of each named point.
-    kept
+    kept : bool
         Whether it was taken from the cache instead of generated.
     """
 

@@ -26,11 +26,11 @@ class Grading:
 
     Attributes
     ----------
-    steps
+    steps : int
         Layers at the re-entrant edges of steps in the outer diameter and the bore.
-    ends
+    ends : int
         Layers at the edges of the two end faces, singular where an end is held or rigid.
-    ratio
+    ratio : float
         Between 0 and 1.
     """
 
@@ -49,7 +49,7 @@ def shaft_quadrilaterals(
 
     Parameters
     ----------
-    shaft, size, refinement, grading
+    shaft, size, refinement, grading : Shaft, float, int, Grading
         As for `shaft_hexahedra`.
 
     Returns
@@ -206,11 +206,11 @@ class ShaftSection:
 
     Attributes
     ----------
-    nodes
+    nodes : Floats
         (n, 2) x and radius, m.
-    quads
+    quads : Ints
         (nq, 3, 3) node ids: along x, then along the radius.
-    core_edges
+    core_edges : Ints
         (nc, 3) node ids, along x, of the edges on the core of solid lengths.
     """
 
@@ -230,11 +230,11 @@ def section_of(
 
     Parameters
     ----------
-    pieces
+    pieces : list[Piece]
         From `pieces_of`.
-    size, refinement, grading
+    size, refinement, grading : float, int, Grading
         As of `shaft_quadrilaterals`.
-    seats
+    seats : Iterable[tuple[float, float]]
         Ranges (low, high) of x at which elements shall end [m].
     """
     shares = _lines(pieces)

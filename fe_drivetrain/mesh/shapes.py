@@ -41,9 +41,9 @@ class Nodal:
 
     Attributes
     ----------
-    element
+    element : Element
         scikit-fem's.
-    order
+    order : Ints
         scikit-fem's number of each of VTK's nodes.
     """
 
@@ -60,7 +60,7 @@ class Nodal:
 
         Parameters
         ----------
-        at
+        at : Floats
             (dim, n_q) reference coordinates.
         """
         values, gradients = shape_functions(self.element, at)
@@ -73,11 +73,11 @@ class ElementKind(Nodal):
 
     Attributes
     ----------
-    name
+    name : str
         As meshio and VTK call it.
-    corner
+    corner : Element
         The linear element on the same corners.
-    degree
+    degree : int
         Of the quadrature when the element is curved: two Gauss points a direction for linear, three
         for quadratic hexahedra; for tetrahedra what scikit-fem takes.
     """
@@ -134,9 +134,9 @@ def shape_functions(element: Element, points: Floats) -> tuple[Floats, Floats]:
 
     Parameters
     ----------
-    element
+    element : Element
         A scalar Lagrange element of scikit-fem.
-    points
+    points : Floats
         (dim, n_q) reference coordinates.
 
     Returns
@@ -164,11 +164,11 @@ def jacobian(points: Floats, cells: Ints, gradients: Floats) -> tuple[Floats, Fl
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    cells
+    cells : Ints
         (n_cells, n_nodes) node numbers.
-    gradients
+    gradients : Floats
         (n_q, 3, n_nodes) reference gradients.
 
     Returns

@@ -80,13 +80,13 @@ def repeated(
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         Of one part of the body.
-    copies
+    copies : Sequence[Floats]
         (3, 3) orthogonal matrices, the first the identity.
-    cuts
+    cuts : Sequence[str]
         Names of the faces where copies meet; they are no faces of the body.
-    own
+    own : Mapping[str, Sequence[str]]
         Names that a face has in each copy, one a copy, by its name in the mesh; all other faces
         are one in all copies.
 

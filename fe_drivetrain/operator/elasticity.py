@@ -22,9 +22,9 @@ class Pattern:
 
     Attributes
     ----------
-    indptr, indices
+    indptr, indices : NDArray[np.int32]
         Block rows and columns, as in ``scipy.sparse.bsr_array``.
-    slots
+    slots : NDArray[np.int32]
         (n_cells, k, k) the place in ``indices`` of each pair of a cell's nodes.
     """
 
@@ -38,9 +38,9 @@ def sparsity(cells: Ints, n_nodes: int) -> Pattern:
 
     Parameters
     ----------
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    n_nodes
+    n_nodes : int
         Number of block rows.
     """
     return Pattern(*kernels.sparsity(np.ascontiguousarray(cells, dtype=np.int32), n_nodes))
@@ -57,18 +57,18 @@ def assemble(
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order; tetrahedra of 4 or 10, hexahedra of 8, 20 or 27
         nodes.
-    lame
+    lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
-    n_dofs
+    n_dofs : int or None
         Order of the matrix, a multiple of three; degree of freedom 3 i + k is displacement k of
         node i, what comes after 3 n belongs to reference points and is left empty. 3 n where not
         given.
-    pattern
+    pattern : Pattern or None
         From `sparsity` for the same cells and n_dofs / 3 nodes, to spare making it again.
 
     Returns

@@ -94,11 +94,11 @@ def stresses(
 
     Parameters
     ----------
-    points, cells, lame
+    points, cells, lame : Floats, Ints, tuple[float, float]
         As for `assemble`.
-    u
+    u : Floats
         (3 n,) or longer, displacements [m].
-    at
+    at : Floats
         (3, n_q) reference coordinates in each element.
 
     Returns
@@ -129,11 +129,11 @@ def plus_products(
 
     Parameters
     ----------
-    K
+    K : sparse.bsr_array
         (n_dofs, n_dofs) in 3x3 blocks.
-    rows
+    rows : Floats
         (n_cells, p, k, 3): p rows a cell, over the displacements of its nodes.
-    cells
+    cells : Ints
         (n_cells, k) node numbers.
     """
     n_cells, p, k, _ = rows.shape

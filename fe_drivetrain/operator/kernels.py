@@ -124,13 +124,13 @@ def add_affine(
 
     Parameters
     ----------
-    chosen
+    chosen : NDArray[np.int64]
         Which cells.
-    reference
+    reference : Floats
         (k, k, 3, 3) integrals of dN_a/dxi_p dN_b/dxi_q over the reference element.
-    lam, mu
+    lam, mu : float
         Lame's constants [Pa].
-    slots, data
+    slots, data : Index, Floats
         From `sparsity`, and the blocks to add to.
     """
     k = cells.shape[1]
@@ -169,13 +169,13 @@ def add_curved(
 
     Parameters
     ----------
-    chosen
+    chosen : NDArray[np.int64]
         Which cells.
-    gradients, weights
+    gradients, weights : Floats
         (n_q, 3, k) reference gradients and (n_q,) weights of the rule.
-    lam, mu
+    lam, mu : float
         Lame's constants [Pa].
-    slots, data
+    slots, data : Index, Floats
         From `sparsity`, and the blocks to add to.
     """
     k, n_q = cells.shape[1], len(weights)
@@ -233,7 +233,7 @@ def keep_dofs(indptr: Index, indices: Index, data: Floats, kept: Floats, diagona
 
     Parameters
     ----------
-    kept
+    kept : Floats
         (n_nodes, 3): one or zero.
     """
     for i in prange(len(indptr) - 1):
@@ -286,7 +286,7 @@ def chebyshev_step(
 
     Parameters
     ----------
-    inverse
+    inverse : Floats
         (n_nodes, 3, 3) inverses of the diagonal blocks.
     """
     m = X.shape[1]

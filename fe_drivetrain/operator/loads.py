@@ -29,14 +29,14 @@ def traction_loads(
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    facets
+    facets : Ints
         (n_facets, k) node numbers in VTK's order, turned outward; triangles of 3 or 6,
         quadrilaterals of 4, 8 or 9 nodes.
-    traction
+    traction : Floats or Traction
         (3,) [Pa], or a function of positions and outward normals.
-    n_dofs
+    n_dofs : int or None
         Length of the result; 3 n where not given.
 
     Returns
@@ -63,13 +63,13 @@ def body_loads(
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    force
+    force : Floats or Field
         (3,) [N/m^3], or a function of positions.
-    n_dofs
+    n_dofs : int or None
         Length of the result; 3 n where not given.
 
     Returns

@@ -17,13 +17,13 @@ def mass_matrix(points: Floats, cells: Ints, density: float, n_dofs: int) -> spa
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    density
+    density : float
         [kg/m^3].
-    n_dofs
+    n_dofs : int
         Three a node, and others without mass.
 
     Returns

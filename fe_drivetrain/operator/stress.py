@@ -15,15 +15,15 @@ def stresses(
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    u
+    u : Floats
         (3 n,) or longer, displacements [m].
-    lame
+    lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
-    at
+    at : Floats
         (3, n_q) reference coordinates in each element.
 
     Returns
@@ -62,7 +62,7 @@ def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, fl
 
     Parameters
     ----------
-    points, cells, u, lame
+    points, cells, u, lame : Floats, Ints, Floats, tuple[float, float]
         As for `stresses`; cells of one material.
 
     Returns

@@ -33,15 +33,15 @@ def chart(
 
     Parameters
     ----------
-    caption
+    caption : str
         What it shows.
-    traces
+    traces : Sequence[Any]
         From `trace`.
-    x, y
+    x, y : str
         Titles of the axes, with units.
-    logarithmic
+    logarithmic : Iterable[str]
         "x", "y" or both.
-    safe
+    safe : tuple[float or None, float or None] or None
         Range of x that is shaded as safe; None for an end without a bound.
     """
     axes: dict[str, Any] = {

@@ -24,11 +24,11 @@ def write_junit(
 
     Parameters
     ----------
-    path
+    path : Path
         The file; it appears whole or not at all.
-    names
+    names : Sequence[str]
         Of the cases, in order.
-    results, problems
+    results, problems : Mapping[str, Results], Mapping[str, Problem]
         Of each case, one or the other.
     """
     root = ElementTree.Element("testsuites", name="fe-drivetrain")

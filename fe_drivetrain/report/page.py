@@ -79,7 +79,7 @@ def write_page(folder: Path) -> Path:
 
     Parameters
     ----------
-    folder
+    folder : Path
         Holds results.json and the images that it names.
 
     Returns
@@ -105,9 +105,9 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
 
     Parameters
     ----------
-    folder
+    folder : Path
         Holds GROUP/NAME/results.json of any number of cases.
-    problems
+    problems : Mapping[str, Problem] or None
         Why a case has no results now, by its name; it is listed with that.
 
     Returns

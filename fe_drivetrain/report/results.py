@@ -138,15 +138,15 @@ class Statistic:
 
     Attributes
     ----------
-    measure
+    measure : str
         Which.
-    count
+    count : int
         Number of verdicts.
-    bias
+    bias : float
         Mean of the signed errors.
-    scatter
+    scatter : float
         Standard deviation of the signed errors; 0 of one verdict.
-    largest
+    largest : float
         Largest error, without its sign.
     """
 

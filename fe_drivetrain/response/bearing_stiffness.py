@@ -23,14 +23,14 @@ class Plane:
 
     Attributes
     ----------
-    name
+    name : str
         "vertical" or "horizontal".
-    force, moment
+    force, moment : int
         Components (0-5) of the force and of the moment that bend the shaft in this plane.
-    sign
+    sign : int
         Of the moment: a positive force at the hub and a positive sign * moment load the bearing
         in the same direction.
-    nodes
+    nodes : tuple[str, str]
         The two named points of the housing whose displacement along x gives its rotation.
     """
 
@@ -62,11 +62,11 @@ def tilt_stiffness(
 
     Parameters
     ----------
-    model, response
+    model, response : Model, Response
         Of a scene without gearbox springs, so that the bearing carries the whole moment.
-    bearing
+    bearing : str
         Name of the bearing.
-    plane
+    plane : Plane
         The plane in which the moment at the hub acts.
 
     Returns
@@ -133,10 +133,10 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
 
     Parameters
     ----------
-    response
+    response : Response
         Of a scene without gearbox springs; of a spherical joint, which carries no moment, the
         response with its gearbox.
-    bearing
+    bearing : str
         Name of the bearing.
 
     Returns

@@ -40,26 +40,26 @@ class Model:
 
     Attributes
     ----------
-    scene, mesh
+    scene, mesh : Scene, Mesh
         What it was built from.
-    part_stiffness
+    part_stiffness : Mapping[str, sparse.bsr_array]
         (n_dofs, n_dofs) stiffness of each part alone [N/m].
-    part_mass
+    part_mass : Mapping[str, Floats]
         (n_nodes,) integrals of density times shape function of each part [kg].
-    points
+    points : Mapping[str, ReferencePoint]
         Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing; where there are
         such, "NAME.base" (on a bedplate that gives), and "NAME.joint" or "NAME.roller K", whose
         motion is that of the bearing against its housing.
-    constraints
+    constraints : tuple[Constraint, ...]
         All interfaces, couplings and supports.
-    springs
+    springs : tuple[tuple[ReferencePoint, Floats], ...]
         Reference points with their (6, 6) stiffness.
-    held
+    held : Mapping[str, Sequence[int]]
         Motions (0-2 displacements, 3-5 rotations) of reference points that are rigidly held; their
         constraint is "NAME reaction".
-    n_dofs
+    n_dofs : int
         Three a node, and six for each rigid reference point.
-    warnings
+    warnings : tuple[str, ...]
         Sentences for the user, about motions that soft springs hardly restrain, and parts that are
         nearly incompressible.
     """

@@ -47,15 +47,15 @@ class Secant:
 
     Attributes
     ----------
-    component
+    component : int
         3 to 5, of the moment and of the rotation.
-    stiffness
+    stiffness : float
         [N m/rad] sum of M theta over sum of theta^2: the spring that leaves the least moment
         unexplained, and the mean of the secants weighted by theta^2.
-    scatter
+    scatter : float
         Root mean square of M - K theta over that of K theta, which is the standard deviation of
         the secants, weighted likewise, over K. All cases count; small rotations count little.
-    secants
+    secants : Floats
         (m,) of each case [N m/rad]; NaN of those that turn the bearing by less than
         `LEAST_ROTATION`.
     """
@@ -72,15 +72,15 @@ class Spring:
 
     Attributes
     ----------
-    matrix
+    matrix : Floats
         (6, 6) from motions to loads [N/m, N, N m/rad]; not made symmetric.
-    unexplained
+    unexplained : Floats
         (6,) root mean square of what it leaves of each load, over that of the load: how far one
         spring at one point holds. 0 of a load that is zero throughout.
-    motions
+    motions : int
         How many motions of the six are independent over the cases. With fewer than six other
         matrices fit as well, and this is the smallest one.
-    asymmetry
+    asymmetry : float
         Largest difference of two opposite terms, over the root of their diagonals.
     """
 
@@ -96,15 +96,15 @@ class Parts:
 
     Attributes
     ----------
-    component
+    component : int
         3 to 5.
-    arms
+    arms : Floats
         (6,) -C_aj / C_aa, moment for each load at equal rotation [m for forces, - for moments]; 0
         of the moment itself.
-    sizes
+    sizes : Floats
         (7,) of each arm times its load, and of what no term explains, each less its part in
         proportion to the rotation: root mean square over that of the moment.
-    shares
+    shares : Floats
         (7,) of the scatter, whose square is the square of the sum of these; sums to 1. Zero
         throughout where nothing scatters.
     """
@@ -125,10 +125,10 @@ def secant(loads: Floats, motions: Floats, component: int) -> Secant:
 
     Parameters
     ----------
-    loads, motions
+    loads, motions : Floats
         (m, 6) what the shaft puts on the bearing [N, N m], and how the bearing moves [m, rad], both
         at its centre.
-    component
+    component : int
         3 to 5.
 
     Raises
@@ -157,7 +157,7 @@ def fitted_spring(loads: Floats, motions: Floats) -> Spring:
 
     Parameters
     ----------
-    loads, motions
+    loads, motions : Floats
         (m, 6), see `secant`.
     """
     size = _rms(motions)
@@ -184,11 +184,11 @@ def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> 
 
     Parameters
     ----------
-    loads, motions
+    loads, motions : Floats
         (m, 6), see `secant`.
-    matrix
+    matrix : Floats
         (6, 6) stiffness of the bearing unit.
-    component
+    component : int
         3 to 5.
 
     Raises
@@ -256,7 +256,7 @@ def elastic_centre(matrix: Floats) -> float:
 
     Parameters
     ----------
-    matrix
+    matrix : Floats
         (6, 6) stiffness at the bearing's centre.
     """
     return float(matrix[4, 0] / matrix[0, 0])

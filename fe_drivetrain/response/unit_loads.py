@@ -23,25 +23,25 @@ class Response:
 
     Attributes
     ----------
-    reactions
+    reactions : Mapping[str, Floats]
         (6, 10) by name: what the drivetrain puts on its surroundings or on the next part.
         "NAME" (housing base, moments about the bearing's centre) for each bearing, "gearbox"
         (springs and torque reaction), and the interfaces "NAME.seat" (shaft on bearing) and
         "NAME.outer" (bearing on housing).
-    positions
+    positions : Mapping[str, Floats]
         (3,) by the same names: the point that the moments are about [m]; and "hub".
-    motions
+    motions : Mapping[str, Floats]
         (6, 10) by reference point: "hub", "gearbox", "NAME.seat".
-    strain_energy
+    strain_energy : Mapping[str, Floats]
         (10, 10) by part: U = w^T E w / 2 for the load factors w [J].
-    displacements
+    displacements : Floats
         (n_nodes, 3, 10) [m].
-    equilibrium_error
+    equilibrium_error : float
         Largest imbalance of loads and reactions over all unit loads, relative to the load.
-    superposition_error
+    superposition_error : float
         Difference between the reactions to a random load, solved directly, and the superposed
         ones, relative to the largest reaction.
-    diagnostics
+    diagnostics : Diagnostics
         Of the solve.
     """
 
@@ -76,13 +76,13 @@ class Response:
 
         Parameters
         ----------
-        name
+        name : str
             A key of ``reactions``.
-        hub_loads
+        hub_loads : Floats
             (..., 6) hub forces [N] and moments [N m].
-        gearbox_weight
+        gearbox_weight : float
             [N], along -z.
-        gravity
+        gravity : float
             Acceleration along -z that gives all parts their self-weight [m/s^2].
 
         Returns
@@ -109,11 +109,11 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
 
     Parameters
     ----------
-    model
+    model : Model
         The model.
-    method
+    method : str
         Solver, see `solvers.solve`.
-    seed
+    seed : int
         Of the random load vector of the superposition check.
 
     Raises

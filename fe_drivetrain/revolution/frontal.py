@@ -30,19 +30,19 @@ def condensed(
 
     Parameters
     ----------
-    grams
+    grams : Floats
         (ne, s m, s m) of each element, integrals of products of s derivatives of m shape functions.
-    law
+    law : Floats
         (k, k, s, s): element matrices are ``K[p m + i, q m + j] = sum of law[p, q, a, b]
         grams[a m + i, b m + j]`` for components p and q; symmetric.
-    ids
+    ids : Ints
         (ne, k m) degree of freedom that each of an element's follows; the kept are the first
         `kept`; negative where it is held at zero.
-    shares
+    shares : Floats
         (ne, k m) of that degree of freedom.
-    kept
+    kept : int
         Number of degrees of freedom that are kept.
-    order
+    order : Ints
         From `dissection`.
 
     Returns
@@ -63,12 +63,12 @@ class Factor:
 
     Attributes
     ----------
-    dofs
+    dofs : Ints
         Numbers of each front's degrees of freedom, one front after the other; the eliminated ones
         first.
-    sizes, gone
+    sizes, gone : Ints
         (fronts,) how many, and how many of them are eliminated.
-    values
+    values : Floats
         Their rows of the factor, in panels whose diagonal blocks are inverted.
     """
 

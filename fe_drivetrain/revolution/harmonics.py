@@ -34,13 +34,13 @@ class HarmonicResponse:
 
     Attributes
     ----------
-    n
+    n : int
         The harmonic.
-    u
+    u : Floats
         (n_nodes, 3, m) amplitudes of u_x, u_r, u_t [m].
-    reactions
+    reactions : Floats
         (n_nodes, 3, m) nodal forces that hold what is held [N], over the whole turn.
-    energy
+    energy : Floats
         (m,) strain energy [J].
     """
 
@@ -66,16 +66,16 @@ def harmonic_response(
 
     Parameters
     ----------
-    mesh
+    mesh : Meridian
         The meridian.
-    material
+    material : Material
         Of the body.
-    n
+    n : int
         The harmonic, 0 or more.
-    loads
+    loads : Floats or None
         (3 n_nodes,) or (3 n_nodes, m) nodal forces over the whole turn [N], as `surface_loads`
         gives them; none where not given.
-    held
+    held : tuple[Ints, Floats] or None
         Degrees of freedom (k,) and their displacements (k,) or (k, m) [m].
 
     Raises
@@ -133,9 +133,9 @@ def harmonic_solver(
 
     Parameters
     ----------
-    mesh, material, n
+    mesh, material, n : Meridian, Material, int
         As for `harmonic_response`.
-    held
+    held : Ints
         Degrees of freedom (k,) that don't move.
 
     Returns
@@ -158,13 +158,13 @@ def surface_loads(mesh: Meridian, n: int, sides: Ints, traction: Traction) -> Fl
 
     Parameters
     ----------
-    mesh
+    mesh : Meridian
         The meridian.
-    n
+    n : int
         The harmonic.
-    sides
+    sides : Ints
         (k, 2) cell and side, as `Meridian.sides` gives them.
-    traction
+    traction : Traction
         Amplitudes along x, the radius and the circumference.
     """
     F = np.zeros((len(mesh.nodes), 3))
@@ -186,9 +186,9 @@ def along_sides(
 
     Parameters
     ----------
-    mesh, side, cells
+    mesh, side, cells : Meridian, int, Ints
         The meridian, the number of the side, and (k,) cells.
-    along
+    along : Floats
         (q,) from the side's first end, 0, to its second, 1; tangents are per unit of it.
     """
     places = mesh.element.side_places(side, along)
@@ -207,13 +207,13 @@ def stresses(
 
     Parameters
     ----------
-    mesh, material, n
+    mesh, material, n : Meridian, Material, int
         As for `harmonic_response`.
-    u
+    u : Floats
         (n_nodes, 3) amplitudes [m].
-    at
+    at : Floats
         (q, 2) reference places in each element, or (k, q, 2), own ones of each.
-    cells
+    cells : Ints or None
         (k,) which; all where not given.
 
     Returns

@@ -45,9 +45,9 @@ class Strip:
 
     Attributes
     ----------
-    radius
+    radius : float
         [m].
-    low, high
+    low, high : float
         Its two ends along x [m].
     """
 
@@ -62,15 +62,15 @@ class InfluenceFunctions:
 
     Attributes
     ----------
-    strips
+    strips : tuple[Strip, ...]
         The m strips that patches lie on.
-    half_angle
+    half_angle : float
         Half of a patch's arc [rad].
-    harmonic_compliances
+    harmonic_compliances : Floats
         (N + 1, m, m) of harmonics 0 to N: amplitude of the mean radial displacement of a strip,
         outwards, for radial pressure on another of an amplitude of 1 / (2 pi) newtons a radian in
         harmonic 0, of 1 / pi in others [m/N].
-    limits
+    limits : Floats
         (m,) product of order and compliance of each strip, on a half space in plane strain [m/N]:
         what high orders tend to away from the strip's ends.
     """
@@ -91,7 +91,7 @@ class InfluenceFunctions:
 
         Parameters
         ----------
-        angles
+        angles : ArrayLike
             (k,) of the middles of patches round the axis, each on all strips [rad].
 
         Returns
@@ -146,20 +146,20 @@ def influence_functions(
 
     Parameters
     ----------
-    mesh, material
+    mesh, material : Meridian, Material
         The meridian, fine enough at the strips for waves of 1 / N of the circumference, and what
         it is of.
-    strips
+    strips : Sequence[Strip]
         On its outline; each may be one lamina of a raceway. Best with elements that end where they
         do (`Shaft.cut`): a jump of pressure inside an element makes it a little too stiff.
-    harmonics
+    harmonics : int
         N, the highest: about 5 / half_angle for 1e-3, see `InfluenceFunctions.tail`.
-    half_angle
+    half_angle : float
         Half of a patch's arc [rad].
-    held
+    held : Ints or None
         Degrees of freedom (k,) of the mesh that don't move in any harmonic, such as those of a
         surface in a rigid housing; see `axisymmetric.dofs`.
-    anchor
+    anchor : Strip or None
         Where a body that ``held`` leaves free to move sideways is supported: displacements are
         relative to the mean motion of this strip, which takes the resultant of all pushes. Where
         they are in balance it takes nothing and is only the reference.
@@ -214,12 +214,12 @@ def carried(compliance: Floats, rigid: Floats, supports: Sequence[int]) -> Float
 
     Parameters
     ----------
-    compliance
+    compliance : Floats
         (k, k) between all patches, relative to an anchor [m/N].
-    rigid
+    rigid : Floats
         (k, r) displacement of each patch by the body's rigid motions: cos and sin of its angle for
         those sideways.
-    supports
+    supports : Sequence[int]
         Which patches are held; their forces, found along with the motions, balance all others, so
         that nothing is left to the anchor.
 
@@ -265,11 +265,11 @@ def roller_forces(
 
     Parameters
     ----------
-    compliance
+    compliance : Floats
         (k, k) of the raceway, outwards [m/N], see `InfluenceFunctions.matrix`; zero of a rigid one.
-    approach
+    approach : Floats
         (k,) of the two raceways at each roller if nothing gave way, clearance taken off [m].
-    stiffness, exponent
+    stiffness, exponent : float
         Of each roller [N/m^exponent]: 1 of a spring, 10/9 of a line contact, 3/2 of a point
         contact (Palmgren 1957).
 

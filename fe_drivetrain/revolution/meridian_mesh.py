@@ -36,15 +36,15 @@ class Element:
 
     Attributes
     ----------
-    corners
+    corners : int
         4 or 3.
-    order
+    order : int
         Of its polynomials: in each direction of a square, complete of a triangle.
-    places
+    places : Floats
         (m, 2) reference places of its nodes, corners first, anticlockwise.
-    values, gradients
+    values, gradients : Floats
         (q, m) and (q, 2, m) shape functions at the quadrature points.
-    points, weights
+    points, weights : Floats
         (q, 2) and (q,) quadrature.
     """
 
@@ -72,11 +72,11 @@ class Meridian:
 
     Attributes
     ----------
-    nodes
+    nodes : Floats
         (n, 2) x and radius [m].
-    cells
+    cells : Ints
         (ne, m) node ids, in the order of the element's places.
-    element
+    element : Element
         The element.
     """
 
@@ -145,19 +145,19 @@ def meridian(
 
     Parameters
     ----------
-    shaft
+    shaft : Shaft
         Any: solid or bored, stepped, tapered, with a flange or fillets or without.
-    size
+    size : float or None
         Largest edge length [m]; a third of the largest diameter where not given.
-    order
+    order : int or None
         Of the elements: 2 to 12 of quadrilaterals, 2 to 6 of triangles; 6 and 4 where not given.
-    layers
+    layers : int
         Of ever smaller elements, each at 0.15 of the one before, at every re-entrant corner of the
         outline and at the corners of its ends.
-    per_fillet
+    per_fillet : int
         Elements along each fillet: triangles, but for 2, which are quadrilaterals where they can
         be had, at fillets that are smaller than the elements; few, and enough for stiffness.
-    corners
+    corners : Sequence[Place]
         x and radius [m] of more places on the outline, at corners of the sections, towards which
         elements are graded: ends of a seat. Triangles are not.
 
@@ -203,9 +203,9 @@ class _Plan:
 
     Attributes
     ----------
-    nodes, cells
+    nodes, cells : Floats, Ints
         (n, 2) and (ne, 4), anticlockwise.
-    arcs
+    arcs : tuple[tuple[int, int, Place], ...]
         Two nodes of each curved side, and the centre of its arc.
     """
 
@@ -298,9 +298,9 @@ class _Quads:
 
         Parameters
         ----------
-        centre
+        centre : int
             The node.
-        share
+        share : callable
             Of the edge from it to another node: where to split it. No other edge is split, so that
             neighbours still match.
 

@@ -30,11 +30,11 @@ def end_stiffness(
 
     Parameters
     ----------
-    shaft, size, order, layers, per_fillet
+    shaft, size, order, layers, per_fillet : Shaft, float or None, int or None, int, int
         As for `fe_drivetrain.revolution.meridian`. With the default size stiffness is right to some
         1e-5 where diameters are equal, to 2e-4 where they differ by 2.5 to 1. Of a shaft with
         fillets 2 per fillet is many times quicker.
-    material
+    material : Material
         Of the shaft.
 
     Returns
@@ -60,12 +60,12 @@ def seat_stiffness(
 
     Parameters
     ----------
-    shaft, size, order, layers, per_fillet
+    shaft, size, order, layers, per_fillet : Shaft, float or None, int or None, int, int
         As for `meridian`. Quadrilaterals are graded towards the seats' ends,
         triangles are not: of a shaft with fillets give 2 per fillet.
-    material
+    material : Material
         Of the shaft.
-    seats
+    seats : Sequence[tuple[float, float]]
         x of both ends of each [m]: the outer surface of one section between them; twice the x of
         the shaft's front or rear for that end face.
 
@@ -114,9 +114,9 @@ def stiffness_between_seats(
 
     Parameters
     ----------
-    mesh, material
+    mesh, material : Meridian, Material
         The meridian and what it is of.
-    seats
+    seats : Sequence[tuple[Ints, float]]
         Nodes (k,) of each, and the x of its reference point on the axis [m].
 
     Returns
@@ -192,13 +192,13 @@ def _between(
 
     Parameters
     ----------
-    mesh, n
+    mesh, n : Meridian, int
         The meridian and the harmonic.
-    law, order
+    law, order : Floats, Ints
         As for `fronts.condensed`; the law of the components only.
-    seats
+    seats : Sequence[tuple[Ints, Floats]]
         Nodes (k,) and their motions (k, components, m).
-    components
+    components : slice
         Those that the harmonic has.
     """
     # what is kept goes first

@@ -28,13 +28,13 @@ class Attachment(NamedTuple):
 
     Attributes
     ----------
-    name
+    name : str
         Of the point.
-    face
+    face : str
         The face that it moves with, by its name in the mesh.
-    position
+    position : Floats
         (3,) [m].
-    coupling
+    coupling : Coupling
         How it holds the face: "averaged" (RBE3) or "rigid" (RBE2).
     """
 

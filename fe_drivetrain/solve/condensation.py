@@ -27,16 +27,16 @@ class Condensed:
 
     Attributes
     ----------
-    names
+    names : tuple[str, ...]
         Of the n points.
-    positions
+    positions : Floats
         (n, 3) [m].
-    stiffness
+    stiffness : Floats
         (6 n, 6 n): ux, uy, uz, rx, ry, rz of each point to Fx to Mz there [N/m, N, N m/rad].
-    gravity
+    gravity : Floats
         (6 n, 3) forces and moments that do at the points what the body's mass does under a uniform
         acceleration of 1 m/s^2 along x, y, z.
-    mass
+    mass : Floats or None
         (6 n, 6 n) of the motions that the points force on the body (Guyan 1965) [kg, kg m,
         kg m^2]; None of a beam.
     """
@@ -71,19 +71,19 @@ def condense(
 
     Parameters
     ----------
-    names, positions
+    names, positions : Sequence[str], Floats
         Of the n points, (n, 3) [m]; at least two.
-    loads
+    loads : Floats
         (n_dofs, k n) nodal forces of a unit force or moment at each point; transposed, the
         points' motions. k components of each point are kept.
-    mass
+    mass : sparse.csr_array
         (n_dofs, n_dofs) mass matrix of the body [kg].
-    rigid
+    rigid : Floats
         (n_dofs, k) the body's rigid motions about the first point.
-    solve
+    solve : callable
         Displacements (n_dofs, m) under nodal forces that are in balance; any rigid motion may
         be in them.
-    kept
+    kept : Sequence[int]
         Which of the six components of each point ``loads`` has; the others stay without stiffness.
 
     Raises
@@ -179,11 +179,11 @@ def on_supports(
 
     Parameters
     ----------
-    points
+    points : Sequence[str]
         Names of n points.
-    stiffness
+    stiffness : Floats
         (6 n + m, 6 n + m): six degrees of freedom of each point first, then m of anything.
-    supports
+    supports : Mapping[str, Floats]
         (6, 6) by point; inf on the diagonal holds that motion, and nothing else is in its row.
 
     Returns
@@ -215,10 +215,10 @@ class Supported:
 
     Attributes
     ----------
-    motions
+    motions : Floats
         (6 n, 6 n + 3) of all points, for unit forces and moments at all points and for 1 m/s^2
         along x, y, z.
-    reactions
+    reactions : Mapping[str, Floats]
         (6, 6 n + 3) by support: what the body puts on it, at its point.
     """
 
@@ -231,9 +231,9 @@ def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
 
     Parameters
     ----------
-    body
+    body : Condensed
         The free body.
-    supports
+    supports : Mapping[str, Floats]
         (6, 6) stiffness to ground of points by name; inf on the diagonal holds that motion rigidly,
         and nothing else stands in its row then.
 

@@ -24,7 +24,8 @@ from fe_drivetrain.solve.reduction import Elements, System
 
 class Direct(NamedTuple):
     """Cost of a direct solver: seconds at once, per entry of K, per operation; bytes per entry of
-    the factor; seconds of a solve per byte, at once and for each right-hand side."""
+    the factor; seconds of a solve per byte, at once and for each right-hand side.
+    """
 
     start: float
     per_entry: float
@@ -43,7 +44,8 @@ DIRECT = {
 
 class Multigrid(NamedTuple):
     """Cost of multigrid: seconds at once, per entry of K, per entry and iteration at once and for
-    each right-hand side; bytes per entry."""
+    each right-hand side; bytes per entry.
+    """
 
     start: float
     per_entry: float
@@ -58,7 +60,8 @@ MULTIGRID = Multigrid(0.09, 4.5e-8, 4.8e-9, 5.4e-10, 6.0)
 class Schwarz(NamedTuple):
     """Cost of patches with a spectral coarse space: seconds at once, per unknown; iterations, which
     the threshold of the coarse space bounds; per entry that an iteration reads, at once and for
-    each right-hand side; bytes per unknown, and entries of the factors per unknown, twice."""
+    each right-hand side; bytes per unknown, and entries of the factors per unknown, twice.
+    """
 
     start: float
     per_unknown: float
@@ -80,13 +83,13 @@ class Cost:
 
     Attributes
     ----------
-    method
+    method : str
         Name of the solver.
-    seconds
+    seconds : float
         Set-up and solve.
-    bytes
+    bytes : float
         Of the factor or hierarchy.
-    fits
+    fits : bool
         Whether there is the memory for it now.
     """
 

@@ -34,18 +34,18 @@ class CoupledSolid:
 
     Attributes
     ----------
-    mesh
+    mesh : Mesh
         The mesh; nodes of parts that are left out have no stiffness.
-    cells
+    cells : Ints
         (n_cells, k) of the parts.
-    stiffness
+    stiffness : sparse.bsr_array
         (n, n): three degrees of freedom a node first, then six of each point with a rigid face
         [N/m, N, N m/rad].
-    attachments
+    attachments : tuple[Attachment, ...]
         Of the faces.
-    points
+    points : tuple[ReferencePoint, ...]
         Their reference points, in the same order.
-    rigid_faces
+    rigid_faces : tuple[Constraint, ...]
         Constraints that make faces rigid (RBE2).
     """
 
@@ -73,11 +73,11 @@ class CondensedSolid:
 
     Attributes
     ----------
-    mesh
+    mesh : Mesh
         Its mesh.
-    body
+    body : Condensed
         It, condensed to its points.
-    unknowns
+    unknowns : int
         Of the system.
     """
 
@@ -94,7 +94,7 @@ class CondensedSolid:
 
         Parameters
         ----------
-        motions
+        motions : Floats
             (6 p,) of the p points [m, rad].
         """
         forces = self.body.stiffness @ motions

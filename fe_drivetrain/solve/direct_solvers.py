@@ -31,9 +31,9 @@ class Factor:
 
     Attributes
     ----------
-    apply
+    apply : callable
         Solves for all columns of an (n, m) array.
-    bytes
+    bytes : int
         Memory of the factor.
     """
 
@@ -51,9 +51,9 @@ def factorise(K: sparse.bsr_array, method: str) -> Factor:
 
     Parameters
     ----------
-    K
+    K : sparse.bsr_array
         (n, n).
-    method
+    method : str
         ``superlu``, ``pardiso`` or ``cholmod``.
 
     Raises

@@ -46,9 +46,9 @@ class ErrorEstimate:
 
     Attributes
     ----------
-    energy
+    energy : float
         Strain energy of the solution [J].
-    indicators
+    indicators : Floats
         (n_cells,) estimated energy of the error in each cell, in the order of the parts' cells [J].
     """
 
@@ -81,11 +81,11 @@ def recovery_estimate(
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    parts
+    parts : Sequence[tuple[Ints, Lame]]
         Of each part its cells (n_cells, k) in VTK's order and Lame's constants [Pa].
-    u
+    u : Floats
         (3 n,) or longer, displacements [m]: under given forces, or with given displacements, where
         the energy is too high by that of the error; not with both.
     """
@@ -133,7 +133,7 @@ class _Patches:
 
     Attributes
     ----------
-    local
+    local : Ints
         (n_cells, n_corners) number of each corner's patch.
     """
 

@@ -35,19 +35,19 @@ class Options:
 
     Attributes
     ----------
-    degree
+    degree : int
         Of the Chebyshev smoother.
-    smoothed
+    smoothed : float
         The smoother works on eigenvalues from here on, relative to the largest.
-    linear_level
+    linear_level : bool
         Whether linear elements come between the quadratic ones and aggregates.
-    strength
+    strength : float
         Threshold of the symmetric strength of connection.
-    prolongation_smoother
+    prolongation_smoother : str or None
         "jacobi", "energy" or None, as in pyamg.
-    apart
+    apart : bool
         Whether bodies that a joint couples keep apart in aggregates.
-    coarsest
+    coarsest : int
         Nodes or aggregates at which aggregation ends and a dense factor begins.
     """
 
@@ -66,13 +66,13 @@ class Level:
 
     Attributes
     ----------
-    K
+    K : sparse.bsr_array
         Stiffness, 3x3 blocks.
-    inverse
+    inverse : Floats
         (n_blocks, 3, 3) inverses of its diagonal blocks.
-    largest
+    largest : float
         Upper bound of the eigenvalues of diag^-1 K.
-    prolongation, restriction
+    prolongation, restriction : sparse.csr_array
         To and from the next level.
     """
 
@@ -203,9 +203,9 @@ def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
 
     Parameters
     ----------
-    K
+    K : sparse.bsr_array
         (n, n) symmetric positive semi-definite, 3x3 blocks.
-    inverse
+    inverse : Floats
         (n / 3, 3, 3) inverses of its diagonal blocks.
     """
     r = np.random.default_rng(0).standard_normal((K.shape[0], 1))
@@ -262,11 +262,11 @@ class Iteration:
 
     Attributes
     ----------
-    x
+    x : Floats
         (n, m).
-    iterations
+    iterations : int
         Number of them.
-    energy_error
+    energy_error : float
         Largest estimate, over the columns, of the relative error in the energy norm; infinite where
         stiffness or preconditioner turned out not to be positive.
     """
@@ -286,13 +286,13 @@ def conjugate_gradients(
 
     Parameters
     ----------
-    K
+    K : sparse.bsr_array
         (n, n) symmetric positive definite.
-    F
+    F : Floats
         (n, m).
-    precondition
+    precondition : callable
         Symmetric positive definite, of all columns.
-    tolerance
+    tolerance : float
         Relative error |x - x_k|_K / |x|_K to stop at. Squared, it is the relative error of the
         stiffness that belongs to a load.
 
@@ -366,7 +366,7 @@ def energy_error(terms: Floats) -> float:
 
     Parameters
     ----------
-    terms
+    terms : Floats
         (k, m) what each step of conjugate gradients added to the squared energy norm.
     """
     last = terms[-1]

@@ -25,13 +25,13 @@ class Elements:
 
     Attributes
     ----------
-    points
+    points : Floats
         (n_nodes, 3) [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    diagonal
+    diagonal : Floats
         (n_nodes, 3, 3) diagonal blocks of the stiffness before any constraint [N/m].
-    T, free
+    T, free : sparse.csr_array, NDArray[np.bool_]
         Of the `fe_drivetrain.interfaces.constraints.Elimination`.
     """
 
@@ -48,21 +48,21 @@ class System:
 
     Attributes
     ----------
-    K
+    K : sparse.bsr_array
         (n, n) symmetric positive definite, 3x3 blocks; rows of eliminated degrees of freedom are
         diagonal.
-    prolongation
+    prolongation : sparse.csr_array or None
         (n, n_corner) from the linear elements on the same corners to the quadratic ones, in
         degrees of freedom that fulfil the constraints; None where the elements are linear.
-    near_nullspace
+    near_nullspace : Floats
         (n_corner, 6), or (n, 6) of linear elements: the rigid motions.
-    body
+    body : Ints
         (n_corner / 3,), or (n / 3,) of linear elements: which body each node belongs to, -1 of
         reference points. Bodies that a joint couples must not share an aggregate: each has its own
         six rigid motions.
-    n_free
+    n_free : int
         Number of degrees of freedom that are left.
-    elements
+    elements : Elements or None
         What it was made of; None where that is not known.
     """
 
@@ -79,14 +79,14 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
 
     Parameters
     ----------
-    points
+    points : Floats
         (n_nodes, 3) [m].
-    cells
+    cells : Ints
         (n_cells, k) node numbers in VTK's order.
-    K
+    K : sparse.bsr_array
         (n_dofs, n_dofs) stiffness before any constraint, three degrees of freedom a node first
         [N/m].
-    elimination
+    elimination : Elimination
         The constraints.
     """
     T, free = elimination.T, elimination.free

@@ -25,9 +25,9 @@ def round_off(K: sparse.bsr_array, x: Floats) -> float:
 
     Parameters
     ----------
-    K
+    K : sparse.bsr_array
         (n, n) symmetric positive definite, 3x3 blocks.
-    x
+    x : Floats
         (n, m) solutions.
 
     Returns

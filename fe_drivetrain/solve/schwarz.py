@@ -41,9 +41,9 @@ class Options:
 
     Attributes
     ----------
-    nodes
+    nodes : int
         That a patch has, about.
-    threshold
+    threshold : float
         Eigenvalues below it belong to the coarse space.
     """
 
@@ -60,17 +60,17 @@ class Schwarz:
 
     Attributes
     ----------
-    K
+    K : sparse.bsr_array
         The stiffness.
-    partition
+    partition : Partition
         Which patch each node block belongs to.
-    factors, factor_starts
+    factors, factor_starts : Floats, Ints
         Lower Cholesky factors of the patches, row after row, and where each begins.
-    modes, mode_starts
+    modes, mode_starts : Floats, Ints
         Coarse basis, (3 blocks, n_modes) of each patch, flat, and where each begins.
-    counts
+    counts : Ints
         (n_patches,) modes of each patch.
-    coarse
+    coarse : direct_solvers.Factor
         Factor of the stiffness in the coarse space.
     """
 
@@ -181,11 +181,11 @@ def soft_modes(S: Floats, A: Floats, edge: NDArray[np.bool_], threshold: float) 
 
     Parameters
     ----------
-    S, A
+    S, A : Floats
         (n, n) stiffness cut out, and held.
-    edge
+    edge : NDArray[np.bool_]
         (n,) degrees of freedom in which they differ.
-    threshold
+    threshold : float
         Of lambda.
     """
     order = np.argsort(edge, kind="stable")
@@ -278,13 +278,13 @@ def times_modes(
 
     Parameters
     ----------
-    own
+    own : Ints
         Node blocks whose rows are taken.
-    patch, place
+    patch, place : Ints
         (n_blocks,) of each block, and where it stands in its patch.
-    modes, mode_starts, counts
+    modes, mode_starts, counts : Floats, Ints, Ints
         As in `Schwarz`.
-    slot
+    slot : Ints
         (n_patches,) first column of each patch in ``out``.
     """
     for a in range(len(own)):

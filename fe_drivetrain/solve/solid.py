@@ -25,16 +25,16 @@ class Static:
 
     Attributes
     ----------
-    u
+    u : Floats
         (n_dofs, m) displacements [m], and motions of reference points.
-    reactions
+    reactions : Mapping[str, Floats]
         (n_dofs, m) nodal forces [N] that each support or interface puts on the solid, by the
         name of its constraint; "prescribed" those that displace it as prescribed.
-    energy
+    energy : Floats
         (m,) strain energy [J].
-    K
+    K : sparse.bsr_array
         (n_dofs, n_dofs) stiffness before any constraint [N/m].
-    diagnostics
+    diagnostics : Diagnostics
         Of the solve.
     """
 
@@ -59,22 +59,22 @@ def solve_solid(
 
     Parameters
     ----------
-    points
+    points : Floats
         (n, 3) node coordinates [m].
-    cells
+    cells : Ints or Sequence[tuple[Ints, Lame]]
         (n_cells, k) node numbers in VTK's order; or of several materials the pairs of cells, all of
         one kind, and Lame's constants, with ``lame=None``.
-    lame
+    lame : Lame or None
         Lame's constants (lambda, mu) [Pa].
-    constraints
+    constraints : Sequence[Constraint]
         Supports and interfaces, see `fe_drivetrain.interfaces.constraints`.
-    F
+    F : Floats
         (n_dofs,) or (n_dofs, m) nodal forces [N].
-    prescribed
+    prescribed : tuple[Ints, Floats] or None
         Degrees of freedom (k,) and their displacements (k,) or (k, m) [m].
-    method
+    method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
-    assembly
+    assembly : Assembly
         Of the stiffness: that of `elasticity`, or `incompressible.assemble` for solids with nu near
         1/2, or `incompatible.assemble` for hexahedra of 8 nodes that must bend.
 

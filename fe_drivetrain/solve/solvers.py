@@ -36,23 +36,23 @@ class Diagnostics:
 
     Attributes
     ----------
-    residual
+    residual : float
         Largest true relative residual |K x - f| / |f| over the right-hand sides.
-    energy_error
+    energy_error : float
         Estimate of the largest relative error in the energy norm. Of a direct solver, what one
         step of refinement changed.
-    round_off
+    round_off : float
         What the rounding of the stiffness' own entries may have done to the energy of a solution,
         relative, at worst: no solver can do better, see `round_off.round_off`.
-    iterations
+    iterations : int
         Of conjugate gradients; 0 of a direct solver.
-    method, reason
+    method, reason : str
         The solver that was used, and why.
-    setup_seconds, solve_seconds
+    setup_seconds, solve_seconds : float
         Wall time of factorisation or hierarchy, and of the solve.
-    bytes
+    bytes : int
         Memory of factor or hierarchy, beside the stiffness matrix.
-    n_unknowns
+    n_unknowns : int
         Unknowns of the system.
     """
 
@@ -98,7 +98,7 @@ class Solver:
 
         Parameters
         ----------
-        F
+        F : Floats
             (n, n_rhs); zero at eliminated degrees of freedom.
 
         Raises
@@ -181,15 +181,15 @@ def factorise(
 
     Parameters
     ----------
-    system
+    system : System
         From `reduction.reduce`.
-    method
+    method : str
         ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
         ``schwarz`` (for thin and slender solids of any size), or ``auto``: the one with the least
         predicted time, see `cost.predict`.
-    n_rhs
+    n_rhs : int
         How many right-hand sides will come, for ``auto``.
-    tolerance
+    tolerance : float
         Relative error in the energy norm at which an iteration stops.
 
     Raises

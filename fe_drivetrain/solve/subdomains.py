@@ -28,11 +28,11 @@ class Partition:
 
     Attributes
     ----------
-    patch
+    patch : Ints
         (n_blocks,) of each node block.
-    blocks, starts
+    blocks, starts : Ints
         Blocks in the order of their patches, and (n_patches + 1,) where each patch begins.
-    cells, cell_starts
+    cells, cell_starts : Ints
         The same of elements. Patches of reference points have none.
     """
 
@@ -59,11 +59,11 @@ def partition(elements: Elements, nodes: int, n_blocks: int) -> Partition:
 
     Parameters
     ----------
-    elements
+    elements : Elements
         Of the solid.
-    nodes
+    nodes : int
         That a patch has, about.
-    n_blocks
+    n_blocks : int
         Node blocks of the system: what comes after the nodes makes patches of its own.
     """
     points, cells = elements.points, elements.cells
@@ -164,9 +164,9 @@ class CutOut:
 
         Parameters
         ----------
-        cells
+        cells : Ints
             Which elements.
-        blocks
+        blocks : Ints
             (k,) ascending.
         """
         S = np.zeros((3 * len(blocks), 3 * len(blocks)))
@@ -234,9 +234,9 @@ def dense_part(indptr: Index, indices: Index, data: Floats, blocks: Ints, place:
 
     Parameters
     ----------
-    blocks
+    blocks : Ints
         (k,) which.
-    place
+    place : Ints
         (n_blocks,) where each of them goes, -1 of all others.
     """
     k = len(blocks)

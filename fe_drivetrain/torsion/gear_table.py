@@ -364,13 +364,13 @@ def mesh_damping(
 
     Parameters
     ----------
-    ratio
+    ratio : float
         zeta.
-    stiffness
+    stiffness : float
         About the driving gear [N m/rad].
-    driving, driven
+    driving, driven : float
         Inertias J_1, J_2 about their own axes [kg m^2].
-    gear
+    gear : float
         r_1 / r_2, the speed ratio.
     """
     inertia = gear**2 * driving * driven / (gear**2 * driven + driving)

@@ -32,9 +32,9 @@ class Inertia:
 
     Attributes
     ----------
-    name
+    name : str
         Unique in its system.
-    inertia
+    inertia : float
         About its axis [kg m^2].
     """
 
@@ -48,11 +48,11 @@ class Element:
 
     Attributes
     ----------
-    name
+    name : str
         Unique in its system.
-    winding
+    winding : Mapping[str, float]
         Name of each inertia that winds it up, and by how much for an angle of 1.
-    stiffness, damping
+    stiffness, damping : float
         Torque per winding [N m/rad] and per its rate [N m s/rad].
     """
 
@@ -164,16 +164,16 @@ class Modes:
 
     Attributes
     ----------
-    names
+    names : tuple[str, ...]
         Of the inertias.
-    frequencies
+    frequencies : Floats
         (n,) ascending [Hz]; exactly 0 where the system turns freely.
-    shapes
+    shapes : Floats
         (n, n) a mode a column, ``shapes.T @ M @ shapes`` is 1; the largest entry of each positive.
         Modes of equal frequency are any basis of theirs.
-    stiffness_shares
+    stiffness_shares : Floats
         (m, n) share of each element in the strain energy of each mode; 0 where nothing is wound.
-    inertia_shares
+    inertia_shares : Floats
         (n, n) share of each inertia (row) in the kinetic energy of each mode.
     """
 
@@ -233,9 +233,9 @@ def frequency_bands(system: Torsional, relative: Mapping[str, float]) -> Floats:
 
     Parameters
     ----------
-    system
+    system : Torsional
         At its middle values.
-    relative
+    relative : Mapping[str, float]
         Half width over value, by the name of an element (its stiffness) or inertia.
 
     Returns
@@ -300,7 +300,7 @@ def referred(system: Torsional, speeds: Mapping[str, float]) -> Torsional:
 
     Parameters
     ----------
-    speeds
+    speeds : Mapping[str, float]
         s by name of the inertia, 1 where none is given.
     """
     s = {name: speeds.get(name, 1.0) for name in system.names}
@@ -322,11 +322,11 @@ def chain(
 
     Parameters
     ----------
-    inertias
+    inertias : Iterable[Inertia]
         n of them.
-    shafts
+    shafts : Iterable[tuple[str, float, float]]
         Name, stiffness [N m/rad] and damping [N m s/rad] of the n - 1 between neighbours.
-    ground
+    ground : tuple[str, float, float] or None
         The same of a spring from the last to the ground.
 
     Raises
@@ -356,9 +356,9 @@ class DampedModes:
 
     Attributes
     ----------
-    eigenvalues
+    eigenvalues : Complex
         (k,) of what oscillates, imaginary parts above zero and ascending [1/s].
-    creeping
+    creeping : Floats
         (j,) real eigenvalues below zero of what comes back without oscillating [1/s].
     """
 
@@ -410,9 +410,9 @@ def response(system: Torsional, at: str, frequencies: ArrayLike) -> Complex:
 
     Parameters
     ----------
-    at
+    at : str
         Name of the inertia.
-    frequencies
+    frequencies : ArrayLike
         [Hz]; none of them a frequency of an undamped mode.
     """
     omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=float))

@@ -55,9 +55,9 @@ class ModelError:
 
     Attributes
     ----------
-    share
+    share : float
         Relative.
-    source
+    source : str
         What it was estimated from.
     """
 
@@ -71,22 +71,22 @@ class Study:
 
     Attributes
     ----------
-    scene, level
+    scene, level : Scene, int
         What was studied, and at which level.
-    advices
+    advices : Sequence[Advice]
         Ladders that were evaluated to select that level; none where the user named it.
-    numbers
+    numbers : Sequence[Number]
         All that are reported, those that were asked for first.
-    asked
+    asked : Sequence[str]
         Names of what was asked for.
     slopes, samples, errors
         By number: relative change for the relative change of each input, results over the
         hypercube, and the level's own error.
-    soft_slopes, soft_samples
+    soft_slopes, soft_samples : Mapping[str, Mapping[str, float]], Mapping[str, Samples]
         The same with housings whose faces move on average, where that matters.
-    surfaces
+    surfaces : Sequence[UnitSurface]
         Of bearing units that depend on uncertain values, two of each.
-    shares
+    shares : Mapping[str, Shares]
         Sobol's, of those numbers that vary; empty where not wanted.
     """
 
@@ -123,23 +123,23 @@ def study(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         With its `Scene.uncertainty`.
-    asked
+    asked : Sequence[str]
         Names, see `reported.known_names`, before every stiffness that is reported; the adviser
         answers for these, or for `DEFAULT`.
-    load
+    load : Floats or None
         (10,) factors of `model.LOADS`, for reactions.
-    tolerance
+    tolerance : float
         Of the level, relative.
-    level
+    level : int or None
         1 or 2; where not given, the cheapest of these that the adviser finds good enough for all
         that was asked, and the better one where neither is.
-    count, seed
+    count, seed : int
         Of the Latin hypercube.
-    sobol
+    sobol : int
         Base samples of Sobol's shares, a power of two; none for 0.
-    report
+    report : _Progress
         Called with what is being done.
 
     Raises

@@ -51,13 +51,13 @@ class Resolver:
 
     Attributes
     ----------
-    level
+    level : int
         1 beam, 2 meridian.
-    units
+    units : Mapping[str, UnitStiffness]
         What gives the stiffness of a bearing unit, by its name; solved where not given.
-    coupling
+    coupling : Coupling
         Of the units' faces, where solved.
-    springs, bodies
+    springs, bodies : dict[str, Floats], dict[str, tuple[float, Condensed]]
         What was solved before, by what it depends on; a body with the modulus that it had.
     """
 

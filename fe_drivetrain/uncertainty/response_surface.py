@@ -46,20 +46,20 @@ class UnitSurface:
 
     Attributes
     ----------
-    name, coupling
+    name, coupling : str, Coupling
         Of the bearing, and of its face.
-    keys, nominal
+    keys, nominal : tuple[str, ...], Floats
         The values by dotted key, and (d,) what the scene gives.
-    reach
+    reach : Floats
         (d,) how far they were moved at least, relative.
-    root
+    root : Floats
         (6, c) square root of the nominal stiffness, see `reported.carried_root`.
-    slopes, bends
+    slopes, bends : Floats
         (d, c, c) coefficients of the logarithm of each value, and of its square.
-    error
+    error : float
         Largest relative difference to the solutions that check it, over the stiffnesses of
         `reported.UNIT`.
-    solutions
+    solutions : int
         How many solid solutions it took.
     """
 
@@ -116,15 +116,15 @@ def unit_surface(
 
     Parameters
     ----------
-    scene, name
+    scene, name : Scene, str
         The scene, and the bearing of the unit.
-    spreads
+    spreads : Mapping[str, Spread]
         By dotted key: of those values that the unit depends on, see `touching`.
-    resolver
+    resolver : Resolver
         Solves the unit.
-    seed
+    seed : int
         Of the values that check it.
-    report
+    report : callable
         Called with what is being done.
 
     Raises

@@ -41,9 +41,9 @@ class Band:
 
     Attributes
     ----------
-    low, high
+    low, high : float
         The two.
-    low_error, high_error
+    low_error, high_error : float
         Standard errors, of so many samples.
     """
 
@@ -59,11 +59,11 @@ class Samples:
 
     Attributes
     ----------
-    keys
+    keys : tuple[str, ...]
         Of the d uncertain values.
-    inputs, values
+    inputs, values : Floats
         (n, d), and (n,) the result of each sample.
-    nominal
+    nominal : float
         The result without uncertainty.
     """
 
@@ -129,11 +129,11 @@ class Shares:
 
     Attributes
     ----------
-    keys
+    keys : tuple[str, ...]
         Of the d uncertain values.
-    first, total
+    first, total : Floats
         (d,) what each value does alone, and with all in which it has a part.
-    first_error, total_error
+    first_error, total_error : Floats
         (d,) standard errors from resampling.
     """
 
@@ -203,11 +203,11 @@ def sensitivities(
 
     Parameters
     ----------
-    scene, evaluate
+    scene, evaluate : Scene, Evaluate
         What is varied, and its results.
-    keys
+    keys : Sequence[str]
         Values other than zero.
-    step
+    step : float
         Relative.
 
     Returns
@@ -245,13 +245,13 @@ def sample(
 
     Parameters
     ----------
-    scene, evaluate
+    scene, evaluate : Scene, Evaluate
         What is varied, and its results.
-    count
+    count : int
         Samples.
-    seed
+    seed : int
         Of the hypercube.
-    report
+    report : callable
         Called with what is being done.
 
     Raises
@@ -285,15 +285,15 @@ def sobol_shares(
 
     Parameters
     ----------
-    scene, evaluate
+    scene, evaluate : Scene, Evaluate
         What is varied, and its results.
-    names
+    names : Sequence[str]
         Of results that vary.
-    count
+    count : int
         Base samples, a power of two; (d + 2) times as many evaluations of d values.
-    seed
+    seed : int
         Of the samples.
-    report
+    report : callable
         Called with what is being done.
     """
     check_spreads(scene)

@@ -31,9 +31,9 @@ class Bar:
 
     Attributes
     ----------
-    points, cells
+    points, cells : Floats, Ints
         Hexahedra of 27 nodes.
-    clamp, root, end
+    clamp, root, end : Ints
         Nodes of the three sections.
     """
 
@@ -49,11 +49,11 @@ def round_bar(diameter: float, length: float, around: int, far: int) -> Bar:
 
     Parameters
     ----------
-    diameter, length
+    diameter, length : float
         [m]; the length from the root.
-    around
+    around : int
         Elements round the bar, a multiple of 4; with 16, one is a diameter long about the root.
-    far
+    far : int
         Diameters that the rest counts as in the number of its elements.
     """
     near = BEHIND * diameter
@@ -78,13 +78,13 @@ def section_motion(points: Floats, cells: Ints, section: Ints, u: Floats, at: Ar
 
     Parameters
     ----------
-    points, cells
+    points, cells : Floats, Ints
         The mesh.
-    section
+    section : Ints
         Nodes of the section.
-    u
+    u : Floats
         (3 n,) displacements [m].
-    at
+    at : ArrayLike
         (3,) where the displacement is taken, as if it moved with the section [m].
 
     Returns

@@ -32,11 +32,11 @@ class Bracket:
 
     Attributes
     ----------
-    fillet
+    fillet : float
         Inner radius of the corner [m].
-    height
+    height : float
         Of the strip [m].
-    arm, leg
+    arm, leg : float
         Lengths of the straight parts [m].
     """
 
@@ -101,13 +101,13 @@ def plane_answer(
 
     Parameters
     ----------
-    bracket
+    bracket : Bracket
         The leg's end stays on its plane, and slides in it.
-    E, nu
+    E, nu : float
         Young's modulus [Pa] and Poisson's ratio.
-    force
+    force : float
         On the end of the arm, upwards, per width [N/m].
-    through
+    through : int
         Quartic triangles through the height.
 
     Returns

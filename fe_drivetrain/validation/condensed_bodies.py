@@ -22,9 +22,9 @@ class Condensed:
 
     Attributes
     ----------
-    by_energy
+    by_energy : Floats
         u_i . K u_j of the displacements under unit motions [N/m, N, N m/rad].
-    by_reactions
+    by_reactions : Floats
         Force or moment that holds motion i (row) under unit motion j.
     """
 
@@ -37,11 +37,11 @@ def condense(points: Floats, cells: Ints, ends: tuple[Ints, Ints], positions: Fl
 
     Parameters
     ----------
-    points, cells
+    points, cells : Floats, Ints
         The body, of steel.
-    ends
+    ends : tuple[Ints, Ints]
         Nodes of the two faces.
-    positions
+    positions : Floats
         (2, 3) of their reference points [m].
     """
     n = 3 * len(points)
@@ -68,7 +68,7 @@ def zeros_by_gap(values: Floats) -> tuple[int, float]:
 
     Parameters
     ----------
-    values
+    values : Floats
         Eigenvalues; zeros are negative or positive by round-off.
 
     Returns

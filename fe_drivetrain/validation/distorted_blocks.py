@@ -24,14 +24,14 @@ class Patch:
 
     Attributes
     ----------
-    label
+    label : str
         The element and its distortion.
-    block
+    block : Block
         Points, cells and faces.
-    holders
+    holders : Ints
         Three nodes that were corners of the cube: the origin and the ends of its edges along x
         and y.
-    holds_quadratics
+    holds_quadratics : bool
         Whether the element, in this shape, holds all quadratic polynomials.
     """
 
@@ -62,12 +62,12 @@ def patch(label: str, nodes: int, corners: float, middles: float, seed: int = 0)
 
     Parameters
     ----------
-    nodes
+    nodes : int
         Of each element.
-    corners, middles
+    corners, middles : float
         How far corners, and nodes between them, move at most, relative to an element's size.
         Without ``middles`` edges are straight.
-    seed
+    seed : int
         Of the random moves.
 
     Raises
@@ -120,9 +120,9 @@ def inner_forces(patch: Patch, stress: Floats, degree: int) -> float:
 
     Parameters
     ----------
-    stress
+    stress : Floats
         (3, 3) [Pa].
-    degree
+    degree : int
         Of the quadrature.
 
     Returns
@@ -152,9 +152,9 @@ def worst_errors(patch: Patch, u: Floats, exact: Floats, sigmas: Floats) -> tupl
 
     Parameters
     ----------
-    u, exact
+    u, exact : Floats
         (3 n, m) displacements found and exact [m].
-    sigmas
+    sigmas : Floats
         (m, 3, 3) exact stress of each state [Pa].
     """
     points, cells = patch.block.points, patch.block.cells

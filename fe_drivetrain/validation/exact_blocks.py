@@ -26,11 +26,11 @@ class Solved:
 
     Attributes
     ----------
-    block, lame
+    block, lame : Block, Lame
         Mesh and material.
-    u
+    u : Floats
         (3 n,) displacements [m].
-    energy, exact
+    energy, exact : float
         Strain energy of the solution, and of the exact one [J].
     """
 
@@ -56,9 +56,9 @@ def bar(nodes: int, divisions: int) -> Block:
 
     Parameters
     ----------
-    nodes
+    nodes : int
         Of an element.
-    divisions
+    divisions : int
         Hexahedra across; along the bar each is half as long again as wide.
     """
     along = max(1, round(divisions * LENGTH / SIDE / 1.5))

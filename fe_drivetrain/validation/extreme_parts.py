@@ -22,11 +22,11 @@ class Assembly:
 
     Attributes
     ----------
-    shaft, bearing, housing, sizes
+    shaft, bearing, housing, sizes : Shaft or None, Bearing or None, Housing or None, MeshSizes
         As for `mesh.generate`.
-    volumes, areas
+    volumes, areas : dict[str, float]
         Exact ones by part and by named face [m^3, m^2].
-    round_off
+    round_off : dict[str, float]
         By part or face: what a round surface in parabolas may change, relative.
     """
 
@@ -45,19 +45,19 @@ class Outcome:
 
     Attributes
     ----------
-    value
+    value : float
         Of the parameter.
-    sentence
+    sentence : str
         Of the refusal, empty where it was meshed.
-    clear
+    clear : bool
         Whether that is the program's own sentence: object, allowed range, fix; or it was meshed.
-    error
+    error : float
         Largest relative error of a volume or area; NaN where refused.
-    allowed
+    allowed : float
         Largest such error over what the shape error of the round surfaces allows.
-    folded, faults
+    folded, faults : int
         Elements not proved sound, and kinds of other faults.
-    elements
+    elements : int
         Number of them.
     """
 

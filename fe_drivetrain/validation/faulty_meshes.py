@@ -29,17 +29,17 @@ class Faulty:
 
     Attributes
     ----------
-    label
+    label : str
         What was done.
-    kind
+    kind : str
         Of `mesh_checks.Fault` that must be found.
-    mesh
+    mesh : Mesh
         With the fault.
-    place
+    place : Floats
         (3,) where it is, m.
-    reach
+    reach : float
         How far from there the report may point, m.
-    part
+    part : str
         In which it is.
     """
 
@@ -294,9 +294,9 @@ def cracked_bar(depth: float, across: int) -> Mesh:
 
     Parameters
     ----------
-    depth
+    depth : float
         Of the crack over the height of the bar, rounded to whole rows of cubes.
-    across
+    across : int
         Rows of cubes.
     """
     return _torn(_plain_bar(across), round(depth * across) / across)

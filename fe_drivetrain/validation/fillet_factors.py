@@ -114,9 +114,9 @@ def peterson(load: str, wide: float, radius: float) -> float:
 
     Parameters
     ----------
-    load
+    load : str
         One of `LOADS`.
-    wide, radius
+    wide, radius : float
         D/d and r/d.
     """
     t = (wide - 1.0) / 2.0
@@ -181,11 +181,11 @@ class Peak:
 
     Attributes
     ----------
-    factor
+    factor : float
         K_t: of largest principal, in torsion of shear stress, over the nominal one in d.
-    angle
+    angle : float
         Where it is on the arc, from the end on the thinner shaft [degrees].
-    profile
+    profile : Floats
         (k, 2) angle and local factor along the arc.
     """
 
@@ -250,11 +250,11 @@ class Factor:
 
     Attributes
     ----------
-    wide, radius
+    wide, radius : float
         D/d and r/d.
-    peak
+    peak : Peak
         Of the finer mesh.
-    band
+    band : float
         Half width: what a third more elements along the fillet changed, which at fifth order is
         several times what is left.
     """

@@ -35,9 +35,9 @@ def curved(per_turn: float, method: str = "") -> Mesh:
 
     Parameters
     ----------
-    per_turn
+    per_turn : float
         Elements to a full turn of the fillet's radius.
-    method
+    method : str
         Of gmsh's optimisation of curved elements: "HighOrder", "HighOrderElastic", or none.
     """
     size = 2 * math.pi * RADIUS / per_turn
@@ -84,13 +84,13 @@ class Solved:
 
     Attributes
     ----------
-    stiffness
+    stiffness : dict[str, float]
         In torsion, bending and tension, one end held and the other rigid, as
         `rigid_ended_shafts.Solved` [N m/rad, N/m]; NaN where there is no answer.
-    peak
+    peak : float
         Largest shear stress in torsion near the fillet, as sqrt(1/3) of von Mises' at the nodes,
         over the nominal one, 16 T / pi d^3; NaN where there is no answer.
-    failure
+    failure : str
         Why there is none.
     """
 

@@ -46,11 +46,11 @@ class Tilted:
 
     Attributes
     ----------
-    model, response
+    model, response : Model, Response
         As a user gets them.
-    by_plane
+    by_plane : dict[str, dict[str, float]]
         K_R by plane and estimator of `stiffness.tilt_stiffness` [N m/rad].
-    condensed
+    condensed : dict[str, float]
         K_R by plane from the motion of the unloaded shaft behind the bearing [N m/rad].
     """
 
@@ -92,9 +92,9 @@ def four_places(radius: float, angle: float, x: float) -> Floats:
 
     Parameters
     ----------
-    radius, x
+    radius, x : float
         Of the circle and along the shaft from the bearing's centre [m].
-    angle
+    angle : float
         Of the first place from the top [rad].
     """
     turns = angle + 0.5 * np.pi * np.arange(4)

@@ -26,19 +26,19 @@ class Series:
 
     Attributes
     ----------
-    block
+    block : Block
         The mesh of all.
-    parts
+    parts : tuple[sparse.bsr_array, ...]
         Stiffness of each body with Young's modulus `E`, in 3x3 blocks [N/m].
-    members
+    members : Ints
         (n_cells,) which body each cell belongs to.
-    support
+    support : Constraint
         What is held.
-    end
+    end : Constraint
         (n,) nodes of the loaded face, rigid.
-    load
+    load : int
         Component of the load at the end's reference point at the origin of the face, 0-5.
-    centre
+    centre : Floats
         (3,) of that point [m].
     """
 
@@ -55,9 +55,9 @@ class Series:
 
         Parameters
         ----------
-        moduli
+        moduli : Sequence[float]
             Of each body over `E`; those of rigid ones do not count.
-        rigid
+        rigid : Sequence[int]
             Bodies that are rigid: eliminated.
         """
         n = 3 * len(self.block.points)
@@ -141,9 +141,9 @@ def chain(count: int, across: int = 1) -> Series:
 
     Parameters
     ----------
-    count
+    count : int
         Cubes.
-    across
+    across : int
         Elements across each.
     """
     block = brick(
@@ -176,11 +176,11 @@ class Answer:
 
     Attributes
     ----------
-    compliance
+    compliance : float
         Motion of the load per unit load; NaN where the solver refuses.
-    iterations
+    iterations : int
         Of multigrid.
-    arrived
+    arrived : bool
         Whether the iteration says that it got there; True of a direct solver.
     """
 

@@ -40,7 +40,7 @@ class Bar:
 
     Attributes
     ----------
-    points, cells
+    points, cells : Floats, Ints
         (n, 3) [m] and (n_cells, k).
     """
 
@@ -59,12 +59,12 @@ class Bent:
 
     Attributes
     ----------
-    rigidity
+    rigidity : float
         E I of the solution: twice its energy over length and squared curvature [N m^2].
-    excess
+    excess : float
         That over E times the second moment of area of the mesh itself, less one: what the elements
         add, apart from the shape that they have lost. A prism of any section bends so exactly.
-    u
+    u : Floats
         (3 n,) displacements [m].
     """
 
@@ -78,11 +78,11 @@ def square(nodes: int, across: int, along: int, element: float) -> Block:
 
     Parameters
     ----------
-    nodes
+    nodes : int
         Of an element.
-    across, along
+    across, along : int
         Hexahedra; each may be six tetrahedra.
-    element
+    element : float
         Length of an element [m].
     """
 
@@ -110,9 +110,9 @@ def round_tetrahedra(length: float, across: int) -> dict[int, Bar]:
 
     Parameters
     ----------
-    length
+    length : float
         [m].
-    across
+    across : int
         Elements over the diameter; at least 8 go round a turn.
     """
     sizes = MeshSizes(shaft=SIDE / across, elements_per_turn=max(8, round(np.pi * across)))

@@ -60,11 +60,11 @@ class Cylinder:
 
     Attributes
     ----------
-    points, cells
+    points, cells : Floats, Ints
         (n, 3) [m] and (n_cells, k).
-    u
+    u : Floats
         (3 n,) displacements [m].
-    excess
+    excess : float
         Stiffness, pressure over the bore's mean displacement, over the exact one, less one.
     """
 
@@ -81,9 +81,9 @@ def press(
 
     Parameters
     ----------
-    through
+    through : int
         Hexahedra through the wall, and along the eighth of a turn; each may be six tetrahedra.
-    straight
+    straight : bool
         Mid-side nodes of tetrahedra in the middle of straight edges.
     """
     width = (RIM - BORE) / through
@@ -102,7 +102,7 @@ def radial_stress_error(cylinder: Cylinder, nu: float, averaged: bool) -> float:
 
     Parameters
     ----------
-    averaged
+    averaged : bool
         Whether the dilatation is that of `incompressible`, or taken at the point.
     """
     middle = np.full((3, 1), 0.5)
@@ -131,9 +131,9 @@ class Disc:
 
     Attributes
     ----------
-    points, cells
+    points, cells : Floats, Ints
         (n, 3) [m] and (n_cells, 4) or (n_cells, 10).
-    front, rear
+    front, rear : Ints
         Nodes of the faces.
     """
 

@@ -42,13 +42,13 @@ class PlaneWaves:
 
     Attributes
     ----------
-    amplitudes
+    amplitudes : Floats
         (m, 3) a [m].
-    wave_vectors
+    wave_vectors : Floats
         (m, 3) k [1/m].
-    phases
+    phases : Floats
         (m,) [rad].
-    lame
+    lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
     """
 
@@ -147,9 +147,9 @@ def trapezoids(nodes: int, share: float = 0.5) -> Callable[[int], Block]:
 
     Parameters
     ----------
-    nodes
+    nodes : int
         Of the hexahedra.
-    share
+    share : float
         How far the line moves, in heights of an element; parallel sides are as 1 + share to
         1 - share.
     """
@@ -181,9 +181,9 @@ class Domain:
 
     Attributes
     ----------
-    sliding
+    sliding : dict[str, int]
         Face to the axis of its normal.
-    project
+    project : callable
         Of positions (n, 3) on the face "x1" of a mesh: positions and normals on the true face.
     """
 
@@ -235,15 +235,15 @@ def relative_errors(
 
     Parameters
     ----------
-    points, cells
+    points, cells : Floats, Ints
         The mesh; integrals are over its elements.
-    u
+    u : Floats
         (3 n,) displacements [m].
-    exact
+    exact : Exact
         The exact solution.
-    lame
+    lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
-    degree
+    degree : int
         Of the quadrature.
 
     Returns
@@ -281,15 +281,15 @@ class Series:
 
     Attributes
     ----------
-    label
+    label : str
         The element and its mesh.
-    sizes
+    sizes : list[float]
         Edge of an element relative to the body.
-    unknowns
+    unknowns : list[int]
         Three a node.
-    errors
+    errors : dict[str, list[float]]
         By norm or quantity: relative errors.
-    orders
+    orders : dict[str, float]
         By the same names: the order that theory gives.
     """
 
@@ -326,15 +326,15 @@ def convergence(
 
     Parameters
     ----------
-    divisions
+    divisions : Sequence[int]
         n, ascending; the size of the elements goes with 1 / n.
-    mesh
+    mesh : callable
         Of n.
-    domain, exact
+    domain, exact : Domain, PlaneWaves
         The problem.
-    theory
+    theory : tuple[float, float]
         Orders in L2 and in the energy norm.
-    degree
+    degree : int
         Of the quadrature of the norms.
     """
     errors: dict[str, list[float]] = {name: [] for name in NORMS}

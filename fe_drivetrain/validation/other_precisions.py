@@ -29,13 +29,13 @@ class Tube:
 
     Attributes
     ----------
-    points
+    points : NDArray[np.float32]
         (n, 3) [m], each coordinate a 32-bit number: the same solid in each precision.
-    cells
+    cells : Ints
         (n_cells, 27).
-    free
+    free : Ints
         Degrees of freedom that are left.
-    load
+    load : NDArray[np.float32]
         (n_free, 2) a force across and a moment about the axis, spread over the nodes of the end.
     """
 
@@ -69,9 +69,9 @@ def stiffness(solid: Tube, kind: type) -> tuple[NDArray[np.int64], NDArray[np.in
 
     Parameters
     ----------
-    solid
+    solid : Tube
         The tube.
-    kind
+    kind : type
         ``numpy.float32``, ``numpy.float64`` or ``numpy.longdouble``.
     """
     lame = [kind(value) for value in MATERIALS["steel"].lame]
@@ -140,11 +140,11 @@ def refined(K: sparse.csr_array, factored: sparse.csr_array, F: Real, steps: int
 
     Parameters
     ----------
-    K
+    K : sparse.csr_array
         Residuals are taken with it.
-    factored
+    factored : sparse.csr_array
         Factorised, in its own precision.
-    steps
+    steps : int
         Of refinement.
     """
     try:

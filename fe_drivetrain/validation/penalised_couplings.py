@@ -38,13 +38,13 @@ class Bar:
 
     Attributes
     ----------
-    points, cells
+    points, cells : Floats, np.ndarray
         Hexahedra of 27 nodes.
-    K
+    K : sparse.bsr_array
         Stiffness without any constraint, in 3x3 blocks [N/m].
-    support, coupling
+    support, coupling : Constraint
         Constraints.
-    F
+    F : Floats
         (n_dofs, m) loads [N].
     """
 
@@ -61,11 +61,11 @@ def bar(kind: str, across: int) -> Bar:
 
     Parameters
     ----------
-    kind
+    kind : str
         "tie": two halves whose meshes do not match, by the mortar method. "rigid": the free end is
         a rigid face, loaded at its reference point. "averaged": the mean motion of the free end is
         held, and the bar loaded by its weight.
-    across
+    across : int
         Hexahedra across; the tied half has one less.
     """
     along = 4 * across
@@ -125,7 +125,7 @@ def penalised(found: Bar, penalty: float) -> tuple[System, Floats]:
 
     Parameters
     ----------
-    penalty
+    penalty : float
         Stiffness of the spring on each row of the coupling, of unit length, over the mean diagonal
         of the bar's stiffness.
     """

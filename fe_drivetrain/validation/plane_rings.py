@@ -19,9 +19,9 @@ class Plane:
 
     Attributes
     ----------
-    E
+    E : float
         Modulus in the plane [Pa].
-    nu
+    nu : float
         Poisson ratio in the plane.
     """
 
@@ -45,9 +45,9 @@ class Lame:
 
     Attributes
     ----------
-    inner, outer
+    inner, outer : float
         Radii [m].
-    inside, outside
+    inside, outside : float
         Pressures [Pa].
     """
 
@@ -87,11 +87,11 @@ def interference_pressure(misfit: float, shaft: Lame, ring: Lame, on: Plane, of:
 
     Parameters
     ----------
-    misfit
+    misfit : float
         By how much the shaft's radius exceeds the ring's, free [m].
-    shaft, ring
+    shaft, ring : Lame
         Their radii; the pressures are not looked at.
-    on, of
+    on, of : Plane
         Constants of the shaft and of the ring.
     """
     c = ring.inner
@@ -109,11 +109,11 @@ class Rotating:
 
     Attributes
     ----------
-    inner, outer
+    inner, outer : float
         Radii [m].
-    force
+    force : float
         Density times the square of the angular velocity [N/m^4].
-    plane
+    plane : Plane
         Elastic constants.
     """
 
@@ -145,11 +145,11 @@ class Harmonics:
 
     Attributes
     ----------
-    orders
+    orders : Ints
         (m,) n.
-    coefficients
+    coefficients : Floats
         (m, 4) [Pa].
-    inner, outer
+    inner, outer : float
         Radii [m].
     """
 
@@ -183,11 +183,11 @@ def harmonics(
 
     Parameters
     ----------
-    orders
+    orders : Ints
         (m,) n, each 2 or more.
-    inner, outer
+    inner, outer : float
         Radii [m].
-    inside, outside
+    inside, outside : Floats
         (m,) amplitudes of the pressure that varies as cos(n t) [Pa].
     """
     n = orders[:, None]
@@ -221,11 +221,11 @@ def even_amplitudes(load: Callable[[Floats], Floats], reach: float, n_orders: in
 
     Parameters
     ----------
-    load
+    load : callable
         Even function of the angle, looked at from 0 to `reach`, and zero beyond.
-    reach
+    reach : float
         Half of the loaded arc [rad].
-    n_orders
+    n_orders : int
         How many even orders: 0, 2, 4, ...
 
     Returns
@@ -246,7 +246,7 @@ class CurvedBar:
 
     Attributes
     ----------
-    inner, outer
+    inner, outer : float
         Radii [m].
     """
 
@@ -261,9 +261,9 @@ class CurvedBar:
 
         Parameters
         ----------
-        r
+        r : Floats
             Radius [m].
-        moment
+        moment : float
             Per width [N].
         """
         a, b, r = self.inner, self.outer, np.asarray(r)
@@ -292,9 +292,9 @@ class CurvedBar:
 
         Parameters
         ----------
-        r, t
+        r, t : Floats
             Radius [m] and angle from the loaded end [rad].
-        force
+        force : float
             Per width, towards the centre [N/m].
         """
         a, b, r = self.inner, self.outer, np.asarray(r)

@@ -14,11 +14,11 @@ def quarter_disc(radius: float, thickness: float, n: int, layers: int) -> Block:
 
     Parameters
     ----------
-    radius, thickness
+    radius, thickness : float
         [m].
-    n
+    n : int
         Elements along each side of each block: 2 n reach from the axis to the rim.
-    layers
+    layers : int
         Through the thickness.
 
     Returns

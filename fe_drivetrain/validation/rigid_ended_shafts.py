@@ -47,16 +47,16 @@ class Solved:
 
     Attributes
     ----------
-    mesh
+    mesh : Mesh
         Curved tetrahedra of ten nodes.
-    unknowns
+    unknowns : int
         Displacements.
-    stiffness
+    stiffness : dict[str, float]
         By load: moment over rotation, or force over displacement, of the front end, free in all
         other directions, with the rear end held [N m/rad, N/m].
-    estimate
+    estimate : dict[str, ErrorEstimate]
         By load.
-    imbalance
+    imbalance : float
         Largest difference of a load's work and twice the energy stored, relative: the solver's.
     """
 

@@ -31,11 +31,11 @@ def ring_sector(
 
     Parameters
     ----------
-    inner, outer, width
+    inner, outer, width : float
         Radii, and length along x [m].
-    angle
+    angle : float
         From t = 0 on [rad].
-    divisions, nodes, edges
+    divisions, nodes, edges : tuple[int, int, int], int, Sequence[ArrayLike or None]
         As for `blocks.brick`: along the radius, the angle, the axis.
     """
 

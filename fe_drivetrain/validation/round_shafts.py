@@ -26,7 +26,7 @@ def slice_of_tube(wall: int) -> Block:
 
     Parameters
     ----------
-    wall
+    wall : int
         Elements through the wall; eight times as many round.
     """
 
@@ -49,7 +49,7 @@ class Torsion:
 
     Attributes
     ----------
-    torque
+    torque : float
         [N m].
     """
 
@@ -79,7 +79,7 @@ class Bush:
 
     Attributes
     ----------
-    shift
+    shift : float
         U [m].
     """
 

@@ -37,11 +37,11 @@ class Tilted:
 
     Attributes
     ----------
-    moment
+    moment : float
         On the band [N m].
-    mean
+    mean : float
         Its mean rotation, int m . u dA / int m . m dA with m = w x r of unit rotation w [rad].
-    energy
+    energy : float
         Strain energy [J].
     """
 
@@ -76,13 +76,13 @@ def tilted(width: float, size: float, order: int = 6, length: float = LENGTH) ->
 
     Parameters
     ----------
-    width
+    width : float
         Of the band [m].
-    size
+    size : float
         Largest edge of an element [m].
-    order
+    order : int
         Of the elements.
-    length
+    length : float
         Of the ring [m].
     """
     mesh = meridian(ring_of(width, length), size, order=order, layers=0)
@@ -127,9 +127,9 @@ def tilted_solid(width: float, size: float, turn_elements: int) -> dict[str, Til
 
     Parameters
     ----------
-    width, size
+    width, size : float
         As for `tilted`.
-    turn_elements
+    turn_elements : int
         Elements round the axis.
     """
     mesh = shaft_hexahedra(ring_of(width), size, 27, elements_per_turn=turn_elements)

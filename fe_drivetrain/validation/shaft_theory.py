@@ -23,11 +23,11 @@ class Tube:
 
     Attributes
     ----------
-    outer, inner
+    outer, inner : float
         Diameters [m]; inner 0 where solid.
-    length
+    length : float
         [m].
-    material
+    material : Material
         Of the shaft.
     """
 
@@ -235,11 +235,11 @@ class Spring:
 
     Attributes
     ----------
-    x
+    x : float
         Station [m].
-    force
+    force : float
         Stiffness against u_z [N/m], inf is rigid.
-    moment
+    moment : float
         Stiffness against the slope [N m/rad].
     """
 
@@ -254,10 +254,10 @@ class Bent:
 
     Attributes
     ----------
-    deflection, slope
+    deflection, slope : Floats
         At the stations asked for: u_z [m] and the rotation of the section, positive as u_z'
         where there is no shear [rad].
-    forces, moments
+    forces, moments : Floats
         That the supports put on the beam, along z and in the sense of the slope [N, N m].
     """
 
@@ -285,15 +285,15 @@ def macaulay(
 
     Parameters
     ----------
-    length, EI, kGA
+    length, EI, kGA : float
         [m], [N m^2], [N]; kGA may be infinite.
-    supports
+    supports : Sequence[Spring]
         The springs.
-    loads
+    loads : Sequence[tuple[float, float, float]]
         Station [m], force [N] and moment [N m].
-    at
+    at : ArrayLike
         Stations where the answer is wanted [m].
-    load_per_length
+    load_per_length : float
         q along z [N/m].
     """
     x = np.atleast_1d(np.asarray(at, dtype=float))
@@ -355,9 +355,9 @@ def two_mass_frequencies(stiffness: float, rotor: float, generator: float) -> tu
 
     Parameters
     ----------
-    stiffness
+    stiffness : float
         k [N m/rad] on the rotor's side.
-    rotor, generator
+    rotor, generator : float
         Moments of inertia on the rotor's side [kg m^2].
     """
     free = np.sqrt(stiffness * (1 / rotor + 1 / generator))
@@ -369,11 +369,11 @@ def chain_frequencies(inertias: ArrayLike, springs: ArrayLike, ground: float = 0
 
     Parameters
     ----------
-    inertias
+    inertias : ArrayLike
         (n,) [kg m^2].
-    springs
+    springs : ArrayLike
         (n - 1,) between neighbours [N m/rad].
-    ground
+    ground : float
         Of the last inertia to the ground [N m/rad].
     """
     J, k = np.asarray(inertias, dtype=float), np.asarray(springs, dtype=float)

@@ -45,11 +45,11 @@ def bar(height: float, across: int, nodes: int = 10) -> Mesh:
 
     Parameters
     ----------
-    height
+    height : float
         Of the slivers, relative to the size of a cube; below 0 they are inside out.
-    across
+    across : int
         Cubes across, an even number; twice as many to a length.
-    nodes
+    nodes : int
         Of an element, 10 or 4.
     """
     along = 2 * across
@@ -133,14 +133,14 @@ class Bent:
 
     Attributes
     ----------
-    bending, shear
+    bending, shear : float
         Errors of the stiffness, relative to the exact one; NaN where nothing came out. Elements of
         ten nodes with straight edges hold the first solution: what is left is the solver's error.
-    iterations
+    iterations : int
         Of the solver, 0 of a direct one.
-    solver
+    solver : str
         Which gave the answer, or why there is none.
-    condition
+    condition : float
         Estimated condition number in the 1-norm, the diagonal scaled to one.
     """
 
@@ -158,11 +158,11 @@ def bent(mesh: Mesh, method: str, condition: bool = False) -> Bent:
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         Of the bar.
-    method
+    method : str
         Of `solvers.solve`.
-    condition
+    condition : bool
         Whether to estimate the condition number.
     """
     points = mesh.points

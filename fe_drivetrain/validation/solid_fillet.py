@@ -29,13 +29,13 @@ class SolidFillet:
 
     Attributes
     ----------
-    unknowns
+    unknowns : int
         Of the solid.
-    angle
+    angle : Floats
         (n,) on the arc, from its end on the thinner shaft [degrees].
-    around
+    around : Floats
         (n,) from the side that bending pulls [rad].
-    stress
+    stress : dict[str, Floats]
         Along the arc in tension and bending, between arc and circumference in torsion (n,), over
         the nominal one.
     """
@@ -67,11 +67,11 @@ def fitted_peak(angle: Floats, factor: Floats, degree: int, weight: Floats | Non
 
     Parameters
     ----------
-    angle, factor
+    angle, factor : Floats
         (n,) places on the arc [degrees], and the local factors there.
-    degree
+    degree : int
         Of the polynomial.
-    weight
+    weight : Floats or None
         (n,) 1 where not given.
     """
     w = np.ones_like(angle) if weight is None else weight
@@ -85,9 +85,9 @@ def solve(wide: float, radius: float, per_fillet: int) -> SolidFillet:
 
     Parameters
     ----------
-    wide, radius
+    wide, radius : float
         D/d and r/d, of d = 1 m.
-    per_fillet
+    per_fillet : int
         Elements along the fillet.
     """
     shaft = fillet_factors.shouldered(wide, radius)

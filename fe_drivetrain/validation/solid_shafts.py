@@ -51,13 +51,13 @@ class Solid:
 
     Attributes
     ----------
-    points, cells
+    points, cells : Floats, Ints
         (n, 3) [m] and (n_cells, 27).
-    facets
+    facets : Ints
         (n_facets, 9) of all cells, turned outward from their cells.
-    front, rear
+    front, rear : float
         x of the end faces [m].
-    per_turn
+    per_turn : int
         Elements round the axis.
     """
 
@@ -115,13 +115,13 @@ def solid(
 
     Parameters
     ----------
-    shaft, grading
+    shaft, grading : Shaft, Grading
         As for `hexahedra.shaft_hexahedra`.
-    refinement
+    refinement : int
         r.
-    base_turn
+    base_turn : int
         Elements round the axis of the first.
-    size
+    size : float or None
         Largest length of its elements [m]; `SLICE` radii where not given.
     """
     radius = max(piece.outer_diameter for piece in shaft.pieces) / 2
@@ -143,10 +143,10 @@ def mesh_band(refinements: Sequence[int], values: ArrayLike, order: float = 4.0)
 
     Parameters
     ----------
-    refinements, values
+    refinements, values : Sequence[int], ArrayLike
         Of two meshes or more of the family, coarse first. Of two, what is missing at the order of
         the theory, three times over (Roache 1994); of more, see `convergence.grid_convergence`.
-    order
+    order : float
         Of the theory: fourth for energies of smooth solutions, and of parabolas for circles.
     """
     h, v = 1.0 / np.asarray(refinements, dtype=float), np.asarray(values, dtype=float)
@@ -209,17 +209,17 @@ class Compliance:
 
     Attributes
     ----------
-    stations
+    stations : Floats
         (n,) [m].
-    components
+    components : tuple[int, ...]
         Of force and motion, 0-5.
-    matrix
+    matrix : Floats
         (n, c, n, c) motion of a section for a unit load on one [m, rad per N, N m].
-    weight
+    weight : Floats
         (n, c) motions under gravity of 1 m/s^2 along z.
-    weight_resultant
+    weight_resultant : Floats
         (c,) force and moment of that weight about the first station [N, N m].
-    unknowns, seconds
+    unknowns, seconds : int, float
         Of the solution.
     """
 
@@ -245,11 +245,11 @@ def sectional_compliance(
 
     Parameters
     ----------
-    mesh, material
+    mesh, material : Solid, Material
         The shaft.
-    stations
+    stations : Sequence[float]
         Planes of nodes [m], the front face first.
-    components
+    components : tuple[int, ...]
         Of the loads and motions: 0-2 along, 3-5 about x, y and z.
     """
     n, chosen = mesh.n_unknowns, list(components)
@@ -322,13 +322,13 @@ def on_springs(
 
     Parameters
     ----------
-    compliance
+    compliance : Compliance
         In the vertical plane.
-    stiffness
+    stiffness : ArrayLike
         (n, 2) [N/m, N m/rad], inf is rigid, 0 is free.
-    loads
+    loads : ArrayLike
         (n, 2) forces along z and moments about y [N, N m].
-    gravity
+    gravity : float
         Along z [m/s^2].
     """
     k, load = np.asarray(stiffness, dtype=float).ravel(), np.asarray(loads, dtype=float).ravel()

@@ -38,9 +38,9 @@ class Shell:
 
     Attributes
     ----------
-    inner, outer
+    inner, outer : float
         Radii [m].
-    lame
+    lame : tuple[float, float]
         Lame's constants (lambda, mu) [Pa].
     """
 
@@ -55,9 +55,9 @@ class Wave:
 
     Attributes
     ----------
-    shell
+    shell : Shell
         Where it holds.
-    factors
+    factors : Floats
         (4,) of the solutions of `amplitudes`, in the unit of the displacement.
     """
 
@@ -108,9 +108,9 @@ def displaced_core(inner: Shell, outer: Shell, joint: Joint) -> tuple[Wave, Wave
 
     Parameters
     ----------
-    inner, outer
+    inner, outer : Shell
         The shells, which meet at the joint.
-    joint
+    joint : Joint
         "sliding": equal normal displacement, no shear stress. "averaged": equal mean displacement,
         tractions the same everywhere on a face. "rigid": each face moves as a rigid sphere.
         "bonded": one piece.
@@ -154,9 +154,9 @@ class Squeezed:
 
     Attributes
     ----------
-    inner, outer
+    inner, outer : tuple[float, float]
         (A, B) of the two shells [-, m^3].
-    contact
+    contact : float
         Pressure on the joint [Pa].
     """
 
@@ -194,11 +194,11 @@ class Mesh:
 
     Attributes
     ----------
-    points
+    points : Floats
         (n, 3) [m].
-    cells
+    cells : tuple[Ints, Ints]
         Of the inner and of the outer shell.
-    core, inner, outer, outside
+    core, inner, outer, outside : Ints
         Facets on the core, the two sides of the joint, and the outside.
     """
 
@@ -230,11 +230,11 @@ def mesh_of(inner: Shell, outer: Shell, across: int, through: int, bonded: bool 
 
     Parameters
     ----------
-    across
+    across : int
         Elements along an edge of the cube, a quarter of a turn.
-    through
+    through : int
         Elements through each shell.
-    bonded
+    bonded : bool
         Whether the shells share their nodes.
     """
     first, second = (_sphere(shell, across, through) for shell in (inner, outer))
@@ -328,15 +328,15 @@ class Moved:
 
     Attributes
     ----------
-    stiffness
+    stiffness : float
         Force along x over displacement [N/m].
-    across
+    across : float
         Largest force along y and z, over that along x.
-    moments
+    moments : Floats
         (3,) on the core that turns, about the centre [N m].
-    displacements
+    displacements : Floats
         (n, 3) where the core moves [m].
-    unknowns
+    unknowns : int
         Number of degrees of freedom that are left.
     """
 
@@ -363,11 +363,11 @@ def move_core(mesh: Mesh, shells: Sequence[Shell], joint: Joint) -> Moved:
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         From `mesh_of`, bonded where the joint is.
-    shells
+    shells : Sequence[Shell]
         The inner and the outer one.
-    joint
+    joint : Joint
         Its form.
     """
     nodes = mesh.points.size
@@ -408,9 +408,9 @@ class Pressed:
 
     Attributes
     ----------
-    outside, joint
+    outside, joint : float
         Mean radial displacement of the outside and of the outer shell's face at the joint [m].
-    contact
+    contact : float
         Mean pressure on the joint [Pa].
     """
 
@@ -427,11 +427,11 @@ def press(mesh: Mesh, shells: Sequence[Shell], pressure: float) -> Pressed:
 
     Parameters
     ----------
-    mesh
+    mesh : Mesh
         From `mesh_of`, not bonded.
-    shells
+    shells : Sequence[Shell]
         The inner and the outer one.
-    pressure
+    pressure : float
         [Pa]
     """
     n = mesh.points.size

@@ -39,11 +39,11 @@ class Twisted:
 
     Attributes
     ----------
-    stiffness
+    stiffness : float
         By energy, over the exact one.
-    unbalanced
+    unbalanced : float
         Torque at the bore less that at the outside, over the exact one: what the tie loses.
-    stress
+    stress : float
         Root mean square error of the stress in the outer ring, over the exact shear stress on the
         tied cylinder.
     """
@@ -59,11 +59,11 @@ class Tie:
 
     Attributes
     ----------
-    bodies
+    bodies : two_bodies.Bodies
         Inner ring, the slave, and outer ring.
-    tie
+    tie : Constraint or None
         The constraint; None where it was refused.
-    messages
+    messages : tuple[str, ...]
         Warnings, or the refusal.
     """
 

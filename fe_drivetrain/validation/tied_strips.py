@@ -33,17 +33,17 @@ class Strip:
 
     Attributes
     ----------
-    patch
+    patch : float
         Largest error of the stress under each of the six states of unit stress, of unit stress.
-    bending
+    bending : float
         Largest error under pure bending, of the largest stress.
-    reaction
+    reaction : float
         Force and moment that the tie fails to pass on, of those of the end, worst of all loads.
-    entries
+    entries : int
         Of the stiffness that is factorised.
-    master
+    master : int
         Nodes of the master face.
-    warned
+    warned : bool
         Whether the tie warned of a slave that is the coarser.
     """
 

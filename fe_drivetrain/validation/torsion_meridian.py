@@ -48,13 +48,13 @@ def torsion_bounds(shaft: Shaft, shear_modulus: float, size: float, halvings: in
 
     Parameters
     ----------
-    shaft
+    shaft : Shaft
         Without fillets; solid, or of one bore all along.
-    shear_modulus
+    shear_modulus : float
         G [Pa].
-    size
+    size : float
         Element size [m], fourth order.
-    halvings
+    halvings : int
         Local refinements at the corners of the outline.
 
     Returns

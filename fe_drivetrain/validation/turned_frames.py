@@ -31,9 +31,9 @@ class Ring:
 
     Attributes
     ----------
-    displacements, reactions
+    displacements, reactions : Floats
         (n, 3, 8) of the nodes [m, N]: six unit loads at the free end, pressure, body force.
-    compliance
+    compliance : Floats
         (6, 6) motions of the free end under unit loads along the frame's axes.
     """
 
@@ -47,11 +47,11 @@ def solve_ring(nodes: int, turn: Floats, shift: Floats) -> Ring:
 
     Parameters
     ----------
-    nodes
+    nodes : int
         Of the element.
-    turn
+    turn : Floats
         (3, 3) rotation matrix.
-    shift
+    shift : Floats
         (3,) [m].
     """
     block = brick(DIVISIONS, nodes, lambda p: quarter_ring(p) @ turn.T + shift)
@@ -114,11 +114,11 @@ def moved_model(model: Model, turn: Floats, shift: Floats) -> Model:
 
     Parameters
     ----------
-    model
+    model : Model
         With averaged couplings, one bearing, bonded or in a sliding spherical joint.
-    turn
+    turn : Floats
         (3, 3) rotation matrix.
-    shift
+    shift : Floats
         (3,) [m].
     """
     old = model.mesh

@@ -22,11 +22,11 @@ class Bodies:
 
     Attributes
     ----------
-    points
+    points : Floats
         (n, 3) [m].
-    cells
+    cells : tuple[Ints, ...]
         (n_cells, k) of each body.
-    faces
+    faces : tuple[dict[str, Ints], ...]
         Facets of each body by their name in its block.
     """
 
@@ -73,13 +73,13 @@ class Solved:
 
     Attributes
     ----------
-    u
+    u : Floats
         (n, m) [m].
-    elimination
+    elimination : Elimination
         The constraints.
-    residual
+    residual : Floats
         (n, m) K u - F: what the constraints carry [N].
-    entries
+    entries : int
         Entries of the stiffness that was factorised.
     """
 
@@ -105,13 +105,13 @@ def solve(
 
     Parameters
     ----------
-    K
+    K : sparse.csr_array
         (n, n) [N/m].
-    constraints
+    constraints : Sequence[Constraint]
         C u = 0, or C u = g for those named in ``prescribed``.
-    F
+    F : Floats
         (n, m) [N].
-    prescribed
+    prescribed : dict[str, Floats] or None
         (k, m) g of each such constraint.
     """
     elimination = eliminate(constraints, K.shape[0])

@@ -118,7 +118,7 @@ def read_log(lines: Sequence[tuple[float, str]]) -> dict[str, Any]:
 
     Parameters
     ----------
-    lines
+    lines : Sequence[tuple[float, str]]
         Each line with the time at which it came [s].
 
     Returns

@@ -42,9 +42,9 @@ class Variant:
 
     Attributes
     ----------
-    tool
+    tool : str
         Module of this folder.
-    key
+    key : str
         Name of the solver in it.
     """
 
@@ -95,13 +95,13 @@ class Outcome:
 
     Attributes
     ----------
-    status
+    status : Status
         What happened.
-    found
+    found : dict[str, Any]
         Of `runner.measure`, where it is done.
-    reason
+    reason : str
         In words, where it is not.
-    elapsed
+    elapsed : float
         Wall time of the whole process [s].
     """
 
@@ -134,13 +134,13 @@ def launch(
 
     Parameters
     ----------
-    variant
+    variant : Variant
         The tool and its solver.
-    problem, warm_up
+    problem, warm_up : Path
         .npz files of `runner.write_problem`.
-    limits
+    limits : Limits
         Over them the process is ended.
-    interpreter
+    interpreter : str
         The Python that has the tool.
     """
     words = [str(word) for word in getattr(_module(variant.tool), "LAUNCH", ())]

@@ -51,19 +51,19 @@ class Problem:
 
     Attributes
     ----------
-    points
+    points : Floats
         (n, 3) nodes [m].
-    cells
+    cells : Ints
         (ne, 10) nodes of the curved tetrahedra, in VTK's order.
-    material
+    material : Ints
         (ne,) index into the two below.
-    youngs_modulus, poisson_ratio
+    youngs_modulus, poisson_ratio : Floats
         (m,) [Pa], [-].
-    fixed, moved
+    fixed, moved : Ints
         (nf, 6) nodes of the triangles of the two faces.
-    translation, rotation
+    translation, rotation : Floats
         (3,) of the moved face: u = translation + rotation x r [m], [rad].
-    rule_points, rule_weights
+    rule_points, rule_weights : Floats
         (q, 3) and (q,) quadrature in the reference tetrahedron, for all tools that take one.
     """
 
@@ -113,15 +113,15 @@ class Clock:
 
     Attributes
     ----------
-    steps
+    steps : dict[str, float]
         Wall time of each step [s].
-    iterations
+    iterations : int or None
         Of an iterative solver.
-    elsewhere
+    elsewhere : int or None
         Peak memory of the processes that did the work, where this one did not [bytes].
-    uncounted
+    uncounted : float
         Time inside ``solve`` that is no part of the way from mesh to stiffness [s].
-    notes
+    notes : dict[str, Any]
         What the page should say about the run.
     """
 

@@ -47,9 +47,9 @@ def model_lines(
 
     Parameters
     ----------
-    element
+    element : Superelement
         The superelement.
-    first_node, first_element
+    first_node, first_element : int
         Numbers that nothing else in the deck has, nor what follows them: 2 n nodes of the n points
         and up to 6 n of stiffness and mass each, and as many elements.
     """

@@ -39,13 +39,13 @@ def write_torsion(
 
     Parameters
     ----------
-    source
+    source : str or Path
         An ElastoDyn input of any version that has the two values.
-    target
+    target : str or Path
         Where the new one goes; may be ``source``.
-    torsion
+    torsion : Torsion
         The new values.
-    overwrite
+    overwrite : bool
         Whether an existing ``target`` is replaced.
 
     Returns

@@ -34,9 +34,9 @@ class Reduced(NamedTuple):
 
     Attributes
     ----------
-    mass, stiffness, damping
+    mass, stiffness, damping : Floats
         (n, n).
-    weight
+    weight : Floats
         (n,) forces of the own weight, along -z.
     """
 
@@ -53,11 +53,11 @@ def reduced(
 
     Parameters
     ----------
-    element
+    element : Superelement
         With its mass; the first point is the interface.
-    damping
+    damping : Floats or None
         (6 n, 6 n) of the points' motions [N s/m, N s, N m s/rad]; none where not given.
-    gravity
+    gravity : float
         [m/s^2], along -z of the frame.
 
     Raises

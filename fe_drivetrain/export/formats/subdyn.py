@@ -29,15 +29,15 @@ class Spring(NamedTuple):
 
     Attributes
     ----------
-    stiffness
+    stiffness : Floats
         (6, 6) in the element's axes.
-    axes
+    axes : Floats
         (3, 3) whose rows are the element's x, y, z in SubDyn's frame.
-    joints
+    joints : Floats
         (2, 3) of its ends [m].
-    mass
+    mass : float
         [kg] at the second joint.
-    inertia
+    inertia : Floats
         (3, 3) there, in SubDyn's frame [kg m^2].
     """
 
@@ -59,12 +59,12 @@ def write(path: Path, element: Superelement, axes: Floats | None = None) -> None
 
     Parameters
     ----------
-    path
+    path : Path
         The file.
-    element
+    element : Superelement
         Of one point, with its supports. A mass must be that of a rigid body with its centre at the
         point.
-    axes
+    axes : Floats or None
         (3, 3) whose rows are x, y, z of the superelement's frame in SubDyn's; the same frame where
         not given. Both have their origin in one place.
 

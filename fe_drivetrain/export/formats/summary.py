@@ -91,9 +91,9 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene.
-    level
+    level : int
         Of the reactions: 1 to 3 with housings as springs, faces in shape, or 4. The shaft's
         stiffness is of the meridian, level 2.
 

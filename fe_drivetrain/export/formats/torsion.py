@@ -17,9 +17,9 @@ def torsional_stiffness(element: Superelement, first: str, second: str) -> float
 
     Parameters
     ----------
-    element
+    element : Superelement
         A free shaft along x.
-    first, second
+    first, second : str
         Two of its points.
 
     Raises
@@ -72,15 +72,15 @@ def torsional_damping(
 
     Parameters
     ----------
-    ratio
+    ratio : float
         Of critical, 0 to 1.
-    stiffness
+    stiffness : float
         [N m/rad], low-speed side.
-    rotor_inertia
+    rotor_inertia : float
         Of blades and hub about the shaft [kg m^2].
-    generator_inertia
+    generator_inertia : float
         About its own shaft [kg m^2], inf where the generator is held.
-    gear_ratio
+    gear_ratio : float
         Generator speed over rotor speed.
 
     Raises

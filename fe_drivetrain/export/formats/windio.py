@@ -49,16 +49,16 @@ def write_torsion(
 
     Parameters
     ----------
-    source
+    source : str or Path
         A turbine file in block style.
-    target
+    target : str or Path
         Where the new one goes; may be ``source``.
-    torsion
+    torsion : Torsion
         The new values, low-speed side.
-    program
+    program : Program
         "wisdem" sets WISDEM's overrides, "windio" windIO's own values, which need the
         drivetrain's other elastic properties beside them.
-    overwrite
+    overwrite : bool
         Whether an existing ``target`` is replaced.
 
     Returns

@@ -31,9 +31,9 @@ def compliance_by_calculix(element: Superelement, folder: Path) -> Floats:
 
     Parameters
     ----------
-    element
+    element : Superelement
         The superelement; a free one is held at its first point, and loaded at the others.
-    folder
+    folder : Path
         For the decks and what ccx writes.
 
     Returns
@@ -60,11 +60,11 @@ def frequencies_by_calculix(element: Superelement, folder: Path, count: int) -> 
 
     Parameters
     ----------
-    element
+    element : Superelement
         The superelement; a free one is held at its first point.
-    folder
+    folder : Path
         For the deck and what ccx writes.
-    count
+    count : int
         How many.
 
     Raises

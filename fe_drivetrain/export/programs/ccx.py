@@ -31,11 +31,11 @@ def run_calculix(path: str | Path, executable: str = "ccx", threads: int = 1) ->
 
     Parameters
     ----------
-    path
+    path : str or Path
         The deck.
-    executable
+    executable : str
         Name or path of CalculiX's solver.
-    threads
+    threads : int
         That it may use.
 
     Returns

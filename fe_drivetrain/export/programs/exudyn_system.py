@@ -42,17 +42,17 @@ class System:
 
     Attributes
     ----------
-    system
+    system : Any
         Its MainSystem, ``mbs`` in Exudyn's own documentation: add bodies, sensors, loads.
-    container
+    container : Any
         Its SystemContainer, which must live as long.
-    points
+    points : tuple[str, ...]
         Names of the points.
-    markers
+    markers : Mapping[str, int]
         By point: the number of its rigid marker.
-    loads
+    loads : Mapping[str, tuple[Any, Any]]
         By point: the numbers of its force and its torque, zero until they are set.
-    supports
+    supports : Mapping[str, tuple[Any or None, Any or None]]
         By point: numbers of the connector and of the joint to the ground, None where there is none.
     """
 
@@ -113,9 +113,9 @@ class System:
 
         Parameters
         ----------
-        point
+        point : str
             Where the load is.
-        size
+        size : float
             Of the loads that it is measured with, both ways, so that what a load does by turning
             the shaft cancels to its third power [N, N m]. A small one drowns: bodies stand at
             metres, which leaves their springs 1e-16 m.
@@ -155,12 +155,12 @@ def flexible_system(
 
     Parameters
     ----------
-    body
+    body : Superelement or CraigBampton
         Free, with its mass.
-    supports
+    supports : Mapping[str, Floats]
         (6, 6) stiffness to ground by point [N/m, N, N m/rad]; inf on the diagonal holds that motion
         rigidly, and nothing else is in its row.
-    gravity
+    gravity : Sequence[float]
         (3,) [m/s^2].
 
     Raises
@@ -219,7 +219,7 @@ def floating_system(
 
     Parameters
     ----------
-    body, supports, gravity
+    body, supports, gravity : Superelement, Mapping[str, Floats], Sequence[float]
         As for `flexible_system`; modes of Craig and Bampton have no motion of any point that could
         carry their momentum, and are not taken.
 
@@ -280,10 +280,10 @@ def rigid_bodies_system(
 
     Parameters
     ----------
-    body
+    body : Superelement
         Free, its stiffness a chain along x and its mass of rigid bodies at its points, as
         `fe_drivetrain.export.lumped_shaft.lumped_superelement` gives it.
-    supports, gravity
+    supports, gravity : Mapping[str, Floats], Sequence[float]
         As for `flexible_system`.
 
     Raises

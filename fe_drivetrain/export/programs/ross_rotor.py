@@ -49,11 +49,11 @@ class Rotor:
 
     Attributes
     ----------
-    rotor
+    rotor : Any
         The ross.Rotor, for all that ROSS can do with it.
-    stations
+    stations : Floats
         (n,) x of its nodes [m].
-    supports
+    supports : Mapping[str, tuple[int, Floats]]
         Of each support by name: its node, and its stiffness (6, 6) [N/m, N, N m/rad] in this
         project's frame and order, as it went in.
     """
@@ -90,9 +90,9 @@ class Rotor:
 
         Parameters
         ----------
-        loads
+        loads : Mapping[float, Floats]
             By station [m]: forces and moments [N, N m] in this project's order.
-        gravity
+        gravity : Sequence[float]
             (3,) along x, y, z [m/s^2].
         """
         n = len(self.stations)
@@ -137,14 +137,14 @@ def ross_rotor(
 
     Parameters
     ----------
-    beam
+    beam : Beam
         With its supports; see `fe_drivetrain.beam.of_scene.beam_of_scene`.
-    stations
+    stations : Sequence[float]
         Where nodes must be [m], besides the ends of sections and the supports.
-    longest
+    longest : float or None
         Of its elements [m]; a sixteenth of the beam where not given. What is static is exact
         between nodes; frequencies, and cones, want short elements.
-    stiffer
+    stiffer : float
         How many times a support that is rigid is stiffer than the shaft at its node.
 
     Raises
@@ -230,14 +230,14 @@ def rotor_of_scene(
 
     Parameters
     ----------
-    scene
+    scene : Scene
         The scene; what its gearbox weighs is a load, see `Rotor.deflections`.
-    bearing_stiffness
+    bearing_stiffness : Mapping[str, Floats]
         (6, 6) by bearing [N/m, N, N m/rad], as `fe_drivetrain.fidelity.unit_stiffness` or the
         ``stiffness`` of `fe_drivetrain.export.unit_superelement` gives it.
-    rings
+    rings : bool
         Whether the shaft has its rings, see `fe_drivetrain.fidelity.shafts.ringed_shaft`.
-    longest, stiffer
+    longest, stiffer : float or None, float
         As for `ross_rotor`.
     """
     beam = (ringed_beam if rings else beam_of_scene)(scene, bearing_stiffness)
