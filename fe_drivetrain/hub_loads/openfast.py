@@ -61,8 +61,8 @@ def read_openfast(
     path : str or path-like
         File to read; units are the file's own.
     gage_distance : float or None
-        ShftGagL of the ElastoDyn input [m], to carry strain-gage moments to the hub where the file has
-        no others.
+        ShftGagL of the ElastoDyn input [m], to carry strain-gage moments to the hub where the file
+        has no others.
     azimuth_blade1_up : float
         AzimB1Up of the ElastoDyn input [rad]: the azimuth that is printed when blade 1 points up.
 
