@@ -23,7 +23,7 @@ from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.suite import run_cases
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
@@ -183,7 +183,7 @@ def invoke(
 
 @pytest.fixture
 def script(tmp_path: Path) -> Path:
-    """A script of a case, as under cases/."""
+    """A user's own script of a case."""
     path = tmp_path / "tiny.py"
     path.write_text(SCRIPT, "utf-8")
     return path

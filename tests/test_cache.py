@@ -12,12 +12,12 @@ from fe_drivetrain.common import cache as cache_module
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache, key, switched_off, user_cache
 from fe_drivetrain.mesh import cached
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.report.results import Environment, Results, read_results
+from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.reading import change_scene
-from fe_drivetrain.suite.case import OldCase as Case
-from fe_drivetrain.suite.case import Run, find_cases, run_case
+from fe_drivetrain.suite.case import Case, Run, find_cases, run_case
+from fe_drivetrain.suite.page import Page
 
 CONTENT = {"a": 0.1, "b": [1, "x", None]}
 
@@ -328,17 +328,8 @@ def test_a_case_that_measures_takes_nothing_from_the_cache(folder: Path, tmp_pat
     seen: dict[bool, Path | None] = {}
     for alone in (True, False):
 
-        def work(run: Run, alone: bool = alone) -> Results:
+        def work(run: Run, page: Page, alone: bool = alone) -> None:
             seen[alone] = user_cache().folder
-            return Results(
-                case="a/b",
-                title="t",
-                source="s",
-                summary=[],
-                verdicts=[],
-                sections=[],
-                environment=Environment(date="", python="", platform="", versions={}, settings={}),
-            )
 
         run_case(Case("a/b", "t", "s", work, alone=alone), tmp_path / "out")
     assert seen == {True: None, False: folder}

@@ -1,56 +1,49 @@
 """A result folder appears whole or not at all, and says what was computed."""
 
 import os
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
 import pytest
+from tiny_case import check_one
 
 from fe_drivetrain.common import files
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.results import (
-    AssumptionRow,
-    Chart,
-    Environment,
-    Image,
-    Results,
-    Section,
-    Table,
-    Text,
-    judge,
-    read_results,
-)
+from fe_drivetrain.report.results import Chart, Image, Table, Text, read_results
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import OldCase as Case
-from fe_drivetrain.suite.case import Run, find_cases, run_case
+from fe_drivetrain.suite.case import Case, Run, find_cases, run_case
+from fe_drivetrain.suite.page import Page
+
+Work = Callable[[Run, Page], None]
 
 
-def results_of(run: Run, *items: Text | Table | Chart | Image, computed: float = 1.01) -> Results:
-    return Results(
-        case="group/tiny",
-        title="A tiny case",
-        source="nobody",
-        summary=["The answer is one."],
-        verdicts=[
-            judge("one", computed, 1.0, tolerance=0.05, reason="none", source="counting", unit="m")
-        ],
-        sections=[Section(title="Only one", items=list(items))],
-        assumptions=[AssumptionRow(name="two", value=2, unit="-", source="assumed")],
-        times=dict(run.times),
-        environment=Environment(
-            date="2026-01-01", python="3", platform="any", versions={}, settings=dict(run.settings)
-        ),
-    )
-
-
-def tiny(run: Run) -> Results:
+def tiny(run: Run, page: Page) -> None:
     with run.step("count"):
         (run.folder / "one.txt").write_text("1")
-    return results_of(run)
+    fill(run, page)
 
 
-def tiny_case(work: object = tiny) -> Case:
-    return Case("group/tiny", "A tiny case", "nobody", work)  # type: ignore[arg-type]
+def fill(run: Run, page: Page) -> None:
+    """A page with a check and an assumed value, and no file."""
+    page.answer("The answer is one.")
+    check_one(page, unit="m")
+    page.assume("two", 2, "-", "assumed")
+
+
+def showing(*items: Text | Table | Chart | Image) -> Work:
+    """Work that shows these in a section."""
+
+    def work(run: Run, page: Page) -> None:
+        page.section("Only one")
+        page.add(*items)
+        fill(run, page)
+
+    return work
+
+
+def tiny_case(work: Work = tiny) -> Case:
+    return Case("group/tiny", "A tiny case", "nobody", work)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -77,14 +70,14 @@ def test_every_kind_of_item_survives_the_round_trip(tmp_path: Path) -> None:
         Table(caption="c", columns=["a", "b"], rows=[[1, 2.5], ["x", None], [True, 1e-300]]),
         Chart(caption="c", figure={"data": [{"y": [1, 2.5, None]}], "layout": {}}),
     )
-    run_case(tiny_case(lambda run: results_of(run, *items)), tmp_path / "out")
+    run_case(tiny_case(showing(*items)), tmp_path / "out")
     (section,) = read_results(tmp_path / "out" / "results.json").sections
     assert tuple(section.items) == items
 
 
 def test_a_nan_is_a_failed_check_and_not_an_unreadable_file(tmp_path: Path) -> None:
-    work = tiny_case(lambda run: results_of(run, computed=float("nan")))
-    assert not run_case(work, tmp_path / "out").passed
+    case = tiny_case(lambda run, page: check_one(page, float("nan")))
+    assert not run_case(case, tmp_path / "out").passed
     (verdict,) = read_results(tmp_path / "out" / "results.json").verdicts
     assert verdict.computed != verdict.computed
     assert not verdict.passed
@@ -101,9 +94,9 @@ def test_steps_are_reported_and_timed(tmp_path: Path) -> None:
 def test_quick_and_settings_reach_the_case(tmp_path: Path) -> None:
     got: list[Run] = []
 
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         got.append(run)
-        return results_of(run)
+        fill(run, page)
 
     run_case(tiny_case(work), tmp_path / "out", {"k": 3}, quick=True)
     assert got[0].quick
@@ -117,7 +110,7 @@ def test_a_run_that_fails_leaves_the_earlier_results(
     run_case(tiny_case(), tmp_path / "out")
     before = contents(tmp_path)
 
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         (run.folder / "half.txt").write_text("written")
         raise error("midway")
 
@@ -132,7 +125,7 @@ def test_a_page_that_fails_leaves_the_earlier_results(tmp_path: Path) -> None:
     before = contents(tmp_path)
     image = Image(caption="not there", file="missing.png")
     with pytest.raises(InputError, match=r"missing\.png"):
-        run_case(tiny_case(lambda run: results_of(run, image)), tmp_path / "out")
+        run_case(tiny_case(showing(image)), tmp_path / "out")
     assert contents(tmp_path) == before
 
 
@@ -159,7 +152,7 @@ def test_ctrl_c_between_the_two_renames_puts_the_earlier_results_back(
 
 def test_a_new_run_replaces_the_whole_folder(tmp_path: Path) -> None:
     run_case(tiny_case(), tmp_path / "out")
-    run_case(tiny_case(results_of), tmp_path / "out")
+    run_case(tiny_case(fill), tmp_path / "out")
     assert set(contents(tmp_path / "out")) == {"results.json", "report.html"}
 
 
@@ -186,7 +179,7 @@ def test_a_file_or_a_folder_below_a_file_is_refused(tmp_path: Path) -> None:
 
 def test_a_case_is_found_by_its_name_or_its_last_part(monkeypatch: pytest.MonkeyPatch) -> None:
     names = ("a/one", "a/two", "b/two")
-    cases = {name: Case(name, "t", "s", results_of) for name in names}
+    cases = {name: Case(name, "t", "s", fill) for name in names}
     monkeypatch.setattr(case_module, "all_cases", lambda: cases)
     assert [case.name for case in find_cases("a/two")] == ["a/two"]
     assert [case.name for case in find_cases("one")] == ["a/one"]

@@ -9,7 +9,7 @@ import pytest
 from tiny_case import Result, count
 
 from fe_drivetrain.commands.app import main_of_case
-from fe_drivetrain.suite.case import OldCase as Case
+from fe_drivetrain.suite.case import Case
 
 
 def test_version_is_the_installed_one(invoke: Callable[..., Result]) -> None:

@@ -2,14 +2,16 @@
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 from tiny_case import Result, count
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.results import Results, read_results
+from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.page import Page
 
 
 def test_list_groups_the_cases(invoke: Callable[..., Result]) -> None:
@@ -45,7 +47,7 @@ def test_a_passing_case_exits_0_and_says_where_to_read(
 
 
 def test_a_failing_check_exits_1(invoke: Callable[..., Result], tmp_path: Path) -> None:
-    status, out, _ = invoke("run", "group/tiny", work=lambda run: count(run, 1.2))
+    status, out, _ = invoke("run", "group/tiny", work=partial(count, computed=1.2))
     assert status == 1
     assert out.startswith("FAIL  one: computed 1.2")
     assert "1 of 2 checks pass" in out
@@ -54,7 +56,7 @@ def test_a_failing_check_exits_1(invoke: Callable[..., Result], tmp_path: Path) 
 
 
 def test_a_nan_fails(invoke: Callable[..., Result]) -> None:
-    status, out, _ = invoke("run", "tiny", work=lambda run: count(run, float("nan")))
+    status, out, _ = invoke("run", "tiny", work=partial(count, computed=float("nan")))
     assert status == 1
     assert "FAIL  one: computed nan" in out
 
@@ -62,9 +64,9 @@ def test_a_nan_fails(invoke: Callable[..., Result]) -> None:
 def test_options_reach_the_case(invoke: Callable[..., Result], tmp_path: Path) -> None:
     got: list[Run] = []
 
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         got.append(run)
-        return count(run)
+        count(run, page)
 
     settings = ["--set", "gearbox.weight=1e6", "--set", "a=[1, x]"]
     assert invoke("run", "tiny", "--quick", "--out", "here/there", *settings, work=work)[0] == 0
@@ -156,13 +158,13 @@ def test_several_cases_have_a_page_that_lists_them(
 def test_several_cases_exit_1_where_a_check_fails_and_2_where_one_cannot_run(
     invoke: Callable[..., Result], tmp_path: Path
 ) -> None:
-    status, out, _ = invoke("run", "--all", "--out", "x", work=lambda run: count(run, 1.2))
+    status, out, _ = invoke("run", "--all", "--out", "x", work=partial(count, computed=1.2))
     assert status == 1
     assert out.splitlines()[0].startswith("FAIL  group/other: 1 of 2 checks pass")
     assert "      FAIL  one: computed 1.2" in out
     assert out.endswith("0 of 3 cases pass: x/index.html\n")
 
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         raise InputError("loads: no file is there: give one")
 
     status, out, _ = invoke("run", "tiny", "other", "--out", "y", work=work)

@@ -13,13 +13,12 @@ from tiny_case import Result
 
 from fe_drivetrain.commands.app import main_of_case
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.results import Results
-from fe_drivetrain.suite.case import OldCase as Case
-from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.page import Page
 
 
 def test_a_mistake_is_one_sentence(invoke: Callable[..., Result], tmp_path: Path) -> None:
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         with run.step("read"):
             raise InputError("shaft: length is -1 but must be greater than 0: give a length")
 
@@ -32,7 +31,7 @@ def test_a_mistake_is_one_sentence(invoke: Callable[..., Result], tmp_path: Path
 
 
 def test_a_full_disk_exits_2(invoke: Callable[..., Result]) -> None:
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "big.vtu")
 
     status, _, err = invoke("run", "tiny", work=work)
@@ -41,7 +40,7 @@ def test_a_full_disk_exits_2(invoke: Callable[..., Result]) -> None:
 
 
 def test_a_missing_system_library_is_named(invoke: Callable[..., Result]) -> None:
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         raise OSError("libGLU.so.1: cannot open shared object file: No such file or directory")
 
     status, _, err = invoke("run", "tiny", work=work)
@@ -53,7 +52,7 @@ def test_a_missing_system_library_is_named(invoke: Callable[..., Result]) -> Non
 def test_our_own_faults_are_not_blamed_on_the_user(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         raise FileNotFoundError(errno.ENOENT, "no such file", "template")
 
     case = Case("group/tiny", "t", "s", work)
@@ -65,7 +64,7 @@ def test_our_own_faults_are_not_blamed_on_the_user(
 def test_ctrl_c_exits_130_and_keeps_the_earlier_results(
     invoke: Callable[..., Result], tmp_path: Path
 ) -> None:
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         with run.step("long"):
             raise KeyboardInterrupt
 

@@ -20,6 +20,7 @@ import pytest
 from conftest import coarse_scene
 from hypothesis import given
 from hypothesis import strategies as st
+from tiny_case import check_one
 
 from fe_drivetrain.commands.run import run_and_print
 from fe_drivetrain.common import files
@@ -28,10 +29,10 @@ from fe_drivetrain.common.files import HiddenFolder, atomic_path
 from fe_drivetrain.common.threads import CORES_VARIABLE as CORES
 from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.mesh import cached
-from fe_drivetrain.report.results import Environment, Results, judge, read_results
+from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.suite.case import OldCase as Case
-from fe_drivetrain.suite.case import Run, new_folder, run_case
+from fe_drivetrain.suite.case import Case, Run, new_folder, run_case
+from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.suite import run_cases
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are forked")
@@ -45,26 +46,20 @@ OPERATIONS = ("open", "os.", "shutil.", "tempfile.", "ctypes.dlsym")
 def marked(mark: str) -> Case:
     """A case whose mark stands in several of its files."""
 
-    def work(run: Run) -> Results:
+    def work(run: Run, page: Page) -> None:
         with run.step("work"):
-            (run.folder / "one.txt").write_text(mark)
-            (run.folder / "two").mkdir()
-            (run.folder / "two" / "three.txt").write_text(mark * 1000)
-        return results(mark)
+            fill(run, page, mark)
 
     return Case("a/b", "t", "s", work)
 
 
-def results(mark: str) -> Results:
-    return Results(
-        case="a/b",
-        title="t",
-        source="s",
-        summary=[mark],
-        verdicts=[judge("one", 1.0, 1.0, tolerance=0.1, reason="r", source="s")],
-        sections=[],
-        environment=Environment(date="", python="", platform="", versions={}, settings={}),
-    )
+def fill(run: Run, page: Page, mark: str = NEW) -> None:
+    """Write the mark to the page and two files."""
+    (run.folder / "one.txt").write_text(mark)
+    (run.folder / "two").mkdir()
+    (run.folder / "two" / "three.txt").write_text(mark * 1000)
+    page.answer(mark)
+    check_one(page)
 
 
 def state(out: Path) -> str:
@@ -213,7 +208,7 @@ def test_a_disk_that_is_full_at_any_size_of_file_is_told(tmp_path: Path, size: i
 def test_a_disk_that_is_full_is_told_for_one_case_of_several(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    def full(run: Run) -> Results:
+    def full(run: Run, page: Page) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "big.vtu")
 
     cases = [Case("a/full", "t", "s", full), Case("a/b", "t", "s", marked(NEW).run)]
@@ -385,35 +380,27 @@ def test_a_cache_that_can_only_be_read_gives_what_it_has(
 # --- one case of many ----------------------------------------------------------------------------
 
 
-def light(run: Run) -> Results:
-    (run.folder / "one.txt").write_text(NEW)
-    (run.folder / "two").mkdir()
-    (run.folder / "two" / "three.txt").write_text(NEW * 1000)
-    return results(NEW)
-
-
-def mesh_a_scene(run: Run) -> Results:
+def mesh_a_scene(run: Run, page: Page) -> None:
     assert len(mesh_scene(coarse_scene("bonded")).cells) > 100
-    return light(run)
+    fill(run, page)
 
 
-def gmsh_fails(run: Run) -> Results:
+def gmsh_fails(run: Run, page: Page) -> None:
     generate, gmsh.model.mesh.generate = gmsh.model.mesh.generate, _no_mesh
     try:
         mesh_scene(coarse_scene("bonded", **{"mesh.shaft": 0.28}))
     finally:
         gmsh.model.mesh.generate = generate
-    return results(NEW)
+    page.answer(NEW)
 
 
 def _no_mesh(dimension: int) -> None:
     raise Exception("PLC Error: A segment and a facet intersect at point")  # as gmsh raises it
 
 
-def crash(run: Run) -> Results:
+def crash(run: Run, page: Page) -> None:
     (run.folder / "half.txt").write_text("half")
     os.kill(os.getpid(), signal.SIGSEGV)
-    return results(NEW)
 
 
 @pytest.mark.parametrize("cores", ["1", "2"])
@@ -440,7 +427,7 @@ def test_one_case_whose_process_dies_keeps_no_other_from_finishing(
     """A segmentation fault in a library, say: it ended all the others."""
     monkeypatch.setenv(CORES, "2")
     names = [f"a/{k}" for k in range(5)]
-    cases = [Case(n, "t", "s", crash if n in ("a/0", "a/2") else light) for n in names]
+    cases = [Case(n, "t", "s", crash if n in ("a/0", "a/2") else fill) for n in names]
     cases.append(Case("a/alone", "t", "s", crash, alone=True))
     problems = run_cases(cases, tmp_path)
     assert sorted(problems) == ["a/0", "a/2", "a/alone"]
@@ -479,23 +466,22 @@ def test_after_a_mesh_a_pipe_that_nobody_reads_is_an_error_and_no_sudden_end() -
 
 SCRIPT = """
 from fe_drivetrain.commands import main_of_case
-from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Case
 
-def run(run):
+def work(run, page):
     from conftest import coarse_scene
     from fe_drivetrain.mesh import write
     from fe_drivetrain.response import build_model, mesh_scene, unit_load_response
-    from test_faults import results
     with run.step("mesh"):
         mesh = mesh_scene(coarse_scene("bonded"))
     with run.step("solve"):
         unit_load_response(build_model(coarse_scene("bonded"), mesh))
     with run.step("write"):
         write(mesh, run.folder / "mesh.vtu")
-    return results("new")
+    page.answer("new")
 
 if __name__ == "__main__":
-    main_of_case(Case("a/b", "t", "s", run))
+    main_of_case(Case("a/b", "t", "s", work))
 """
 
 

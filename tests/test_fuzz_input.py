@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from tiny_case import check_one
 
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.commands.settings import parse_settings
@@ -29,13 +30,12 @@ from fe_drivetrain.geometry.part import LARGEST, SMALLEST
 from fe_drivetrain.hub_loads.files import read_hub_loads
 from fe_drivetrain.hub_loads.histories import LARGEST_LOAD
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.report.results import Environment, Results, judge
 from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.scene.reading import change_scene, parse_scene, read_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import OldCase as Case
-from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.page import Page
 
 SCENE: dict[str, Any] = {
     "title": "small",
@@ -361,19 +361,9 @@ def test_counts_that_the_file_cannot_hold_take_no_memory(
 # --- the command line ----------------------------------------------------------------------------
 
 
-def tiny(run: Run) -> Results:
+def tiny(run: Run, page: Page) -> None:
     (run.folder / "half.txt").write_text("half")
-    return Results(
-        case="group/tiny",
-        title="A tiny case",
-        source="nobody",
-        summary=[],
-        verdicts=[judge("one", 1.0, 1.0, tolerance=0.0, reason="r", source="s")],
-        sections=[],
-        environment=Environment(
-            date="", python="", platform="", versions={}, settings=dict(run.settings)
-        ),
-    )
+    check_one(page)
 
 
 CASES = {name: Case(name, "A tiny case", "nobody", tiny) for name in ("group/tiny", "group/other")}

@@ -461,16 +461,16 @@ def work(run, name):
 """
 SCRIPT = """
 from fe_drivetrain.commands import main_of_case
-from fe_drivetrain.suite import OldCase as Case
+from fe_drivetrain.suite import Case
 import jobs_of_script
 
-def run(run):
+def work(run, page):
     with run.side_by_side(2) as jobs:
         for job in [jobs.start(jobs_of_script.work, name) for name in ("one", "two")]:
             job.result()
 
 if __name__ == "__main__":
-    main_of_case(Case("group/tiny", "Title", "s", run))
+    main_of_case(Case("group/tiny", "Title", "s", work))
 """
 
 

@@ -6,83 +6,64 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tiny_case import check_one
 
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.threads import CORES_VARIABLE, cores
 from fe_drivetrain.report.page import write_index
-from fe_drivetrain.report.results import Environment, Results, judge, read_results
-from fe_drivetrain.suite.case import OldCase as Case
-from fe_drivetrain.suite.case import Run
+from fe_drivetrain.report.results import read_results
+from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.suite import run_cases
 
 
-def results_of(run: Run, name: str, computed: float = 1.0, **figures: object) -> Results:
-    return Results(
-        case=name,
-        title=f"Title of <{name}>",
-        source="nobody",
-        summary=["One."],
-        verdicts=[judge("one", computed, 1.0, tolerance=0.1, reason="r", source="s")],
-        sections=[],
-        times={"count": 1.5, "saved": -0.25},
-        figures=figures,
-        environment=Environment(
-            date="2026-01-31", python="", platform="", versions={}, settings=dict(run.settings)
-        ),
-    )
-
-
 # module-level, because other processes import them
-def count(run: Run) -> Results:
+def count(run: Run, page: Page) -> None:
     start = time.time()
     with run.step("count"):
         (run.folder / "one.txt").write_text("1")
         time.sleep(0.3)
-    return results_of(
-        run,
-        "a/count",
-        began=start,
-        ended=time.time(),
-        pid=os.getpid(),
-        cores=cores(),
-        kept=user_cache().folder is not None,
-    )
+    run.times.update(count=1.5, saved=-0.25)
+    check_one(page)
+    page.data("began", start)
+    page.data("ended", time.time())
+    page.data("pid", os.getpid())
+    page.data("cores", cores())
+    page.data("kept", user_cache().folder is not None)
 
 
-def miss(run: Run) -> Results:
-    return results_of(run, "a/miss", 2.0)
+def miss(run: Run, page: Page) -> None:
+    run.times.update(count=1.5, saved=-0.25)
+    check_one(page, 2.0)
 
 
-def refuse(run: Run) -> Results:
+def refuse(run: Run, page: Page) -> None:
     (run.folder / "half.txt").write_text("half")
     raise InputError("shaft: length is -1 <m>: give a length")
 
 
-def fault(run: Run) -> Results:
-    return results_of(run, "a/fault", 1 / 0)
+def fault(run: Run, page: Page) -> None:
+    check_one(page, 1 / 0)
 
 
-def off(run: Run) -> Results:
-    verdicts = [
-        judge(q, x, 1.0, tolerance=1, reason="r", source="s", measure="stiffness", band=0.05 * x)
-        for q, x in (("up", 1.25), ("down", 0.75))
-    ]
-    return results_of(run, "a/off").model_copy(update={"verdicts": verdicts})
+def off(run: Run, page: Page) -> None:
+    for computed in (1.25, 0.75):
+        check_one(page, computed, within=1.0, measure="stiffness", band=0.05 * computed)
 
 
-def wait(run: Run) -> Results:
+def wait(run: Run, page: Page) -> None:
     (run.folder / f"pid-{os.getpid()}").touch()
     with run.step("wait"):
         time.sleep(600)
-    return results_of(run, "a/wait")
 
 
-def a_case(name: str, work: object, alone: bool = False) -> Case:
-    return Case(name, "title", "source", work, alone)  # type: ignore[arg-type]
+def a_case(name: str, work: Callable[[Run, Page], None], alone: bool = False) -> Case:
+    return Case(name, f"Title of <{name}>", "nobody", work, alone)
 
 
 @pytest.fixture(params=["1", "2"])
@@ -127,7 +108,7 @@ def test_a_case_that_cannot_run_keeps_no_other_from_running(
     assert sorted(os.listdir(tmp_path / "a")) == ["one"]
 
 
-def need_a_tool(run: Run) -> Results:
+def need_a_tool(run: Run, page: Page) -> None:
     raise MissingToolError("ccx is not installed: apt-get install calculix-ccx")
 
 

@@ -25,7 +25,7 @@ from fe_drivetrain.commands.studies import advise_command, uncertainty_command
 from fe_drivetrain.commands.terminal import prepare_streams, write
 
 if TYPE_CHECKING:
-    from fe_drivetrain.suite.case import AnyCase as Case
+    from fe_drivetrain.suite.case import Case
 
 _LOOK: dict[str, Any] = {
     "add_completion": False,
@@ -77,12 +77,16 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def main_of_case(case: Case) -> None:
-    """Entry point of a case's own script, with the options of ``fe-drivetrain run``.
+    """Run a case of a user's own script, outside of the repository.
+
+    The script has the options of ``fe-drivetrain run`` and ends with its exit status. (Scripts
+    under ``cases/`` need no such call: `fe_drivetrain.cases.case` makes it for them.)
 
     Parameters
     ----------
     case : Case
-        The case to run.
+        The case to run. Its function takes a `fe_drivetrain.suite.Run` and fills a
+        `fe_drivetrain.suite.Page`.
     """
     script = typer.Typer(**_LOOK)
 
