@@ -16,8 +16,10 @@ from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.reading import change_scene
-from fe_drivetrain.suite.case import Case, Run, find_cases, run_case
+from fe_drivetrain.suite.case import Case, find_cases
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.result_folders import run_case
+from fe_drivetrain.suite.run import Run
 
 CONTENT = {"a": 0.1, "b": [1, "x", None]}
 

@@ -12,8 +12,10 @@ from fe_drivetrain.common import files
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.results import Chart, Image, Table, Text, read_results
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import Case, Run, find_cases, run_case
+from fe_drivetrain.suite.case import Case, find_cases
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.result_folders import run_case
+from fe_drivetrain.suite.run import Run
 
 Work = Callable[[Run, Page], None]
 

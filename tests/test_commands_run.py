@@ -10,8 +10,8 @@ from tiny_case import Result, count
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.results import read_results
-from fe_drivetrain.suite.case import Run
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 
 def test_list_groups_the_cases(invoke: Callable[..., Result]) -> None:

@@ -13,8 +13,9 @@ from tiny_case import Result
 
 from fe_drivetrain.commands.app import main_of_case
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 
 def test_a_mistake_is_one_sentence(invoke: Callable[..., Result], tmp_path: Path) -> None:

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from fe_drivetrain.suite.case import find_cases, run_case
+from fe_drivetrain.suite.case import find_cases
+from fe_drivetrain.suite.result_folders import run_case
 
 #: The programs and packages of each.
 NEEDS = {

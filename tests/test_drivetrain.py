@@ -5,7 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.suite.case import Run, find_cases
+from fe_drivetrain.suite.case import find_cases
+from fe_drivetrain.suite.run import Run
 from fe_drivetrain.torsion.gear_table import (
     GENERATOR,
     ROTOR,

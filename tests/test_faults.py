@@ -31,8 +31,10 @@ from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.mesh import cached
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.suite.case import Case, Run, new_folder, run_case
+from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.result_folders import new_folder, run_case
+from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.suite import run_cases
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are forked")

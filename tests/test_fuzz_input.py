@@ -34,8 +34,9 @@ from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.scene.reading import change_scene, parse_scene, read_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 SCENE: dict[str, Any] = {
     "title": "small",

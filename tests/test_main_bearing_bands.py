@@ -14,8 +14,8 @@ from fe_drivetrain.cases.main_bearing.bands import (
 )
 from fe_drivetrain.cases.main_bearing.shown import check_series
 from fe_drivetrain.scene.reading import change_scene
-from fe_drivetrain.suite.case import Run
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 
 def series_of_order(order, limit=5.0):

@@ -11,8 +11,8 @@ from fe_drivetrain.mesh.measures import quality
 from fe_drivetrain.response.model import build_model
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.reading import change_scene
-from fe_drivetrain.suite.case import Run
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 
 def test_bodies_are_parts_that_share_nodes(spherical_mesh, bonded_model):

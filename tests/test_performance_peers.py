@@ -30,7 +30,9 @@ from fe_drivetrain.cases.performance.tools.launch import (
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.mesh import FACETS
-from fe_drivetrain.suite.case import Run, find_cases, run_case
+from fe_drivetrain.suite.case import find_cases
+from fe_drivetrain.suite.result_folders import run_case
+from fe_drivetrain.suite.run import Run
 
 PEERS = launch.parse(
     ["calculix.spooles", "ngsolve.multigrid", "sfepy.superlu", "felupe.superlu", "dolfinx.mumps"]

@@ -20,7 +20,7 @@ from fe_drivetrain.common.interpreter import run_python
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.threads import CORES_VARIABLE, cores
-from fe_drivetrain.suite.case import Run
+from fe_drivetrain.suite.run import Run
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="looks at processes by their number")
 

@@ -17,8 +17,9 @@ from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.threads import CORES_VARIABLE, cores
 from fe_drivetrain.report.page import write_index
 from fe_drivetrain.report.results import read_results
-from fe_drivetrain.suite.case import Case, Run
+from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.suite import run_cases
 
 

@@ -50,7 +50,9 @@ from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.solve import solvers
-from fe_drivetrain.suite.case import Run, find_cases, run_case
+from fe_drivetrain.suite.case import find_cases
+from fe_drivetrain.suite.result_folders import run_case
+from fe_drivetrain.suite.run import Run
 
 STEEL = MATERIALS["steel"]
 TUBE = Shaft(front=-2.0, sections=(Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3),))

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.suite.case import Run
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 Result = tuple[int, str, str]
 """Exit status, standard output and standard error of a command."""

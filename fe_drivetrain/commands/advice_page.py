@@ -12,8 +12,8 @@ from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.suite.case import Run
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 _LEAST = 1e-6  # in percent; statics has no error, but a logarithmic axis needs one
 

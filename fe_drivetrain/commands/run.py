@@ -142,7 +142,7 @@ def run_and_print(
 
 
 def _run_one(case: Case, out: Path | None, settings: Mapping[str, Any], quick: bool) -> Results:
-    from fe_drivetrain.suite.case import run_case
+    from fe_drivetrain.suite.result_folders import run_case
 
     folder = Path("reports", *case.name.split("/")) if out is None else out
     with show_steps() as report:
@@ -156,7 +156,8 @@ def _run_several(
     cases: Sequence[Case], out: Path | None, settings: Mapping[str, Any], quick: bool
 ) -> tuple[dict[str, Results], dict[str, Problem]]:
     from fe_drivetrain.report.results import read_results
-    from fe_drivetrain.suite.suite import result_folder, run_cases
+    from fe_drivetrain.suite.result_folders import result_folder
+    from fe_drivetrain.suite.suite import run_cases
 
     folder = Path("reports") if out is None else out
     with show_steps() as report:

@@ -24,8 +24,8 @@ from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
-    from fe_drivetrain.suite.case import Run
     from fe_drivetrain.suite.page import Page
+    from fe_drivetrain.suite.run import Run
 
 _Scene = Annotated[
     str,
@@ -185,7 +185,8 @@ def _run_on_scene(
     study: Callable[[Run, Page], None],
 ) -> int:
     """Run a study as a case of its own and print its outcome; returns the exit status."""
-    from fe_drivetrain.suite.case import Case, run_case
+    from fe_drivetrain.suite.case import Case
+    from fe_drivetrain.suite.result_folders import run_case
 
     name = Path(scene).stem
     case = Case(f"{command}/{name}", title, f"the scene {name}", study)

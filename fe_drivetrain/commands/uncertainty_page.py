@@ -14,8 +14,8 @@ from fe_drivetrain.fidelity.quantities import Number
 from fe_drivetrain.report.charts import chart, rounded
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.scene.scene import Scene, Spread
-from fe_drivetrain.suite.case import Run
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 from fe_drivetrain.uncertainty.input_study import Study, level_error, result_at, study
 from fe_drivetrain.uncertainty.numbers import figures, first_order, half_band, relative_spread
 from fe_drivetrain.uncertainty.sampling import SHARE, Samples, distribution, nominal_value

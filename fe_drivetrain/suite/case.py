@@ -1,4 +1,4 @@
-"""What a validation case is, and how one is run into a folder that appears whole or not at all."""
+"""What a validation case is, and how the cases of the package are found."""
 
 from __future__ import annotations
 
@@ -7,155 +7,18 @@ import importlib
 import importlib.util
 import pkgutil
 import re
-import time
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Future
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.files import HiddenFolder
-from fe_drivetrain.common.processes import Processes
-from fe_drivetrain.common.progress import Progress, silent
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
     from fe_drivetrain.suite.page import Page
-
-_P = ParamSpec("_P")
-_T = TypeVar("_T")
-
-
-@dataclass
-class Step:
-    """A step as it runs; its time is kept under the name that it has at its end."""
-
-    name: str
-
-
-@dataclass
-class Run:
-    """One run of a case: what the user asked for, where files go, and a clock for each step.
-
-    Attributes
-    ----------
-    settings
-        The user's ``--set key=value``, values parsed as YAML scalars.
-    quick
-        Coarser and smaller, for a first look.
-    folder
-        Where the case may put files beside its results; it becomes the result folder.
-    report
-        Called with the name of each step as it begins.
-    times
-        Wall time of each finished step [s]. Steps side by side count each for itself; what that
-        saved stands among them as a negative time, so that they add up to the time that passed.
-    """
-
-    settings: Mapping[str, Any]
-    quick: bool
-    folder: Path
-    report: Progress = silent
-    times: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def step(self, name: str) -> Iterator[Step]:
-        """Show a step while it runs, and add its wall time to `times`."""
-        self.report(name)
-        step = Step(name)
-        start = time.perf_counter()
-        yield step
-        self.add_time(step.name, time.perf_counter() - start)
-
-    def timed(
-        self, name: str, function: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs
-    ) -> _T:
-        """What the function returns, called as a step of that name."""
-        with self.step(name):
-            return function(*args, **kwargs)
-
-    def add_time(self, name: str, seconds: float) -> None:
-        """Add to the wall time of a step."""
-        self.times[name] = self.times.get(name, 0.0) + seconds
-
-    @contextmanager
-    def side_by_side(self, jobs: int) -> Iterator[Jobs]:
-        """Do independent work in processes, as many as the cores allow; see `Processes`.
-
-        Parameters
-        ----------
-        jobs
-            How many may run at once.
-        """
-        start, before = time.perf_counter(), sum(self.times.values())
-        with Processes(jobs, self.report) as processes:
-            yield Jobs(self, processes)
-        if processes.count:
-            passed = time.perf_counter() - start
-            counted = sum(self.times.values()) - before
-            self.add_time(f"side by side in {processes.count} processes", passed - counted)
-
-
-class Jobs:
-    """Work of a run that is done side by side."""
-
-    def __init__(self, run: Run, processes: Processes) -> None:
-        self._run = run
-        self._processes = processes
-
-    def start(
-        self, function: Callable[Concatenate[Run, _P], _T], *args: _P.args, **kwargs: _P.kwargs
-    ) -> RunJob[_T]:
-        """Hand in ``function(run, ...)``, with a run of its own that has this one's folder.
-
-        The function stands in a module that can be imported; what it is given, and what it returns,
-        can be pickled.
-        """
-        run = self._run
-        job = self._processes.start(
-            _with_own_run, function, dict(run.settings), run.quick, run.folder, args, kwargs
-        )
-        return RunJob(job, run, bool(self._processes.count))
-
-
-class RunJob(Generic[_T]):
-    """One such piece of work."""
-
-    def __init__(self, job: Future[tuple[_T, dict[str, float]]], run: Run, elsewhere: bool) -> None:
-        self._job = job
-        self._run = run
-        self._elsewhere = elsewhere
-
-    def result(self) -> _T:
-        """What the function returned; its times are then among those of the run.
-
-        Raises
-        ------
-        Exception
-            What this or any other piece of the work raised.
-        """
-        if self._elsewhere:
-            self._run.report("")  # this process only waits
-        result, times = self._job.result()
-        for name, seconds in times.items():
-            self._run.add_time(name, seconds)
-        return result
-
-
-def _with_own_run(
-    report: Progress,
-    function: Callable[..., _T],
-    settings: Mapping[str, Any],
-    quick: bool,
-    folder: Path,
-    args: tuple[Any, ...],
-    kwargs: dict[str, Any],
-) -> tuple[_T, dict[str, float]]:
-    run = Run(settings, quick, folder, report)
-    return function(run, *args, **kwargs), run.times
+    from fe_drivetrain.suite.run import Run
 
 
 @dataclass(frozen=True)
@@ -348,96 +211,3 @@ def find_cases(name: str) -> list[AnyCase]:
             f"use one of {', '.join(cases)}"
         )
     return matches
-
-
-def run_case(
-    case: AnyCase,
-    out: Path,
-    settings: Mapping[str, Any] | None = None,
-    quick: bool = False,
-    report: Progress = silent,
-) -> Results:
-    """Run a case and write its result folder: results.json, report.html and what else it makes.
-
-    Everything is written to a hidden folder beside ``out`` first, so that a run that fails or is
-    stopped leaves what was there before. Of a run that was killed, the next one into the same place
-    removes that folder.
-
-    Parameters
-    ----------
-    case
-        What to run.
-    out
-        The result folder. It must not exist, be empty, or hold the results of an earlier run.
-    settings, quick, report
-        See `Run`.
-
-    Raises
-    ------
-    InputError
-        The settings are wrong, or ``out`` cannot be written or holds something else.
-    """
-    out = Path(out)
-    folder = new_folder(out)
-    try:
-        results = run_into(case, folder.path, settings or {}, quick, report)
-        put_in_place(folder, out)
-    finally:
-        folder.discard()
-    return results
-
-
-def run_into(
-    case: AnyCase, folder: Path, settings: Mapping[str, Any], quick: bool, report: Progress
-) -> Results:
-    """Run a case and write its results and its page into a folder as it goes; see `run_case`."""
-    from fe_drivetrain.common import cache
-    from fe_drivetrain.report.page import write_page
-
-    run = Run(settings, quick, folder, report)
-    with cache.switched_off() if case.alone else nullcontext():
-        results = case.run(run) if isinstance(case, OldCase) else case.results(run)
-    with run.step("report"):
-        (folder / "results.json").write_text(results.model_dump_json(indent=1), "utf-8")
-        write_page(folder)
-    return results
-
-
-def new_folder(out: Path) -> HiddenFolder:
-    """A hidden folder beside the result folder ``out``, for `put_in_place` when it is complete.
-
-    Raises
-    ------
-    InputError
-        ``out`` cannot be written or holds something else.
-    """
-    _check_folder(out)
-    try:
-        return HiddenFolder(out)
-    except OSError as error:
-        raise _not_writable(out.parent, error) from error
-
-
-def _check_folder(out: Path) -> None:
-    if not out.exists():
-        return
-    if not out.is_dir():
-        raise InputError(f"--out {out} is a file: give a folder")
-    if any(out.iterdir()) and not (out / "results.json").exists():
-        raise InputError(
-            f"--out {out} holds files that are not results of a case: give a new or empty folder"
-        )
-
-
-def put_in_place(folder: HiddenFolder, out: Path) -> None:
-    """Put a complete folder of `new_folder` in the place of an older one."""
-    try:
-        folder.put_in_place()
-    except OSError as error:
-        raise _not_writable(out, error) from error
-
-
-def _not_writable(where: Path, error: OSError) -> InputError:
-    return InputError(
-        f"cannot write to {where}: {error.strerror}: give a writable folder with --out"
-    )

@@ -14,12 +14,12 @@ from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import AnyCase as Case
-from fe_drivetrain.suite.case import new_folder, put_in_place, run_into
-
-
-def result_folder(out: Path, case: Case) -> Path:
-    """Where the results of a case go below a folder for several."""
-    return out.joinpath(*case.name.split("/"))
+from fe_drivetrain.suite.result_folders import (
+    new_folder,
+    put_in_place,
+    result_folder,
+    run_into,
+)
 
 
 def run_cases(
@@ -43,7 +43,7 @@ def run_cases(
     out
         The folder above theirs.
     settings, quick, report
-        As for `fe_drivetrain.suite.case.run_case`.
+        As for `fe_drivetrain.suite.run_case`.
 
     Returns
     -------

@@ -1,0 +1,115 @@
+"""Result folders: a case runs into one, which appears whole or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.files import HiddenFolder
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.suite.case import AnyCase, OldCase
+from fe_drivetrain.suite.run import Run
+
+if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Results
+
+
+def result_folder(out: Path, case: AnyCase) -> Path:
+    """Where the results of a case go below a folder for several."""
+    return out.joinpath(*case.name.split("/"))
+
+
+def run_case(
+    case: AnyCase,
+    out: Path,
+    settings: Mapping[str, Any] | None = None,
+    quick: bool = False,
+    report: Progress = silent,
+) -> Results:
+    """Run a case and write its result folder: results.json, report.html and what else it makes.
+
+    Everything is written to a hidden folder beside ``out`` first, so that a run that fails or is
+    stopped leaves what was there before. Of a run that was killed, the next one into the same place
+    removes that folder.
+
+    Parameters
+    ----------
+    case
+        What to run.
+    out
+        The result folder. It must not exist, be empty, or hold the results of an earlier run.
+    settings, quick, report
+        See `Run`.
+
+    Raises
+    ------
+    InputError
+        The settings are wrong, or ``out`` cannot be written or holds something else.
+    """
+    out = Path(out)
+    folder = new_folder(out)
+    try:
+        results = run_into(case, folder.path, settings or {}, quick, report)
+        put_in_place(folder, out)
+    finally:
+        folder.discard()
+    return results
+
+
+def run_into(
+    case: AnyCase, folder: Path, settings: Mapping[str, Any], quick: bool, report: Progress
+) -> Results:
+    """Run a case and write its results and its page into a folder as it goes; see `run_case`."""
+    from fe_drivetrain.common import cache
+    from fe_drivetrain.report.page import write_page
+
+    run = Run(settings, quick, folder, report)
+    with cache.switched_off() if case.alone else nullcontext():
+        results = case.run(run) if isinstance(case, OldCase) else case.results(run)
+    with run.step("report"):
+        (folder / "results.json").write_text(results.model_dump_json(indent=1), "utf-8")
+        write_page(folder)
+    return results
+
+
+def new_folder(out: Path) -> HiddenFolder:
+    """A hidden folder beside the result folder ``out``, for `put_in_place` when it is complete.
+
+    Raises
+    ------
+    InputError
+        ``out`` cannot be written or holds something else.
+    """
+    _check_folder(out)
+    try:
+        return HiddenFolder(out)
+    except OSError as error:
+        raise _not_writable(out.parent, error) from error
+
+
+def _check_folder(out: Path) -> None:
+    if not out.exists():
+        return
+    if not out.is_dir():
+        raise InputError(f"--out {out} is a file: give a folder")
+    if any(out.iterdir()) and not (out / "results.json").exists():
+        raise InputError(
+            f"--out {out} holds files that are not results of a case: give a new or empty folder"
+        )
+
+
+def put_in_place(folder: HiddenFolder, out: Path) -> None:
+    """Put a complete folder of `new_folder` in the place of an older one."""
+    try:
+        folder.put_in_place()
+    except OSError as error:
+        raise _not_writable(out, error) from error
+
+
+def _not_writable(where: Path, error: OSError) -> InputError:
+    return InputError(
+        f"cannot write to {where}: {error.strerror}: give a writable folder with --out"
+    )

@@ -1,0 +1,146 @@
+"""One run of a case: its settings and folder, a clock for each step, and work done side by side."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+
+from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.progress import Progress, silent
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+
+
+@dataclass
+class Step:
+    """A step as it runs; its time is kept under the name that it has at its end."""
+
+    name: str
+
+
+@dataclass
+class Run:
+    """One run of a case: what the user asked for, where files go, and a clock for each step.
+
+    Attributes
+    ----------
+    settings
+        The user's ``--set key=value``, values parsed as YAML scalars.
+    quick
+        Coarser and smaller, for a first look.
+    folder
+        Where the case may put files beside its results; it becomes the result folder.
+    report
+        Called with the name of each step as it begins.
+    times
+        Wall time of each finished step [s]. Steps side by side count each for itself; what that
+        saved stands among them as a negative time, so that they add up to the time that passed.
+    """
+
+    settings: Mapping[str, Any]
+    quick: bool
+    folder: Path
+    report: Progress = silent
+    times: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def step(self, name: str) -> Iterator[Step]:
+        """Show a step while it runs, and add its wall time to `times`."""
+        self.report(name)
+        step = Step(name)
+        start = time.perf_counter()
+        yield step
+        self.add_time(step.name, time.perf_counter() - start)
+
+    def timed(
+        self, name: str, function: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs
+    ) -> _T:
+        """What the function returns, called as a step of that name."""
+        with self.step(name):
+            return function(*args, **kwargs)
+
+    def add_time(self, name: str, seconds: float) -> None:
+        """Add to the wall time of a step."""
+        self.times[name] = self.times.get(name, 0.0) + seconds
+
+    @contextmanager
+    def side_by_side(self, jobs: int) -> Iterator[Jobs]:
+        """Do independent work in processes, as many as the cores allow; see `Processes`.
+
+        Parameters
+        ----------
+        jobs
+            How many may run at once.
+        """
+        start, before = time.perf_counter(), sum(self.times.values())
+        with Processes(jobs, self.report) as processes:
+            yield Jobs(self, processes)
+        if processes.count:
+            passed = time.perf_counter() - start
+            counted = sum(self.times.values()) - before
+            self.add_time(f"side by side in {processes.count} processes", passed - counted)
+
+
+class Jobs:
+    """Work of a run that is done side by side."""
+
+    def __init__(self, run: Run, processes: Processes) -> None:
+        self._run = run
+        self._processes = processes
+
+    def start(
+        self, function: Callable[Concatenate[Run, _P], _T], *args: _P.args, **kwargs: _P.kwargs
+    ) -> RunJob[_T]:
+        """Hand in ``function(run, ...)``, with a run of its own that has this one's folder.
+
+        The function stands in a module that can be imported; what it is given, and what it returns,
+        can be pickled.
+        """
+        run = self._run
+        job = self._processes.start(
+            _with_own_run, function, dict(run.settings), run.quick, run.folder, args, kwargs
+        )
+        return RunJob(job, run, bool(self._processes.count))
+
+
+class RunJob(Generic[_T]):
+    """One such piece of work."""
+
+    def __init__(self, job: Future[tuple[_T, dict[str, float]]], run: Run, elsewhere: bool) -> None:
+        self._job = job
+        self._run = run
+        self._elsewhere = elsewhere
+
+    def result(self) -> _T:
+        """What the function returned; its times are then among those of the run.
+
+        Raises
+        ------
+        Exception
+            What this or any other piece of the work raised.
+        """
+        if self._elsewhere:
+            self._run.report("")  # this process only waits
+        result, times = self._job.result()
+        for name, seconds in times.items():
+            self._run.add_time(name, seconds)
+        return result
+
+
+def _with_own_run(
+    report: Progress,
+    function: Callable[..., _T],
+    settings: Mapping[str, Any],
+    quick: bool,
+    folder: Path,
+    args: tuple[Any, ...],
+    kwargs: dict[str, Any],
+) -> tuple[_T, dict[str, float]]:
+    run = Run(settings, quick, folder, report)
+    return function(run, *args, **kwargs), run.times
