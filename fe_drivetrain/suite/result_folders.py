@@ -37,12 +37,16 @@ def run_case(
 
     Parameters
     ----------
-    case
+    case : Case
         What to run.
-    out
+    out : Path
         The result folder. It must not exist, be empty, or hold the results of an earlier run.
-    settings, quick, report
-        See `Run`.
+    settings : mapping, optional
+        As of `Run`.
+    quick : bool
+        As of `Run`.
+    report : callable
+        As of `Run`.
 
     Raises
     ------

@@ -30,15 +30,15 @@ class Run:
 
     Attributes
     ----------
-    settings
+    settings : mapping
         The user's ``--set key=value``, values parsed as YAML scalars.
-    quick
+    quick : bool
         Coarser and smaller, for a first look.
-    folder
+    folder : Path
         Where the case may put files beside its results; it becomes the result folder.
-    report
+    report : callable
         Called with the name of each step as it begins.
-    times
+    times : dict
         Wall time of each finished step [s]. Steps side by side count each for itself; what that
         saved stands among them as a negative time, so that they add up to the time that passed.
     """
@@ -75,7 +75,7 @@ class Run:
 
         Parameters
         ----------
-        jobs
+        jobs : int
             How many may run at once.
         """
         start, before = time.perf_counter(), sum(self.times.values())

@@ -38,16 +38,20 @@ def run_cases(
 
     Parameters
     ----------
-    cases
+    cases : sequence of Case
         Which, each once.
-    out
+    out : Path
         The folder above theirs.
-    settings, quick, report
-        As for `fe_drivetrain.suite.run_case`.
+    settings : mapping, optional
+        As of `Run`.
+    quick : bool
+        As of `Run`.
+    report : callable
+        As of `Run`; the name of a step follows that of its case.
 
     Returns
     -------
-    problems
+    dict
         Why there are no results, by the name of the case.
 
     Raises
