@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 
@@ -198,11 +199,9 @@ def test_every_case_of_the_package_is_named_after_its_place() -> None:
     for name, found in cases.items():
         assert found.name == name
         group, _, last = name.partition("/")
-        if isinstance(found, case_module.Case):
-            module, function = found.run.args
-            assert callable(getattr(import_module(module), function))
-            if "row" in found.run.keywords:  # of a table, in any script of the group
-                last = module.rpartition(".")[2]
-        else:
-            module = found.run.__module__
+        assert isinstance(found.run, partial)
+        module, function = found.run.args
+        assert callable(getattr(import_module(module), function))
+        if "row" in found.run.keywords:  # of a table, in any script of the group
+            last = module.rpartition(".")[2]
         assert module == f"fe_drivetrain.cases.{group}.{last}"

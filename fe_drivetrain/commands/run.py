@@ -18,7 +18,7 @@ from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Problem, Results, Verdict
-    from fe_drivetrain.suite.case import AnyCase as Case
+    from fe_drivetrain.suite.case import Case
 
 _SUMMARY_SENTENCES = 3
 

@@ -1,5 +1,4 @@
 from .case import Case as Case
-from .case import OldCase as OldCase
 from .case import all_cases as all_cases
 from .case import find_cases as find_cases
 from .page import Page as Page

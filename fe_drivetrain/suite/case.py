@@ -22,57 +22,6 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class OldCase:
-    """A validation case: it describes, runs and judges.
-
-    Attributes
-    ----------
-    name
-        "GROUP/NAME", as under ``cases/``.
-    title
-        One line.
-    source
-        Where the problem and its reference come from.
-    run
-        Does the work.
-    alone
-        It measures time or memory: nothing may run beside it, and nothing it uses comes from the
-        cache.
-    """
-
-    name: str
-    title: str
-    source: str
-    run: Callable[[Run], Results]
-    alone: bool = False
-
-    def results(self, run: Run, *, seed: int | None = 0, **found: Any) -> Results:
-        """What a run of this case found.
-
-        Parameters
-        ----------
-        run
-            The run: its times and settings.
-        seed
-            Of random numbers.
-        found
-            ``summary``, ``verdicts``, ``sections``, and where there are any ``figures``, ``limits``
-            and ``assumptions``; see `fe_drivetrain.report.results.Results`.
-        """
-        from fe_drivetrain.report.environment import environment
-        from fe_drivetrain.report.results import Results
-
-        return Results(
-            case=self.name,
-            title=self.title,
-            source=self.source,
-            times=run.times,
-            environment=environment(run.settings, seed),
-            **found,
-        )
-
-
-@dataclass(frozen=True)
 class Case:
     """A validation case: it describes, runs and judges.
 
@@ -120,10 +69,7 @@ class Case:
         )
 
 
-AnyCase = Case | OldCase
-
-
-def all_cases() -> dict[str, AnyCase]:
+def all_cases() -> dict[str, Case]:
     """Every case by name, in order.
 
     What a script declares is read from its source: importing all of them, and the solvers with
@@ -132,14 +78,11 @@ def all_cases() -> dict[str, AnyCase]:
     package = "fe_drivetrain.cases"  # found by its name: the suite does not build on the cases
     spec = importlib.util.find_spec(package)
     places = list(spec.submodule_search_locations or ()) if spec else []
-    found: dict[str, AnyCase] = {}
+    found: dict[str, Case] = {}
     for info in pkgutil.walk_packages(places, package + "."):
         if not info.ispkg:
             for case in _declared_in(info.name):
                 found[case.name] = case
-            if _states_a_case(info.name):
-                module = importlib.import_module(info.name)
-                found[module.CASE.name] = module.CASE
     return dict(sorted(found.items()))
 
 
@@ -185,14 +128,7 @@ def _run_declared(module: str, function: str, run: Run, page: Page, **more: Any)
     getattr(importlib.import_module(module), function)(run, page, **more)
 
 
-def _states_a_case(module: str) -> bool:
-    """Whether the source of a module has a ``CASE``, found without importing it."""
-    found = importlib.util.find_spec(module)
-    source = getattr(found.loader, "get_source", lambda name: None)(module) if found else None
-    return source is None or re.search(r"^CASE\b", source, re.MULTILINE) is not None
-
-
-def find_cases(name: str) -> list[AnyCase]:
+def find_cases(name: str) -> list[Case]:
     """The case of that name, its last part being enough where it is unique; or a group's cases.
 
     Raises

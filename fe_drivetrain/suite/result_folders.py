@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import HiddenFolder
 from fe_drivetrain.common.progress import Progress, silent
-from fe_drivetrain.suite.case import AnyCase, OldCase
+from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.run import Run
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
 
 
-def result_folder(out: Path, case: AnyCase) -> Path:
+def result_folder(out: Path, case: Case) -> Path:
     """Where the results of a case go below a folder for several."""
     return out.joinpath(*case.name.split("/"))
 
 
 def run_case(
-    case: AnyCase,
+    case: Case,
     out: Path,
     settings: Mapping[str, Any] | None = None,
     quick: bool = False,
@@ -64,7 +64,7 @@ def run_case(
 
 
 def run_into(
-    case: AnyCase, folder: Path, settings: Mapping[str, Any], quick: bool, report: Progress
+    case: Case, folder: Path, settings: Mapping[str, Any], quick: bool, report: Progress
 ) -> Results:
     """Run a case and write its results and its page into a folder as it goes; see `run_case`."""
     from fe_drivetrain.common import cache
@@ -72,7 +72,7 @@ def run_into(
 
     run = Run(settings, quick, folder, report)
     with cache.switched_off() if case.alone else nullcontext():
-        results = case.run(run) if isinstance(case, OldCase) else case.results(run)
+        results = case.results(run)
     with run.step("report"):
         (folder / "results.json").write_text(results.model_dump_json(indent=1), "utf-8")
         write_page(folder)

@@ -13,7 +13,7 @@ from fe_drivetrain.common.files import HiddenFolder, sentence_about
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.report.results import Problem
-from fe_drivetrain.suite.case import AnyCase as Case
+from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.result_folders import (
     new_folder,
     put_in_place,
