@@ -45,14 +45,14 @@ class MeshSizes(Part):
         description="least number of elements round any cylinder or sphere",
     )
 
-    def scaled(self, factor: float) -> MeshSizes:
-        """Sizes times a factor: above 1 for a coarser mesh."""
+    def scaled(self, factor: float, elements_per_turn: int | None = None) -> MeshSizes:
+        """Sizes times a factor, above 1 for a coarser mesh, and other elements a turn if given."""
         return MeshSizes(
             shaft=self.shaft * factor,
             bearing=self.bearing * factor,
             housing=self.housing * factor,
             bearing_edge=self.bearing_edge * factor,
-            elements_per_turn=self.elements_per_turn,
+            elements_per_turn=elements_per_turn or self.elements_per_turn,
         )
 
     def finer(self, kinds: Iterable[str], factor: float) -> MeshSizes:

@@ -25,8 +25,8 @@ from fe_drivetrain.suite import Page, Run
 
 SCENE = "main_bearing_spherical"
 
-#: Coarsening of the mesh, in full and under --quick.
-SIZES = (1.6, 2.2)
+#: Coarsening of the mesh, in full and under --quick: factor of the sizes, and elements a turn.
+SIZES = ((1.6, None), (2.2, 8))
 
 #: Tilt stiffness of main bearings [N m/rad], and whose.
 KNOWN = {
@@ -116,7 +116,7 @@ class Rollers:
 def run(run: Run, page: Page) -> None:
     """Sweep the tilt stiffness of the joint from none to all, and set the other joints beside."""
     scene = change_scene(library_scene(SCENE), run.settings)
-    scene = scene.model_copy(update={"mesh": scene.mesh.scaled(SIZES[run.quick])})
+    scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*SIZES[run.quick])})
     with run.step("the two limits"):
         limits = Limits(
             spherical=solved(with_joint(scene, interface="averaged")),
