@@ -24,7 +24,7 @@ FLOORS = (
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"fidelity", "report", "validation"},
+    {"fidelity", "peers", "report", "validation"},
     {"export", "suite", "uncertainty"},
     {"commands"},
     {"cases"},

@@ -19,22 +19,19 @@ from fe_drivetrain.cases.performance import (
     problems,
     rounds,
 )
-from fe_drivetrain.cases.performance.tools import (
-    launch,
-    runner,
-)
-from fe_drivetrain.cases.performance.tools.launch import (
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.mesh import FACETS
+from fe_drivetrain.peers import launching, runner
+from fe_drivetrain.peers.launching import (
     Limits,
     Outcome,
     Variant,
 )
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.mesh import FACETS
 from fe_drivetrain.suite.case import find_cases
 from fe_drivetrain.suite.result_folders import run_case
 from fe_drivetrain.suite.run import Run
 
-PEERS = launch.parse(
+PEERS = launching.parse(
     ["calculix.spooles", "ngsolve.multigrid", "sfepy.superlu", "felupe.superlu", "dolfinx.mumps"]
 )
 LIMITS = Limits(60.0, 8 * 2.0**30, 1)
@@ -101,8 +98,8 @@ def measured(variant, problem, folder, limits=LIMITS):
     """A tool in a process of its own, in whichever Python has it."""
     path = folder / "problem.npz"
     runner.write_problem(problem, path)
-    for interpreter in launch.interpreters():
-        outcome = launch.launch(variant, path, path, limits, interpreter)
+    for interpreter in launching.interpreters():
+        outcome = launching.launch(variant, path, path, limits, interpreter)
         if outcome.status != "missing":
             return outcome
     return outcome
@@ -262,11 +259,11 @@ def test_what_is_not_installed_is_missing_not_failed(shaft, tmp_path, monkeypatc
     monkeypatch.setenv("PATH", str(tmp_path))
     path = tmp_path / "problem.npz"
     runner.write_problem(shaft, path)
-    outcome = launch.launch(Variant("calculix", "spooles"), path, path, LIMITS, sys.executable)
+    outcome = launching.launch(Variant("calculix", "spooles"), path, path, LIMITS, sys.executable)
     assert outcome.status == "missing"
     assert "ccx" in outcome.reason
-    for tool in launch.TOOLS:
-        assert re.match(r"(pip|apt-get) install ", launch.how_to_install(tool))
+    for tool in launching.TOOLS:
+        assert re.match(r"(pip|apt-get) install ", launching.how_to_install(tool))
 
 
 @pytest.mark.parametrize("ends_first", [False, True])
@@ -283,7 +280,7 @@ def test_children_end_with_their_parent(ends_first, tmp_path):
         time.sleep(0.02)
     if ends_first:
         process.wait()
-    launch._end(process)
+    launching._end(process)
     child = Path(f"/proc/{note.read_text()}/stat")
     for _ in range(200):
         try:

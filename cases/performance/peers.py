@@ -9,16 +9,16 @@ from fe_drivetrain.cases.performance import problems, rounds
 from fe_drivetrain.cases.performance.peer_settings import OURS, plan_of, settings_of
 from fe_drivetrain.cases.performance.problems import BENCHMARKS, Benchmark
 from fe_drivetrain.cases.performance.rounds import EQUAL, Plan, Row
-from fe_drivetrain.cases.performance.tools.launch import (
+from fe_drivetrain.common import Progress
+from fe_drivetrain.peers import (
     Outcome,
     Variant,
     how_to_install,
     interpreters,
     launch,
     parse,
+    write_problem,
 )
-from fe_drivetrain.cases.performance.tools.runner import write_problem
-from fe_drivetrain.common import Progress
 from fe_drivetrain.report import Cell, formatted, trace
 from fe_drivetrain.suite import Page, Record, Run
 

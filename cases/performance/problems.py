@@ -7,9 +7,10 @@ import numpy as np
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
-from fe_drivetrain.cases.performance.tools.runner import Floats, Ints, Problem
+from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import Mesh, cached_mesh
+from fe_drivetrain.peers import Problem
 from fe_drivetrain.response import mesh_scene
 from fe_drivetrain.scene import MATERIALS, Material, library_scene
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.cases.performance.tools.launch import Limits, Outcome, Variant, launch
+from fe_drivetrain.peers import Limits, Outcome, Variant, launch
 
 EQUAL = 1e-6
 """Tools are compared where the solver leaves less of the stiffness than this."""

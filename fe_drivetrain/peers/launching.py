@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from fe_drivetrain.cases.performance.tools import runner
+from fe_drivetrain.peers import runner
 
 TOOLS = ("this_project", "scikit_fem", "calculix", "ngsolve", "sfepy", "felupe", "dolfinx")
 """Modules of this folder, each a tool."""

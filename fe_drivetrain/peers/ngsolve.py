@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from fe_drivetrain.cases.performance.tools.runner import Clock, Problem
+    from fe_drivetrain.peers.runner import Clock, Problem
 
 NAME = "NGSolve"
 INSTALL = "pip install ngsolve"

@@ -1,0 +1,10 @@
+from .launching import TOOLS as TOOLS
+from .launching import Limits as Limits
+from .launching import Outcome as Outcome
+from .launching import Variant as Variant
+from .launching import how_to_install as how_to_install
+from .launching import interpreters as interpreters
+from .launching import launch as launch
+from .launching import parse as parse
+from .runner import Problem as Problem
+from .runner import write_problem as write_problem
