@@ -1,3 +1,7 @@
+from .arrangements import ARRANGEMENTS as ARRANGEMENTS
+from .arrangements import Arrangement as Arrangement
+from .arrangements import scene_schema as scene_schema
+from .arrangements import starting_scene as starting_scene
 from .component import CarrierComponent as CarrierComponent
 from .component import Component as Component
 from .component import HousingComponent as HousingComponent
