@@ -1,16 +1,23 @@
 """A drivetrain of one's own: from a file to start from to a study of its reactions."""
 
 import json
+import math
 import re
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
 import jsonschema
+import numpy as np
 import pytest
 from tiny_case import Result
 
 from fe_drivetrain.common.reading import parse_mapping
+from fe_drivetrain.fidelity.level_costs import forecast
+from fe_drivetrain.report.pictures import can_draw
+from fe_drivetrain.report.results import Table, read_results
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.arrangements import (
     ARRANGEMENTS,
     SCHEMA_FILE,
@@ -140,3 +147,102 @@ def test_new_lists_its_arrangements(invoke: Callable[..., Result]) -> None:
     status, out, _ = invoke("new", "--list")
     assert status == 0
     assert [line.split()[0] for line in out.splitlines()] == list(ARRANGEMENTS)
+
+
+COARSE = ("mesh.shaft=0.3", "mesh.bearing=0.12", "mesh.housing=0.12", "mesh.bearing_edge=0.12")
+QUICK = [word for change in (*COARSE, "mesh.elements_per_turn=8") for word in ("--set", change)]
+
+
+@pytest.fixture
+def documented(tmp_path: Path) -> Path:
+    """The complete example of docs/scene.md as a file in the folder where commands run."""
+    text = re.search(r"```yaml\n(.*?)```", (ROOT / "docs/scene.md").read_text("utf-8"), re.DOTALL)
+    assert text
+    path = tmp_path / "mine.yaml"
+    path.write_text(text.group(1), "utf-8")
+    return path
+
+
+def tables(folder: Path) -> dict[str, list[dict[str, object]]]:
+    """Rows of each table of a result folder, by the first words of its caption."""
+    results = read_results(folder / "results.json")
+    found = [item for s in results.sections for item in s.items if isinstance(item, Table)]
+    return {
+        re.split("[;:,]", table.caption)[0]: [
+            dict(zip(table.columns, row, strict=True)) for row in table.rows
+        ]
+        for table in found
+    }
+
+
+def test_check_says_what_a_scene_is(
+    invoke: Callable[..., Result], documented: Path, tmp_path: Path
+) -> None:
+    status, out, _ = invoke("check", "mine.yaml", "--out", "page", *QUICK)
+    assert status == 0
+    assert "a shaft of 4.55 m on 1 bearing" in out
+    assert "uy 80 MN/m" in out
+    assert "rx rigid" in out
+    folder = tmp_path / "page"
+    assert (folder / "model.png").is_file() == can_draw()
+    found = tables(folder)
+    shaft, bearing, housing = found["Parts"]
+    assert [row["part"] for row in (shaft, bearing, housing)] == [
+        "shaft",
+        "main_bearing",
+        "main_bearing.housing",
+    ]
+    # tubes of 0.9, 0.5 and 0.4 m round a bore of 0.2 m, and a fillet of radius r at r1 = 0.25 m:
+    # (1 - pi/4) r^2 times the way round of its centroid
+    r, r1 = 0.03, 0.25
+    tubes = [(0.15, 0.9), (2.4, 0.5), (2.0, 0.4)]
+    volume = sum(math.pi / 4 * length * (d**2 - 0.2**2) for length, d in tubes)
+    centroid = r1 + r * (5 / 6 - math.pi / 4) / (1 - math.pi / 4)
+    volume += (1 - math.pi / 4) * r**2 * 2 * math.pi * centroid
+    assert shaft["mass [kg]"] == pytest.approx(7850 * volume, rel=1e-3)
+    assert housing["density [kg/m³]"] == 7800
+    assert found["Bearings"][0]["carries moments"] == "no: spherical joint"
+
+
+def test_forecast_is_of_the_systems_that_are_solved(
+    bonded_model: Model, bonded_response: Response
+) -> None:
+    found = forecast(bonded_model)
+    assert [level.level for level in found] == [0, 1, 1, 2, 3, 4]
+    top = found[-1]
+    assert top.unknowns == bonded_response.diagnostics.n_unknowns
+    # a bonded unit is one body, held at its base: what is left of its nodes
+    mesh = bonded_model.mesh
+    parts = ("main_bearing", "main_bearing.housing")
+    nodes = np.unique(np.concatenate([mesh.cells[mesh.part_cells(p)].ravel() for p in parts]))
+    free = np.setdiff1d(nodes, mesh.face_nodes("main_bearing.housing.base"))
+    assert found[2].unknowns == found[3].unknowns == 3 * len(free)
+    assert all(level.fits and level.seconds > 0 for level in found)
+    # the matrix alone has 9 numbers for each node's block with itself and its neighbours
+    assert top.bytes is not None
+    assert top.bytes > 8 * bonded_model.stiffness.nnz
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("gearbox.stiffness=[0, 0, 0, 0, 0, 0]", "can"),
+        ("gearbox.weight=heavy", "gearbox.weight"),
+        ("bearing_units.main_bearing.interface=bondd", "interface"),
+        ("bearing_units.main_bearing.bearing.x=9", "main_bearing"),
+    ],
+)
+def test_check_refuses_a_bad_scene_in_one_sentence(
+    invoke: Callable[..., Result], documented: Path, tmp_path: Path, change: str, words: str
+) -> None:
+    status, out, err = invoke("check", "mine.yaml", *QUICK, "--set", change)
+    assert (status, out) == (2, "")
+    (sentence,) = [line for line in err.splitlines() if line.startswith("fe-drivetrain: ")]
+    assert words in sentence
+    assert not (tmp_path / "reports" / "check" / "mine").exists()
+
+
+def test_check_of_a_file_that_is_not_there(invoke: Callable[..., Result]) -> None:
+    status, _, err = invoke("check", "mine.yaml")
+    assert status == 2
+    assert "mine.yaml" in err

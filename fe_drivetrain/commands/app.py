@@ -22,7 +22,7 @@ from fe_drivetrain.commands.run import (
     run_command,
 )
 from fe_drivetrain.commands.settings import CaseSettings
-from fe_drivetrain.commands.studies import advise_command, uncertainty_command
+from fe_drivetrain.commands.studies import advise_command, check_command, uncertainty_command
 from fe_drivetrain.commands.terminal import prepare_streams, write
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ app = typer.Typer(no_args_is_help=True, **_LOOK)
 """The commands of ``fe-drivetrain``."""
 
 app.command("new")(new_command)
+app.command("check")(check_command)
 app.command("list")(list_command)
 app.command("run")(run_command)
 app.command("compare-runs")(compare_runs_command)

@@ -211,6 +211,37 @@ def results_text(results: Results, page: Path) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
+def tables_text(results: Results, page: Path) -> str:
+    """Summary and tables of a case in plain text, and where its report is.
+
+    Parameters
+    ----------
+    results : Results
+        Of the case.
+    page : Path
+        Its report.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.report.page import formatted
+    from fe_drivetrain.report.results import Table
+
+    lines = [*results.summary]
+    for section in results.sections:
+        for table in (item for item in section.items if isinstance(item, Table)):
+            rows = [table.columns, *([formatted(cell) for cell in row] for row in table.rows)]
+            widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+            lines += ["", table.caption]
+            lines += [
+                "  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
+                for row in rows
+            ]
+    lines += ["", f"Report: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
 def several_results_text(
     names: Sequence[str],
     results: Mapping[str, Results],

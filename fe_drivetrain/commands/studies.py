@@ -1,4 +1,4 @@
-"""The commands ``advise`` and ``uncertainty``: studies of one scene, each with a report."""
+"""The commands ``check``, ``advise`` and ``uncertainty``: one scene, each with a report."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.commands.progress import show_steps
-from fe_drivetrain.commands.run import results_text
+from fe_drivetrain.commands.run import results_text, tables_text
 from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import (
     Loads,
@@ -24,6 +24,7 @@ from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Results
     from fe_drivetrain.suite.page import Page
     from fe_drivetrain.suite.run import Run
 
@@ -37,6 +38,29 @@ _OutFolder = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/COMMAND/SCENE."),
 ]
+
+
+def check_command(scene: _Scene, out: _OutFolder = None, set_: SceneSettings = None) -> None:
+    """Check a scene, describe and draw it, and predict what each level of the ladder costs.
+
+    Prints parts, bearings, supports, masses and costs; the report has the picture, too.
+
+    The exit status is 0 if the scene can be solved, 2 if it cannot.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.commands.scene_page import checked
+
+        title = f"{found.title}: what the scene is, and what it costs"
+        results, page = _results_of_scene(
+            "check", scene, title, out, lambda run, page: checked(run, page, found)
+        )
+        write(sys.stdout, tables_text(results, page))
+        return PASSED
+
+    raise typer.Exit(guarded(work))
 
 
 def advise_command(
@@ -185,6 +209,20 @@ def _run_on_scene(
     study: Callable[[Run, Page], None],
 ) -> int:
     """Run a study as a case of its own and print its outcome; returns the exit status."""
+    results, page = _results_of_scene(command, scene, title, out, study)
+    write(sys.stdout, results_text(results, page))
+    return PASSED if results.passed else FAILED
+
+
+def _results_of_scene(
+    command: str,
+    scene: str,
+    title: str,
+    out: Path | None,
+    study: Callable[[Run, Page], None],
+    quick: bool = False,
+) -> tuple[Results, Path]:
+    """Run a study as a case of its own; its results, and its report."""
     from fe_drivetrain.suite.case import Case
     from fe_drivetrain.suite.result_folders import run_case
 
@@ -192,6 +230,5 @@ def _run_on_scene(
     case = Case(f"{command}/{name}", title, f"the scene {name}", study)
     folder = Path("reports", command, name) if out is None else out
     with show_steps() as report:
-        results = run_case(case, folder.resolve(), report=report)
-    write(sys.stdout, results_text(results, folder / "report.html"))
-    return PASSED if results.passed else FAILED
+        results = run_case(case, folder.resolve(), quick=quick, report=report)
+    return results, folder / "report.html"

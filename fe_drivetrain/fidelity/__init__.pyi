@@ -27,6 +27,8 @@ from .ladder import assembly_level as assembly_level
 from .ladder import housing_springs as housing_springs
 from .ladder import shaft_level as shaft_level
 from .ladder import statics_level as statics_level
+from .level_costs import Forecast as Forecast
+from .level_costs import forecast as forecast
 from .quantities import unit_numbers as unit_numbers
 from .shafts import beam_shaft as beam_shaft
 from .shafts import meridian_shaft as meridian_shaft
