@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, loads, shown, study
+from fe_drivetrain.cases.main_bearing import bands, loads, reactions, shown, study
 from fe_drivetrain.cases.main_bearing.comparison import (
     MEAN_ERROR,
     PUBLISHED,
@@ -23,7 +23,7 @@ from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.response import bearing_unit_stiffness
 from fe_drivetrain.suite import Page, Record, Run
 
-OWN_KEYS = ("scene", "loads", "solver")
+OWN_KEYS = ("scene", "loads", "solver", "skip", "self_weight")
 
 
 def deflections(solved: Solved, matrix: Floats, series: bands.Series, label: str) -> list[Record]:
@@ -141,6 +141,7 @@ def run(run: Run, page: Page) -> None:
     spherical_scene = study.scene_of(run, "spherical", OWN_KEYS)
     bonded_scene = study.scene_of(run, "bonded", OWN_KEYS)
     pinned_beam = main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
+    self_weight = reactions.has_self_weight(run)
     given = loads.own_hub_loads(run)  # before the work: a fault in a file is reported at once
     with run.side_by_side(7) as jobs:
         solving = jobs.start(
@@ -169,8 +170,9 @@ def run(run: Run, page: Page) -> None:
             "bonded": coarser_bonded.below(bands.of_solved(bonded) | bands.of_tilt(tilt)),
         }
     name = bonded.bearing
+    kinds = {"spherical": spherical, "bonded": bonded}
     if not hub.conditions:
-        loads.write_reactions(run.folder, hub, found.fe)
+        reactions.write_files(run.folder, hub, kinds, self_weight)
     page.seed = hub.seed
     mean_error, correlation = found.mean_error, found.correlation
     _, second, third = PUBLISHED
@@ -214,6 +216,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Model")
     page.add(*pictures)
     result_section(page, hub, found, error_band)
+    reactions.statistics_section(run, page, hub, kinds, self_weight)
     if hub.conditions:
         page.section("RMSE by wind speed, turbulence and shear")
         loads.rmse_charts(page, hub.conditions, found.fe, found.pairs)

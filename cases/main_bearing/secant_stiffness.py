@@ -28,7 +28,7 @@ TITLES = {"library": "the scene's housing", "tall": f"a pedestal of {TALL:g} m"}
 EVERY = 40
 #: Couplings of each moment that the page shows.
 TERMS = 3
-OWN_KEYS = ("scene", "solver", "loads")
+OWN_KEYS = ("scene", "solver", "loads", "skip")
 
 Reacted = secants.Reacted
 
