@@ -4,6 +4,7 @@ import json
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -12,8 +13,15 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
+from fe_drivetrain.commands import study_loads
+from fe_drivetrain.commands.app import main
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.reading import parse_mapping
+from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
+from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.level_costs import forecast
+from fe_drivetrain.fidelity.over_loads import imbalance, relative_errors
+from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.report.pictures import can_draw
 from fe_drivetrain.report.results import Table, read_results
 from fe_drivetrain.response.model import Model
@@ -246,3 +254,196 @@ def test_check_of_a_file_that_is_not_there(invoke: Callable[..., Result]) -> Non
     status, _, err = invoke("check", "mine.yaml")
     assert status == 2
     assert "mine.yaml" in err
+
+
+#: Two bearings on a stepped shaft, the mesh as coarse as its walls allow.
+TWO_BEARINGS = [
+    word
+    for change in (
+        "mesh.shaft=0.25",
+        "mesh.bearing=0.12",
+        "mesh.housing=0.12",
+        "mesh.bearing_edge=0.12",
+        "mesh.elements_per_turn=8",
+    )
+    for word in ("--set", change)
+]
+
+
+def write_loads(path: Path, seed: int, start: float = 0.0) -> Floats:
+    """A short history of hub loads with weight and thrust; its loads [kN, kN m]."""
+    generator = np.random.default_rng(seed)
+    time = start + 0.1 * np.arange(40)
+    mean = np.array([200.0, 5.0, -370.0, 900.0, 300.0, -50.0])
+    loads = mean + np.abs(mean) * 0.3 * generator.standard_normal((40, 6))
+    header = "time [s],Fx [kN],Fy [kN],Fz [kN],Mx [kN m],My [kN m],Mz [kN m]"
+    np.savetxt(path, np.column_stack([time, loads]), "%.6f", ",", header=header, comments="")
+    return loads
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Floats]]:
+    """The result folder of a study of two bearings over two files, and their loads."""
+    folder = tmp_path_factory.mktemp("study")
+    (folder / "loads").mkdir()
+    loads = {
+        name: write_loads(folder / "loads" / f"{name}.csv", seed, start)
+        for name, seed, start in (("calm", 1, 0.0), ("storm", 2, 60.0))
+    }
+    words = ["study", "two_bearings", "--loads", str(folder / "loads"), *TWO_BEARINGS]
+    with pytest.raises(SystemExit) as end:
+        main([*words, "--out", str(folder / "out")])
+    assert end.value.code == 0
+    return folder / "out", loads
+
+
+def table_of(path: Path) -> tuple[list[str], Floats, str]:
+    """Columns, values and the lines before them of a CSV file of a study."""
+    lines = path.read_text("utf-8").splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    return (
+        lines[len(head)].split(","),
+        np.loadtxt(lines[len(head) + 1 :], delimiter=","),
+        "\n".join(head),
+    )
+
+
+def test_reactions_of_a_study_balance_loads_and_weights(
+    study: tuple[Path, dict[str, Floats]],
+) -> None:
+    folder, loads = study
+    mass = sum(float(str(row["mass [kg]"])) for row in tables(folder)["Parts"])
+    weight = 9.80665 * mass + 200_000.0  # of the parts, and of the gearbox
+    for name, start in (("calm", 0.0), ("storm", 60.0)):
+        columns, values, head = table_of(folder / f"reactions_{name}.csv")
+        assert values[0, 0] == start
+        for word in ("frame = x downwind", "origin of moments", "weight = included along -z"):
+            assert word in head
+        for component, column in zip(("Fx", "Fy", "Fz"), range(3), strict=True):
+            total = sum(
+                values[:, columns.index(f"{support} {component} [N]")]
+                for support in ("front", "rear", "gearbox")
+            )
+            applied = 1e3 * loads[name][:, column] - (weight if component == "Fz" else 0.0)
+            np.testing.assert_allclose(total, applied, rtol=0, atol=1e-5 * weight)
+        # the gearbox alone carries torque: bearings of bodies of revolution turn freely, but for
+        # the bonded one in front, which is fixed to its housing
+        torque = values[:, columns.index("front Mx [N m]")]
+        torque = torque + values[:, columns.index("gearbox Mx [N m]")]
+        rear = values[:, columns.index("rear Mx [N m]")]
+        assert np.abs(rear).max() < 1e-6 * np.abs(torque).max()
+
+
+def test_statistics_of_a_study_are_those_of_its_histories(
+    study: tuple[Path, dict[str, Floats]],
+) -> None:
+    folder, _ = study
+    found = {name: table_of(folder / f"reactions_{name}.csv") for name in ("calm", "storm")}
+    columns = found["calm"][0]
+    both = np.vstack([values for _, values, _ in found.values()])
+    sample = both[:, columns.index("rear Fz [N]")] / 1e3
+    (row,) = [
+        row
+        for row in tables(folder)["Reactions of the assembly over all load steps"]
+        if (row["reaction"], row["component"]) == ("rear", "Fz [kN]")
+    ]
+    assert row["least"] == pytest.approx(sample.min(), rel=1e-6)
+    assert row["largest"] == pytest.approx(sample.max(), rel=1e-6)
+    assert row["mean"] == pytest.approx(sample.mean(), rel=1e-6)
+    assert row["standard deviation"] == pytest.approx(sample.std(), rel=1e-6)
+    text = (folder / "reaction_statistics.csv").read_text("utf-8")
+    assert text.count("\nstorm,rear,Fz,N,") == text.count("\nall,rear,Fz,N,") == 1
+
+
+def test_bounds_of_a_study_hold_each_other_and_are_exported(
+    study: tuple[Path, dict[str, Floats]],
+) -> None:
+    folder, _ = study
+    rows = [
+        row for found in tables(folder).values() for row in found if "face in shape (stiff)" in row
+    ]
+    assert {row["bearing"] for row in rows} == {"front", "rear"}
+    for row in rows:
+        assert float(str(row["face on average (soft)"])) <= float(str(row["face in shape (stiff)"]))
+    # a spherical joint has no K_R
+    assert {row["bearing"] for row in rows if "K_R" in str(row["quantity"])} == {"front"}
+    matrices = {
+        m.name: np.array(m.matrix) for m in read_stiffness_json(folder / "stiffness.json").matrices
+    }
+    assert set(matrices) == {"front, stiff", "front, soft", "rear, stiff", "rear, soft"}
+    for unit in ("front", "rear"):
+        more = matrices[f"{unit}, stiff"] - matrices[f"{unit}, soft"]
+        scale = np.sqrt(np.maximum(matrices[f"{unit}, stiff"].diagonal(), 1.0))
+        # a face held in shape is a constraint more: stiffer in every direction
+        assert np.linalg.eigvalsh(more / np.outer(scale, scale))[0] > -1e-6
+
+
+def test_beams_of_a_study_are_compared_over_the_loads(
+    study: tuple[Path, dict[str, Floats]],
+) -> None:
+    folder, _ = study
+    rows = {
+        str(row["reaction"]): row
+        for found in tables(folder).values()
+        for row in found
+        if "beam, soft housings" in row and "rms of FE" not in row
+    }
+    assert {"front, force", "front, moment", "rear, force", "gearbox, force"} <= set(rows)
+    assert "rear, moment" not in rows  # a spherical joint
+    # two bearings share the load by their stiffness, which rigid housings miss
+    shares = rows["rear, force"]
+    errors = {label: float(str(shares[label])) for label in shares if label != "reaction"}
+    assert errors["beam, rigid housings"] > errors["beam, soft housings"] > 0.0
+
+
+def test_a_level_out_of_balance_is_noticed() -> None:
+    scene = library_scene("two_bearings")
+    sound = shaft_level(scene, 1)
+    assert imbalance(scene, sound) < 1e-9
+    worse = dict(sound.reaction_matrices)
+    worse["front"] = worse["front"] * 1.01
+    assert imbalance(scene, replace(sound, reaction_matrices=worse)) > 1e-3
+
+
+def test_errors_are_relative_to_the_vector(rng: np.random.Generator) -> None:
+    reference = rng.standard_normal((50, 6)) * np.array([1e-4, 1.0, 1.0, 0.0, 0.0, 0.0])
+    found = reference * np.array([2.0, 1.1, 1.1, 1.0, 1.0, 1.0])
+    force, moment = relative_errors(reference, found, 2.0)
+    # a component as small as this does not count, whatever its own error
+    assert force == pytest.approx(0.1, rel=1e-6)
+    assert np.isnan(moment)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--skip", "5"), "--skip 5 leaves out the beginning of your own files"),
+        (("--loads", "none/*.outb"), "file is there"),
+        (("--set", "gearbox.stiffness=[0, 0, 0, 0, 0, 0]", "--loads", "a.csv"), "can"),
+    ],
+)
+def test_study_refuses_in_one_sentence(
+    invoke: Callable[..., Result], tmp_path: Path, words: tuple[str, ...], sentence: str
+) -> None:
+    write_loads(tmp_path / "a.csv", 3)
+    status, out, err = invoke("study", "main_bearing_spherical", *QUICK, *words)
+    assert (status, out) == (2, "")
+    lines = [line for line in err.splitlines() if line.startswith("fe-drivetrain: ")]
+    assert len(lines) == 1
+    assert sentence in lines[0]
+
+
+def test_a_study_without_loads_says_that_they_are_a_surrogate(
+    invoke: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = [Condition(12.0, "medium", 0.2, 1)]
+    monkeypatch.setattr(study_loads, "surrogate_grid", lambda: one)
+    status, out, _ = invoke("study", "main_bearing_spherical", "--quick", "--out", "s", *QUICK)
+    assert status == 0
+    assert "Hub loads are a surrogate, not those of your turbine" in out
+    assert "Quick: on a coarser mesh" in out
+    results = read_results(tmp_path / "s" / "results.json")
+    assert results.assumptions  # of the rotor
+    assert not list((tmp_path / "s").glob("reactions_*.csv"))
+    # one spherical bearing in front of a gearbox that holds no bending: statics decides
+    assert "beam, rigid housings: every reaction is within 5 %" in " ".join(results.summary)

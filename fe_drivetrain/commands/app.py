@@ -22,7 +22,12 @@ from fe_drivetrain.commands.run import (
     run_command,
 )
 from fe_drivetrain.commands.settings import CaseSettings
-from fe_drivetrain.commands.studies import advise_command, check_command, uncertainty_command
+from fe_drivetrain.commands.studies import (
+    advise_command,
+    check_command,
+    study_command,
+    uncertainty_command,
+)
 from fe_drivetrain.commands.terminal import prepare_streams, write
 
 if TYPE_CHECKING:
@@ -39,6 +44,7 @@ app = typer.Typer(no_args_is_help=True, **_LOOK)
 
 app.command("new")(new_command)
 app.command("check")(check_command)
+app.command("study")(study_command)
 app.command("list")(list_command)
 app.command("run")(run_command)
 app.command("compare-runs")(compare_runs_command)
