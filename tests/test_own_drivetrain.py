@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import shlex
 from collections.abc import Callable
 from dataclasses import replace
 from importlib.resources import files
@@ -11,6 +12,7 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
+from test_hub_loads import rotating_columns, write_outb
 from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
@@ -447,3 +449,41 @@ def test_a_study_without_loads_says_that_they_are_a_surrogate(
     assert not list((tmp_path / "s").glob("reactions_*.csv"))
     # one spherical bearing in front of a gearbox that holds no bending: statics decides
     assert "beam, rigid housings: every reaction is within 5 %" in " ".join(results.summary)
+
+
+def commands_of_the_readme() -> list[list[str]]:
+    """The words of each command in the README's section on one's own drivetrain."""
+    section = README.partition("## Your own drivetrain\n")[2].partition("\n## ")[0]
+    block = re.search(r"```sh\n(.*?)```", section, re.DOTALL)
+    assert block
+    lines = [line.partition("   #")[0] for line in block.group(1).splitlines()]
+    lines += re.findall(r"`(fe-drivetrain export mine\.yaml [^`]*)`", section)
+    return [shlex.split(line)[1:] for line in lines]
+
+
+def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
+    invoke: Callable[..., Result], documented: Path, tmp_path: Path
+) -> None:
+    """On the complete example of docs/scene.md; meshes coarser, for the sake of time."""
+    example = documented.read_text("utf-8")
+    documented.unlink()
+    (tmp_path / "outputs").mkdir()
+    write_outb(tmp_path / "outputs" / "run.outb", rotating_columns())
+    commands = commands_of_the_readme()
+    assert [words[0] for words in commands] == ["new", "check", "study", "advise"] + 2 * ["export"]
+    for words in commands:
+        coarse = [] if words[0] == "new" else QUICK
+        status, out, err = invoke(*words, *coarse)
+        assert status == 0, (words, err)
+        assert out
+        if words[0] == "new":
+            assert parse_scene(documented.read_text("utf-8"))
+            documented.write_text(example, "utf-8")
+    for made in (
+        "reports/check/mine/report.html",
+        "reports/study/mine/reactions_run.csv",
+        "reports/advise/mine/report.html",
+        "mine.inp",
+        "shaft.bdf",
+    ):
+        assert (tmp_path / made).stat().st_size > 0, made

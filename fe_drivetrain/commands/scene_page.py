@@ -78,43 +78,39 @@ def describe(page: Page, model: Model) -> None:
         The model, meshed, so that masses are those of what is solved.
     """
     scene = model.scene
-    page.table(
-        "Parts; masses are those of the mesh",
-        [
-            {
-                "part": part,
-                "material": _material_name(scene, part),
-                "E [GPa]": scene.material_of(part).youngs_modulus / 1e9,
-                "density [kg/m³]": scene.material_of(part).density,
-                "mass [kg]": float(mass.sum()),
-                "size": _size(scene, part),
-            }
-            for part, mass in model.part_mass.items()
-        ],
-    )
+    parts: list[Record] = [
+        {
+            "part": part,
+            "material": _material_name(scene, part),
+            "E [GPa]": scene.material_of(part).youngs_modulus / 1e9,
+            "density [kg/m³]": scene.material_of(part).density,
+            "mass [kg]": float(mass.sum()),
+            "size": _size(scene, part),
+        }
+        for part, mass in model.part_mass.items()
+    ]
+    page.table("Parts; masses are those of the mesh", parts)
     page.table(
         "Bearings",
         [_bearing_row(unit) for unit in scene.bearing_units],
     )
-    page.table(
-        "Ends of the shaft",
-        [
-            {
-                "end": "hub (front face), where the hub loads act",
-                "x [m]": scene.shaft.front,
-                "coupling": scene.hub.coupling,
-                "weight [N]": None,
-                "held by": "nothing",
-            },
-            {
-                "end": "gearbox (rear face)",
-                "x [m]": scene.shaft.rear,
-                "coupling": scene.gearbox.coupling,
-                "weight [N]": scene.gearbox.weight,
-                "held by": _springs(scene.gearbox.stiffness),
-            },
-        ],
-    )
+    ends: list[Record] = [
+        {
+            "end": "hub (front face), where the hub loads act",
+            "x [m]": scene.shaft.front,
+            "coupling": scene.hub.coupling,
+            "weight [N]": None,
+            "held by": "nothing",
+        },
+        {
+            "end": "gearbox (rear face)",
+            "x [m]": scene.shaft.rear,
+            "coupling": scene.gearbox.coupling,
+            "weight [N]": scene.gearbox.weight,
+            "held by": _springs(scene.gearbox.stiffness),
+        },
+    ]
+    page.table("Ends of the shaft", ends)
     page.text(
         "Frame: x downwind along the shaft, z up, y = z cross x. Lengths in m, forces in N, "
         "moments in N m, angles in rad."
