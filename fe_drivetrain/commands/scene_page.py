@@ -202,8 +202,8 @@ def cost_table(page: Page, model: Model) -> None:
     page.text(
         "Predicted times are those of the solver, fitted on two cores, without mesh and assembly, "
         "whose times stand below; a mesh comes from the cache the next time. Housings as springs "
-        "are solved for two bounds, all bearing units; the shaft on them was run. advise solves coarser meshes, too, for the "
-        "band of the assembly."
+        "are solved for two bounds, all bearing units; the shaft on them was run. advise solves "
+        "coarser meshes, too, for the band of the assembly."
     )
     page.data("levels", rows)
 
