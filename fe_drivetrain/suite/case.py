@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from fe_drivetrain.suite.page import Page
     from fe_drivetrain.suite.run import Run
 
+QUICK = (
+    "Quick run: coarser and smaller than the case, for a first look; its figures and bands are not "
+    "those of the case."
+)
+
 
 @dataclass(frozen=True)
 class Case:
@@ -56,8 +61,9 @@ class Case:
         self.run(run, page)
         return Results(
             case=self.name,
-            title=self.title,
-            source=self.source,
+            title=page.title or self.title,
+            source=page.source or self.source,
+            notes=[*([QUICK] if run.quick else []), *page.notes],
             summary=page.summary,
             verdicts=page.verdicts,
             sections=page.sections,
@@ -65,7 +71,7 @@ class Case:
             assumptions=page.assumptions,
             times=run.times,
             figures=page.figures,
-            environment=environment(run.settings, page.seed),
+            environment=environment(run.settings, page.seed, run.quick),
         )
 
 

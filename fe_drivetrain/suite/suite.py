@@ -21,6 +21,8 @@ from fe_drivetrain.suite.result_folders import (
     run_into,
 )
 
+_NOT_RUN = Problem("not run: the run has not come to its end", is_pending=True)
+
 
 def run_cases(
     cases: Sequence[Case],
@@ -34,7 +36,7 @@ def run_cases(
     Independent cases run in processes side by side, as many as the cores allow; those that are to
     be `alone` come after them, one by one, each in a process that starts afresh. A case that fails
     does not keep the others from their work. Each result folder appears whole or not at all; when
-    stopped, those of finished cases stay.
+    stopped, those of finished cases stay, and the page lists the others as not run.
 
     Parameters
     ----------
@@ -64,19 +66,22 @@ def run_cases(
     out = Path(out)
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
-
-    finished: list[str] = []
+    pending = {case.name: _NOT_RUN for case in cases}
 
     def finish(case: Case, problem: Problem | None) -> None:
         if problem:
             problems[case.name] = problem
         else:
             put_in_place(folders[case.name], result_folder(out, case))
-        finished.append(case.name)
+        del pending[case.name]
+        write_index(
+            out, problems | pending
+        )  # so that a run that is killed is seen to be incomplete
 
     try:
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
+        write_index(out, problems | pending)
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), report, each_for_itself=True) as processes:
             jobs: dict[Future[Problem | None], Case] = {
@@ -97,8 +102,8 @@ def run_cases(
     finally:
         for folder in folders.values():
             folder.discard()
-        if finished:  # when stopped, those that were done by then
-            write_index(out, problems)
+        if len(folders) == len(cases):  # else nothing was begun
+            write_index(out, problems | pending)
     return problems
 
 
