@@ -67,7 +67,7 @@ def wait(run: Run, page: Page) -> None:
 
 
 def a_case(name: str, work: Callable[[Run, Page], None], alone: bool = False) -> Case:
-    return Case(name, f"Title of <{name}>", "nobody", work, alone)
+    return Case(name, f"Title of <{name}>", "nobody", work, alone, settings=("k",))
 
 
 @pytest.fixture(params=["1", "2"])

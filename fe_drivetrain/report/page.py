@@ -31,6 +31,7 @@ from fe_drivetrain.report.results import (
     Verdict,
     bias_and_scatter,
     read_results,
+    results_below,
 )
 
 DIGITS = 5
@@ -117,7 +118,7 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
     """
     folder = Path(folder)
     problems = problems or {}
-    names = {"/".join(f.parts[-3:-1]) for f in folder.glob("*/*/results.json")}
+    names = set(results_below(folder))
     rows = []
     for name in sorted(names | set(problems)):
         row: dict[str, Any] = {"name": name, "group": name.partition("/")[0], "results": None}

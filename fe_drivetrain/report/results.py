@@ -288,6 +288,12 @@ class Results(_Result):
         return all(verdict.passed for verdict in self.verdicts)
 
 
+def results_below(folder: Path) -> dict[str, Path]:
+    """Files of results below a folder, by "GROUP/NAME"; not those of runs that were killed."""
+    files = sorted(folder.glob("*/*/results.json"))
+    return {"/".join(f.parts[-3:-1]): f for f in files if not f.parent.name.startswith(".")}
+
+
 def read_results(path: str | Path) -> Results:
     """Read and validate a results.json."""
     return Results.model_validate_json(Path(path).read_text(encoding="utf-8"))

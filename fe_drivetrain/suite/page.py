@@ -33,8 +33,8 @@ class Page:
 
     Attributes
     ----------
-    title, source : str
-        Of a page that is not about what the case is declared to be; empty otherwise.
+    subject, source : str
+        What a page is about, and from where, if the user gave it; empty where it is the case's own.
     notes : list of str
         What must be known before any figure, in sentences.
     verdicts : list of Verdict
@@ -54,7 +54,7 @@ class Page:
     """
 
     def __init__(self) -> None:
-        self.title = ""
+        self.subject = ""
         self.source = ""
         self.notes: list[str] = []
         self.verdicts: list[Verdict] = []

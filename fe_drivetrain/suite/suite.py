@@ -20,6 +20,7 @@ from fe_drivetrain.suite.result_folders import (
     result_folder,
     run_into,
 )
+from fe_drivetrain.suite.settings import settings_by_case
 
 _NOT_RUN = Problem("not run: the run has not come to its end", is_pending=True)
 
@@ -45,7 +46,7 @@ def run_cases(
     out : Path
         The folder above theirs.
     settings : mapping, optional
-        As of `Run`.
+        As of `Run`; each case is given those that it takes.
     quick : bool
         As of `Run`.
     report : callable
@@ -59,11 +60,12 @@ def run_cases(
     Raises
     ------
     InputError
-        A result folder cannot be written or holds something else.
+        A result folder cannot be written or holds something else, or no case takes a setting.
     """
     from fe_drivetrain.report.page import write_index
 
     out = Path(out)
+    taken = settings_by_case(cases, settings or {})
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
     pending = {case.name: _NOT_RUN for case in cases}
@@ -74,9 +76,7 @@ def run_cases(
         else:
             put_in_place(folders[case.name], result_folder(out, case))
         del pending[case.name]
-        write_index(
-            out, problems | pending
-        )  # so that a run that is killed is seen to be incomplete
+        write_index(out, problems | pending)  # a run that is killed later could not
 
     try:
         for case in cases:
@@ -85,9 +85,7 @@ def run_cases(
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), report, each_for_itself=True) as processes:
             jobs: dict[Future[Problem | None], Case] = {
-                processes.start(
-                    _run, case, folders[case.name].path, dict(settings or {}), quick
-                ): case
+                processes.start(_run, case, folders[case.name].path, taken[case.name], quick): case
                 for case in beside
             }
             for job in processes.finished(jobs):
@@ -96,7 +94,7 @@ def run_cases(
             if case.alone:
                 with Processes(1, report, always=True, each_for_itself=True) as processes:
                     job = processes.start(
-                        _run, case, folders[case.name].path, dict(settings or {}), quick
+                        _run, case, folders[case.name].path, taken[case.name], quick
                     )
                     finish(case, _outcome(job))
     finally:
