@@ -222,8 +222,10 @@ def run(run: Run, page: Page) -> None:
         "do depend on it, stand below.",
     )
     # the bearing that the scene has comes first
-    given = study.kind_of(study.given_scene(run, "bonded"))
-    page.answer(*(on_spherical + on_bonded if given == "spherical" else on_bonded + on_spherical))
+    own_kind = study.kind_of(study.given_scene(run, "bonded"))
+    page.answer(
+        *(on_spherical + on_bonded if own_kind == "spherical" else on_bonded + on_spherical)
+    )
     page.section("Model")
     page.add(*pictures)
     result_section(page, hub, found, error_band)
