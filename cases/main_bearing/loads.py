@@ -29,6 +29,7 @@ QUICK_SEEDS = 2
 
 Pairs = Mapping[str, tuple[str, Floats]]
 _PLANES = (("horizontal", "Fy", 1), ("vertical", "Fz", 2))
+_STAND_IN = "They stand in for the thesis's Bladed histories, which are not public."
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +95,8 @@ def _skip(run: Run) -> float:
 
 def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
     """Made hub loads; those that were not made before are made side by side."""
+    grid_of = "a" if "scene" in run.settings else "the thesis's"
+    stand_in = "" if "scene" in run.settings else f" {_STAND_IN}"
     grid = surrogate_grid()
     if run.quick:
         grid = [c for c in grid if c.seed <= QUICK_SEEDS]
@@ -115,10 +118,9 @@ def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
         tuple(c.name for c in histories.conditions),
         histories.conditions,
         f"Hub loads are a surrogate: {len(grid)} ten-minute histories at 20 Hz of a 2 MW, 80 m, "
-        "three-bladed rotor, quasi-steady blade elements in Kaimal turbulence, over the thesis's "
-        "grid of wind speed, turbulence and shear. They stand in for the thesis's Bladed "
-        "histories, which are not public; the same comparison on your own histories: "
-        "--set loads=FOLDER.",
+        f"three-bladed rotor, quasi-steady blade elements in Kaimal turbulence, over {grid_of} "
+        f"grid of wind speed, turbulence and shear.{stand_in} The same comparison on your own "
+        "histories: --set loads=FOLDER.",
         list(assumptions()),
         1,
     )

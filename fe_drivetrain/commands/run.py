@@ -192,7 +192,7 @@ def cases_text(titles: Mapping[str, str]) -> str:
 
 
 def results_text(results: Results, page: Path) -> str:
-    """Outcome of one case: each check, the first sentences, and where its report is.
+    """Outcome of one case: its notes, each check, the first sentences, and where its report is.
 
     Parameters
     ----------
@@ -205,7 +205,8 @@ def results_text(results: Results, page: Path) -> str:
     -------
     str
     """
-    lines = [verdict_line(verdict) for verdict in results.verdicts]
+    lines = [*results.notes, *([""] if results.notes else [])]
+    lines += [verdict_line(verdict) for verdict in results.verdicts]
     lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
     lines += [f"{_count(results)}: {page}"]
     return "".join(f"{line}\n" for line in lines)
@@ -275,6 +276,7 @@ def several_results_text(
         found = results[name]
         outcome = "pass" if found.passed else "FAIL"
         lines.append(f"{outcome}  {name}: {_count(found)}, {sum(found.times.values()):.1f} s")
+        lines += [f"      {note}" for note in found.notes if not found.environment.quick]
         lines += [f"      {verdict_line(v)}" for v in found.verdicts if not v.passed]
     passed = sum(found.passed for found in results.values())
     lines += ["", f"{passed} of {len(names)} cases pass: {page}"]
