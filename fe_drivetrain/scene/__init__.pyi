@@ -1,8 +1,13 @@
+from .bearing_unit import BearingUnit as BearingUnit
+from .bearing_unit import Rollers as Rollers
+from .bearing_unit import Springs as Springs
 from .component import CarrierComponent as CarrierComponent
 from .component import Component as Component
 from .component import HousingComponent as HousingComponent
 from .component import SomeComponent as SomeComponent
 from .component import material_of as material_of
+from .joint_springs import joint_stiffness as joint_stiffness
+from .joint_springs import roller_lines as roller_lines
 from .materials import HIGHEST_POISSON_RATIO as HIGHEST_POISSON_RATIO
 from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
@@ -13,11 +18,8 @@ from .reading import library_scene as library_scene
 from .reading import parse_scene as parse_scene
 from .reading import read_component as read_component
 from .reading import read_scene as read_scene
-from .scene import BearingUnit as BearingUnit
 from .scene import Coupling as Coupling
 from .scene import Gearbox as Gearbox
 from .scene import Hub as Hub
-from .scene import Rollers as Rollers
 from .scene import Scene as Scene
 from .scene import Spread as Spread
-from .scene import Springs as Springs
