@@ -1,9 +1,10 @@
 """Parametric drivetrain parts, built with gmsh's OpenCASCADE kernel; no mechanics in here."""
 
-from .assembly import WIDEST, build, refuse_millimetres
+from .assembly import build
 from .bearing import Bearing
 from .body import BodySizes
 from .element_sizes import MeshSizes, size_name
+from .fits import WIDEST, check_parts, refuse_millimetres
 from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
@@ -31,6 +32,7 @@ __all__ = [
     "Solid",
     "apply_local_sizes",
     "build",
+    "check_parts",
     "gmsh_session",
     "refuse_millimetres",
     "size_name",

@@ -13,13 +13,9 @@ from fe_drivetrain.common.errors import InputError
 from .bearing import Bearing
 from .element_sizes import SIZE_PER_WALL, MeshSizes, apply_sizes, size_name
 from .faces import CAD_TOLERANCE, at_radius, boundary, in_plane, middle, shared
+from .fits import check_parts
 from .housing import Housing
-from .part import LENGTH_TOLERANCE
 from .shaft import Shaft
-
-WIDEST, LONGEST = 50.0, 1000.0
-"""A part wider or longer than this (m) is in millimetres: the widest rotors of turbines have 12 m.
-"""
 
 
 def build(
@@ -54,13 +50,7 @@ def build(
     InputError
         The parts do not fit together.
     """
-    _check_names(shaft, bearings, housings, bonded)
-    _check_units(shaft, bearings, housings)
-    bores = {b.name: _bore(shaft, b) for b in bearings}
-    for bearing in bearings:
-        bearing.check_bore(bores[bearing.name])
-        if bearing.name in housings:
-            housings[bearing.name].check_fits(bearing, shaft)
+    bores = check_parts(shaft, bearings, housings, bonded)
     _check_sizes(shaft, bearings, housings, bores, sizes)
 
     solids: dict[str, int] = {}
@@ -143,87 +133,6 @@ def _name_faces(
             name_faces(f"{owner}.base", bases[owner])
         else:
             name_faces(f"{owner}.base", in_plane(faces[owner], 2, -housings[name].centre_height))
-
-
-def _check_names(
-    shaft: Shaft | None,
-    bearings: Sequence[Bearing],
-    housings: Mapping[str, Housing],
-    bonded: frozenset[str],
-) -> None:
-    names = [b.name for b in bearings]
-    known = ", ".join(names) or "none"
-    if shaft is None and not names:
-        raise InputError("assembly: it has no shaft and no bearing: give at least one part")
-    for first, second in combinations(names, 2):
-        if first == second:
-            raise InputError(f"bearing {first!r} is given twice: give each bearing its own name")
-    for name in housings:
-        if name not in names:
-            raise InputError(f"housing {name!r} has no bearing of that name: use one of {known}")
-    for name in sorted(bonded):
-        if name not in housings:
-            raise InputError(
-                f"bonded bearing {name!r} has no bearing and housing of that name: use one of "
-                f"{', '.join(housings) or 'none'}"
-            )
-
-
-def _check_units(
-    shaft: Shaft | None, bearings: Sequence[Bearing], housings: Mapping[str, Housing]
-) -> None:
-    """Refuse parts of a size that only millimetres taken for metres explain."""
-    extents = [(f"bearing {b.name!r}", b.width, b.raceway_diameter) for b in bearings]
-    extents += [
-        (f"housing of {name!r}", max(h.width, h.foot_width), max(h.foot_length, h.centre_height))
-        for name, h in housings.items()
-    ]
-    if shaft is not None:
-        wide = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
-        extents.append(("shaft", shaft.length, wide))
-    for part, long, wide in extents:
-        refuse_millimetres(part, long, wide)
-
-
-def refuse_millimetres(part: str, long: float, wide: float) -> None:
-    """Refuse a part of implausible size.
-
-    Parameters
-    ----------
-    part : str
-        What it is, for the message.
-    long, wide : float
-        Its extents along x and across, m.
-
-    Raises
-    ------
-    InputError
-    """
-    if long > LONGEST or wide > WIDEST:
-        raise InputError(
-            f"{part} is {long:g} m long and {wide:g} m wide, but must be at most {LONGEST:g} m "
-            f"long and {WIDEST:g} m wide: lengths are in metres, {long / 1000:g} and "
-            f"{wide / 1000:g} m if these were millimetres"
-        )
-
-
-def _bore(shaft: Shaft | None, bearing: Bearing) -> float:
-    """Diameter of the bore of a bearing, m."""
-    if shaft is None:
-        if bearing.bore_diameter is None:
-            raise InputError(
-                f"bearing {bearing.name!r} has no bore_diameter and there is no shaft to take it "
-                "from: give bore_diameter in m"
-            )
-        return bearing.bore_diameter
-    seat = shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
-    bore = bearing.bore_diameter
-    if bore is not None and abs(bore - seat) > LENGTH_TOLERANCE:
-        raise InputError(
-            f"parts 'shaft' and {bearing.name!r} do not fit: bore_diameter is {bore:g} m but the "
-            f"shaft is {seat:g} m there: leave bore_diameter out or make the two equal"
-        )
-    return seat
 
 
 def _check_sizes(

@@ -10,8 +10,8 @@ from pydantic import Field, model_validator
 
 from fe_drivetrain.common.errors import InputError
 
-from .assembly import refuse_millimetres
 from .body import BodySizes, annulus, cylinder_faces, name_and_size, plane_faces
+from .fits import refuse_millimetres
 from .part import LENGTH_TOLERANCE, Part, dimension
 
 

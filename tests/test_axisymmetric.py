@@ -32,7 +32,7 @@ from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.solve.solid import solve_solid
 
 STEEL = MATERIALS["steel"]
-CORK = Material(youngs_modulus=1e10, poisson_ratio=0.0, density=1.0)
+CORK = Material(youngs_modulus=1e10, poisson_ratio=0.0, density=1000.0)
 
 TUBE = Shaft(front=-2.0, sections=[Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3)])
 RING = Shaft(front=0.0, sections=[Section(length=0.1, outer_diameter=0.7, inner_diameter=0.3)])

@@ -9,9 +9,10 @@ import pytest
 
 from fe_drivetrain.geometry import Bearing, Flange, Housing, MeshSizes, Section, Shaft
 from fe_drivetrain.response.model import mesh_scene
+from fe_drivetrain.scene.bearing_unit import BearingUnit
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.reading import parse_scene
-from fe_drivetrain.scene.scene import BearingUnit, Gearbox, Hub, Scene, Spread
+from fe_drivetrain.scene.scene import Gearbox, Hub, Scene, Spread
 
 ROOT = Path(__file__).parents[1]
 SCENE_DOC = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")

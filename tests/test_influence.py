@@ -173,7 +173,7 @@ def test_a_shaft_bends_under_a_push_as_a_cantilever():
 
     Without Poisson's ratio, for a clamp that hinders it stiffens the rod by a part of its diameter.
     """
-    cork = Material(youngs_modulus=1e10, poisson_ratio=0.0, density=1.0)
+    cork = Material(youngs_modulus=1e10, poisson_ratio=0.0, density=1000.0)
     length, diameter, width = 3.0, 0.3, 0.1
     rod = Shaft(front=0.0, sections=[Section(length=length, outer_diameter=diameter)])
     mesh = meridian(rod.cut([length - width]), 0.15, order=5, layers=2)

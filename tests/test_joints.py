@@ -9,10 +9,11 @@ from conftest import coarse_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness
-from fe_drivetrain.interfaces.joints import in_series, joint_stiffness, roller_lines, roller_loads
+from fe_drivetrain.interfaces.joints import in_series, roller_loads
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
+from fe_drivetrain.scene.joint_springs import joint_stiffness, roller_lines
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.scene import Scene
 
@@ -172,9 +173,8 @@ def test_a_rigid_bedplate_is_the_ground(bonded_response: Response) -> None:
 def test_rollers_without_thrust_leave_the_shaft_free() -> None:
     radial = {"count": 12, "stiffness": 1e9, "rows": [{"x": -0.04}, {"x": 0.04}]}
     scene = with_unit(coarse_scene("bonded"), interface="rollers", rollers=radial)
-    free = change_scene(scene, {"gearbox.stiffness": [0, 8e7, 8e7, "rigid", 0, 0]})
     with pytest.raises(InputError, match="main_bearing can move freely along x"):
-        build_model(free, mesh_scene(free))
+        change_scene(scene, {"gearbox.stiffness": [0, 8e7, 8e7, "rigid", 0, 0]})
 
 
 @pytest.mark.parametrize(
@@ -185,7 +185,7 @@ def test_rollers_without_thrust_leave_the_shaft_free() -> None:
         ("bonded", {"interface": "rollers"}, "no rollers: add it"),
         ("bonded", {"bedplate": [1e9, 1e9, 0, 1e8, 1e8, 1e8]}, "greater than 0"),
         ("bonded", {"bedplate": [1e9] * 5}, "at least 6 values"),
-        ("bonded", {"interface": "spring", "stiffness": [-1.0] * 6}, "from 0 to"),
+        ("bonded", {"interface": "spring", "stiffness": [-1.0] * 6}, "must be 0, a number from"),
         ("bonded", {"interface": "spring", "stiffness": [[1.0] * 6, 0, 0, 0, 0, 0]}, "six rows"),
         (
             "bonded",

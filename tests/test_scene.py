@@ -61,9 +61,9 @@ def test_round_trip_through_a_change():
         ({"gearbox.stiffness": [1, 2, 3]}, "gearbox.stiffness"),
         (
             {"gearbox.stiffness": [-1, 0, 0, 0, 0, 0]},
-            "-1 must be a number from 0 to 1e.16 .*, or 'rigid'",
+            "-1 must be 0, a number from 1e-06 to 1e.16 .*, or 'rigid'",
         ),
-        ({"gearbox.stiffness": [1e60, 0, 0, 0, 0, 0]}, "1e.60 must be a number from 0 to"),
+        ({"gearbox.stiffness": [1e60, 0, 0, 0, 0, 0]}, "1e.60 must be 0, a number from 1e-06 to"),
         (
             {"gearbox.stiffness": ["ridgid", 0, 0, 0, 0, 0]},
             "'ridgid' but must be a number.* or 'rigid'",
@@ -78,6 +78,8 @@ def test_round_trip_through_a_change():
         ),
         ({"shaft.sections.1.length": 1}, "no '1'; there are 0 to 0"),
         ({"gearbox.stiffness": [".nan", 0, 0, 0, 0, 0]}, "gearbox.stiffness"),
+        ({"gearbox.stiffness": [1e-300, 0, 0, 0, 0, 0]}, "1e-300 must be 0, a number from 1e-06"),
+        ({"gearbox.weight": 1e308}, r"gearbox.weight is 1e\+308 but must be at most 1e\+09"),
         ({"gearbox.weight": -1}, "gearbox.weight is -1 but must be at least 0 .weight"),
         ({"gearbox.stiffness": [True, 0, 0, 0, 0, 0]}, "gearbox.stiffness"),
         ({"bearing_units.0.bearing.name": "gearbox"}, "not be one of shaft, hub, gearbox"),

@@ -64,8 +64,8 @@ def test_a_ring_stiffens_the_beam():
         (
             {
                 "shaft.sections": [
-                    {"length": 1.0, "outer_diameter": 0.4},
-                    {"length": 1.2, "outer_diameter": 0.5},
+                    {"length": 1.5, "outer_diameter": 0.4},
+                    {"length": 0.7, "outer_diameter": 0.5},
                 ]
             },
             "several diameters",

@@ -92,17 +92,19 @@ def test_shares_of_sobol_agree_with_the_plane() -> None:
 
 
 def test_shares_of_an_interaction_are_seen() -> None:
-    """x y with both even on 0 to 2 times their mean: first 3/7 each, and 1/7 together."""
+    """x y, both even within a share w of their mean: first 1 / (2 + w^2 / 3) each."""
 
     def product(scene: Scene) -> dict[str, float]:
         material = scene.material_of("shaft")
         return {"xy": material.youngs_modulus / 200e9 * material.density / 7850}
 
-    even = {"uniform": 0.9999}
+    w = 0.99
+    even = {"uniform": w}
+    first = 1 / (2 + w**2 / 3)
     scene = uncertain({MODULUS: even, "materials.steel.density": even})
     found = sobol_shares(scene, product, ["xy"], count=1024)["xy"]
-    assert (np.abs(found.first - 3 / 7) < 3 * found.first_error).all()
-    assert (np.abs(found.total - 4 / 7) < 3 * found.total_error).all()
+    assert (np.abs(found.first - first) < 3 * found.first_error).all()
+    assert (np.abs(found.total - (1 - first)) < 3 * found.total_error).all()
     assert found.first_error.max() < 0.05
 
 

@@ -18,9 +18,9 @@ from fe_drivetrain.cases.fidelity.joint_ladder import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.fidelity import meridian_shaft
-from fe_drivetrain.interfaces import joint_stiffness, roller_lines, roller_loads
+from fe_drivetrain.interfaces import roller_loads
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Scene, change_scene, library_scene
+from fe_drivetrain.scene import Scene, change_scene, joint_stiffness, library_scene, roller_lines
 from fe_drivetrain.suite import Page, Run
 
 SCENE = "main_bearing_spherical"

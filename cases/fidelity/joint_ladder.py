@@ -10,9 +10,9 @@ import numpy as np
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.fidelity import shaft_level, unit_stiffness
-from fe_drivetrain.interfaces import in_series, joint_stiffness
+from fe_drivetrain.interfaces import in_series
 from fe_drivetrain.response import Model, Response, build_model, mesh_scene, unit_load_response
-from fe_drivetrain.scene import Scene, change_scene
+from fe_drivetrain.scene import Scene, change_scene, joint_stiffness
 from fe_drivetrain.solve import Condensed
 
 BEARING = "main_bearing"

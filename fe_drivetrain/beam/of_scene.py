@@ -10,7 +10,8 @@ from fe_drivetrain.beam.closed_forms import MainBearingBeam
 from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Bearing
-from fe_drivetrain.scene.scene import Scene, as_numbers
+from fe_drivetrain.scene.joint_springs import as_numbers
+from fe_drivetrain.scene.scene import Scene
 
 
 def beam_of_scene(

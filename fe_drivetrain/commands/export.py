@@ -295,13 +295,26 @@ def _write_modes(found: Scene | Component, wanted: Export, modes: int) -> str:
 
     is_level_2_shaft = wanted.what in (None, _SHAFT) and wanted.level in (None, _AUTO, "2")
     if not isinstance(found, Scene) or not is_level_2_shaft or wanted.format != "json":
-        raise InputError("--modes works for the level-2 shaft in json only; drop the other options")
+        raise InputError(_modes_fault(found, wanted))
     with show_steps() as report:
         report("condense")
         body = craig_bampton_shaft(found, modes, wanted.points)
         report("write")
         write_craig_bampton(wanted.out, body)
     return f"shaft at {', '.join(body.points)}, free, with {len(body.omega)} modes"
+
+
+def _modes_fault(found: Scene | Component, wanted: Export) -> str:
+    """Which option --modes cannot go with."""
+    from fe_drivetrain.scene.scene import Scene
+
+    if not isinstance(found, Scene):
+        return "--modes is for the shaft of a scene, not for a component: leave --modes out"
+    if wanted.what not in (None, _SHAFT):
+        return f"--modes is for the free shaft, not for --what {wanted.what}: leave --what out"
+    if wanted.format != "json":
+        return f"--modes is written in json, not as --format {wanted.format}: give --format json"
+    return f"--modes is for the shaft of level 2, not --level {wanted.level}: leave --level out"
 
 
 def _write_summary(scene: Scene, wanted: Export) -> str:

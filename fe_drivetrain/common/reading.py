@@ -44,6 +44,10 @@ def read_text(path: str | Path, kind: str) -> str:
     """
     path = Path(path)
     try:
+        if path.exists() and not path.is_file():  # a pipe would wait for ever
+            raise InputError(
+                f"cannot read {kind} file {path}: it is a folder, a pipe or a device: give a file"
+            )
         with path.open("rb") as file:
             content = file.read(_MAX_BYTES + 1)
         if len(content) > _MAX_BYTES:

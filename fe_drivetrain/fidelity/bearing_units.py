@@ -13,10 +13,11 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.interfaces import constraints
-from fe_drivetrain.interfaces.joints import in_series, joint_stiffness, roller_joint
+from fe_drivetrain.interfaces.joints import in_series, roller_joint
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.scene.component import Attachment
-from fe_drivetrain.scene.scene import Coupling, Scene, as_numbers
+from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
+from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.coupled_solid import coupled_solid, point_compliance
 
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all

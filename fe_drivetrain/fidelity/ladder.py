@@ -25,9 +25,9 @@ from fe_drivetrain.fidelity.shafts import (
     ringed_shaft,
 )
 from fe_drivetrain.geometry import unit_solids
-from fe_drivetrain.interfaces.joints import joint_stiffness
 from fe_drivetrain.response.model import LOADS, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
+from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.condensation import Condensed, supported
 

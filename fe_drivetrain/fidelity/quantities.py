@@ -17,7 +17,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.response.model import LOADS
-from fe_drivetrain.scene.scene import SPHERICAL_JOINTS, Scene
+from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import Condensed, keep_points
 
 #: Of the free shaft between hub and gearbox, the gearbox end held; place among six components.

@@ -66,13 +66,19 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     if not cells:
         raise InputError(f"hub loads '{file}': empty; begin with the header '{_CSV_EXAMPLE}'")
     header, rows, body = cells[0], rows[1:], cells[1:]
+    if len(header) == 1 and ";" in header[0]:
+        raise InputError(
+            f"hub loads '{file}': columns are separated by semicolons but must be by commas, and "
+            "decimals must have a point: export the table so"
+        )
     places = _csv_places(file, header)
     for number, row in zip(rows, body, strict=False):
         # more cells than columns: decimal commas would shift every number into another column
         if any(cell.strip() for cell in row[len(header) :]):
             raise InputError(
                 f"hub loads '{file}': line {number} has {len(row)} values for {len(header)} "
-                "columns; write decimals with a point, and one value for each column"
+                "columns, as decimal commas make: write decimals with a point, and one value for "
+                "each column"
             )
     channels: dict[str, Channel] = {}
     for name, (place, unit) in places.items():
@@ -82,6 +88,11 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
             try:
                 values[i] = parse_number(text)
             except ValueError as error:
+                if re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", text, re.IGNORECASE):
+                    raise InputError(
+                        f"hub loads '{file}': line {rows[i]}, column {name}: {shown(text)} has a "
+                        "decimal comma: write decimals with a point"
+                    ) from error
                 raise InputError(
                     f"hub loads '{file}': line {rows[i]}, column {name}: {shown(text)} is not a "
                     "number; "

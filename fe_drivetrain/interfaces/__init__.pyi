@@ -14,9 +14,7 @@ from .constraints import rigid_face as rigid_face
 from .constraints import rigid_point as rigid_point
 from .constraints import sliding_sphere as sliding_sphere
 from .joints import in_series as in_series
-from .joints import joint_stiffness as joint_stiffness
 from .joints import roller_joint as roller_joint
-from .joints import roller_lines as roller_lines
 from .joints import roller_loads as roller_loads
 from .joints import spring_joint as spring_joint
 from .mechanisms import WEAK as WEAK

@@ -19,7 +19,8 @@ from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
 from fe_drivetrain.mesh.facets import MEANS, face_weights, facet_points
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.scene.scene import SPHERICAL_JOINTS, BearingUnit, Rollers, as_numbers
+from fe_drivetrain.scene.bearing_unit import BearingUnit
+from fe_drivetrain.scene.joint_springs import roller_contacts, rollers_of, spring_matrix
 
 SECTORS = 8
 """A mean over a face is the sum of its shares over so many sectors, else each node met each other.
@@ -44,29 +45,6 @@ class Joint:
     springs: tuple[tuple[ReferencePoint, Floats], ...]
 
 
-def joint_stiffness(unit: BearingUnit) -> Floats:
-    """(6, 6) what the joint does between two rigid faces, about the bearing's centre.
-
-    Where it holds rigidly there is inf on the diagonal, and nothing else in that row.
-    """
-    if unit.interface == "bonded":
-        return np.diag(np.full(6, np.inf))
-    if unit.interface in SPHERICAL_JOINTS:
-        return np.diag(np.r_[[np.inf] * 3, [0.0] * 3])
-    if unit.rollers is not None:
-        lines = roller_lines(unit)
-        return np.asarray(unit.rollers.stiffness * lines.T @ lines)
-    return spring_matrix(unit)
-
-
-def spring_matrix(unit: BearingUnit) -> Floats:
-    """(6, 6) of a unit's ``stiffness``, with inf on the diagonal where that is "rigid"."""
-    given = unit.stiffness or ()
-    if any(isinstance(k, tuple) for k in given):
-        return np.array(given, dtype=float)
-    return np.diag(as_numbers(k for k in given if not isinstance(k, tuple)))
-
-
 def in_series(first: Floats, second: Floats) -> Floats:
     """Two (6, 6) springs one behind the other; the second may be rigid or free in some motions.
 
@@ -88,13 +66,6 @@ def in_series(first: Floats, second: Floats) -> Floats:
     else:
         series = first @ np.linalg.solve(first + second, second)
     return np.asarray(0.5 * (series + series.T))
-
-
-def roller_lines(unit: BearingUnit) -> Floats:
-    """(n, 6) lines of contact of all rollers: direction, and its moment about the centre."""
-    places, ways = _contacts(unit)
-    centre = np.array([unit.bearing.x, 0.0, 0.0])
-    return np.hstack([ways, np.cross(places - centre, ways)])
 
 
 def spring_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> Joint:
@@ -150,8 +121,8 @@ def roller_joint(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> Joint:
     n_dofs : int
         Of the model.
     """
-    rollers, bearing = _rollers(unit), unit.bearing
-    places, ways = _contacts(unit)
+    rollers, bearing = rollers_of(unit), unit.bearing
+    places, ways = roller_contacts(unit)
     rows = sorted(row.x for row in rollers.rows)
     low, high = bearing.span
     borders = [low, *(bearing.x + (a + b) / 2 for a, b in pairwise(rows)), high]
@@ -198,34 +169,13 @@ def roller_loads(unit: BearingUnit, motions: Mapping[str, Floats]) -> Floats:
     -------
     (rows, count, m) [N].
     """
-    rollers = _rollers(unit)
-    _, ways = _contacts(unit)
+    rollers = rollers_of(unit)
+    _, ways = roller_contacts(unit)
     found = [
         rollers.stiffness * way @ motions[f"{unit.bearing.name}.roller {number}"][:3]
         for number, way in enumerate(ways, 1)
     ]
     return np.reshape(found, (len(rollers.rows), rollers.count, -1))
-
-
-def _rollers(unit: BearingUnit) -> Rollers:
-    assert unit.rollers is not None  # as its interface needs
-    return unit.rollers
-
-
-def _contacts(unit: BearingUnit) -> tuple[Floats, Floats]:
-    """(n, 3) places of all rollers, row by row from +y on towards z, and their lines of contact."""
-    bearing, rollers = unit.bearing, _rollers(unit)
-    angle = 2.0 * np.pi * np.arange(rollers.count) / rollers.count
-    places, ways = [], []
-    for row in rollers.rows:
-        radius, lean = bearing.raceway_diameter / 2, np.radians(row.contact_angle)
-        if bearing.kind == "spherical":
-            lean = np.arcsin(row.x / radius)
-            radius *= np.cos(lean)
-        round_ = np.column_stack([np.zeros_like(angle), np.cos(angle), np.sin(angle)])
-        places.append(radius * round_ + [bearing.x + row.x, 0.0, 0.0])
-        ways.append(np.cos(lean) * round_ + [np.sin(lean), 0.0, 0.0])
-    return np.vstack(places), np.vstack(ways)
 
 
 def _sides(unit: BearingUnit) -> tuple[tuple[str, float], tuple[str, float]]:

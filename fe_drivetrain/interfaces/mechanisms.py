@@ -11,17 +11,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.free_motions import NULL, described_motion, null_space, sparsest
 from fe_drivetrain.common.spatial import rigid_motions
-from fe_drivetrain.interfaces.constraints import AXES, Constraint, ReferencePoint
+from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
 from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.mesh import Mesh
-
-# Relative to constraint rows of size one: far above round-off, far below any real restraint.
-_NULL = 1e-9
 
 _EPSILON = float(np.finfo(np.float64).eps)
 
@@ -139,9 +136,9 @@ def find_mechanisms(
         values, vectors = np.linalg.eigh(stiffness)
         active = vectors[:, values > 0.0]
         restraints.append(active.T @ (point.motion @ motions))
-    null = _null_space(restraints)[:, : 6 * len(free.names)]
-    null = null[np.abs(null).max(axis=1) > _NULL] if null.size else null
-    return [_describe(motion.reshape(-1, 6), free, "freely") for motion in _sparsest(null)]
+    null = null_space(restraints)[:, : 6 * len(free.names)]
+    null = null[np.abs(null).max(axis=1) > NULL] if null.size else null
+    return [_describe(motion.reshape(-1, 6), free, "freely") for motion in sparsest(null)]
 
 
 def refuse_mechanisms(
@@ -185,7 +182,7 @@ def weak_restraints(
         return []
     free = _strain_free(mesh, _n_dofs(mesh, constraints, springs))
     n_moving = 6 * len(free.names)
-    null = _null_space(
+    null = null_space(
         [np.zeros((1, free.motions.shape[1])), *(c.rows @ free.motions for c in constraints)]
     )
     # Roots of energies, so that soft and stiff springs side by side do not drown each other.
@@ -200,7 +197,7 @@ def weak_restraints(
     # The bodies' scale as the unit; what belongs to no body follows the bodies.
     scaled = null[:, :n_moving] * np.repeat(np.sqrt(own), 6)
     left, sizes, _ = np.linalg.svd(scaled, full_matrices=False)
-    kept = sizes > _NULL * sizes.max(initial=0.0)
+    kept = sizes > NULL * sizes.max(initial=0.0)
     basis = (left[:, kept] / sizes[kept]).T @ null
     sizes, right = np.linalg.svd(springs_root @ basis.T)[1:]
     sizes = np.append(sizes, np.zeros(len(basis) - len(sizes)))
@@ -209,7 +206,7 @@ def weak_restraints(
     weak = right[sizes**2 < 2.0 * below] @ basis
     scale = np.abs(weak[:, :n_moving]).max(axis=1, initial=0.0)
     found = []
-    for motion in _sparsest(weak / scale[:, None], n_moving):
+    for motion in sparsest(weak / scale[:, None], n_moving):
         work = float(((springs_root @ motion) ** 2).sum())
         ratio = work / float(own @ free.largest(motion) ** 2)
         if ratio < below:
@@ -262,14 +259,6 @@ def _strain_free(mesh: Mesh, n_dofs: int) -> _StrainFree:
     return _StrainFree(motions, body_of_node, names, centres, length, extents)
 
 
-def _null_space(restraints: Sequence[Floats]) -> Floats:
-    """(n_null, m) orthonormal combinations of motions that no restraint (k, m) feels."""
-    A = linalg.qr(np.vstack(restraints), mode="r")[0]
-    _, sizes, right = np.linalg.svd(A)
-    rank = int((sizes > _NULL * max(sizes[0], 1.0)).sum()) if sizes.size else 0
-    return np.asarray(right[rank:])
-
-
 def _n_dofs(
     mesh: Mesh,
     constraints: Sequence[Constraint],
@@ -280,50 +269,9 @@ def _n_dofs(
     return int(springs[0][0].motion.shape[1]) if springs else 3 * len(mesh.points)
 
 
-def _sparsest(null: Floats, n_columns: int | None = None) -> Floats:
-    """Reduced row echelon form of a null space: each motion moves as few things as it can.
-
-    Of ``n_columns`` columns, all where not given; the others go along.
-    """
-    basis = null.copy()
-    rank = 0
-    # Rotations first: "turns about x" says more than a translation that comes with it.
-    columns = sorted(range(n_columns or basis.shape[1]), key=lambda c: (c // 6, c % 6 < 3, c))
-    for column in columns:
-        if rank == len(basis):
-            break
-        row = rank + int(np.argmax(np.abs(basis[rank:, column])))
-        if abs(basis[row, column]) < 1e-6:
-            continue
-        basis[[rank, row]] = basis[[row, rank]]
-        basis[rank] /= basis[rank, column]
-        others = [r for r in range(len(basis)) if r != rank]
-        basis[others] -= np.outer(basis[others, column], basis[rank])
-        rank += 1
-    return basis[:rank]
-
-
 def _describe(motion: Floats, free: _StrainFree, how: str) -> str:
     """Who moves and how: "freely" or "nearly"."""
-    names, length = free.names, free.length
-    moving = [b for b in range(len(names)) if np.abs(motion[b]).max() > 1e-6]
-    parts = [name for b in moving for name in names[b]]
-    subject = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
-    translation, rotation = motion[moving[0]][:3], motion[moving[0]][3:] / length
-    turn = np.linalg.norm(rotation)
-    move, spin = (f"{v} freely" if how == "freely" else f"{how} {v}" for v in ("move", "turn"))
-    if turn * length < 1e-6:
-        return f"{subject} can {move} along {_direction(translation)}"
-    # The point of the axis that is nearest to the body's centre.
-    through = free.centres[moving[0]] + np.cross(rotation, translation) / turn**2
-    through = through - rotation * (rotation @ through) / turn**2
-    at = ", ".join(f"{x:.3g}" for x in np.where(np.abs(through) < 1e-6 * length, 0.0, through))
-    return f"{subject} can {spin} about {_direction(rotation)} through ({at}) m"
-
-
-def _direction(vector: Floats) -> str:
-    unit = vector / np.linalg.norm(vector)
-    axis = int(np.argmax(np.abs(unit)))
-    if abs(unit[axis]) > 1 - 1e-6:
-        return AXES[axis]
-    return "the direction (" + ", ".join(f"{x:.3g}" for x in unit) + ")"
+    moving = [b for b in range(len(free.names)) if np.abs(motion[b]).max() > 1e-6]
+    parts = [name for b in moving for name in free.names[b]]
+    first = moving[0]
+    return described_motion(parts, motion[first], free.centres[first], free.length, how)

@@ -9,6 +9,7 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import (
     HEXAHEDRON_EDGES,
     HEXAHEDRON_FACES,
@@ -118,6 +119,7 @@ def facet_points(points: Floats, facets: Ints, degree: int | None = None) -> Fac
     degree : int or None
         Of the quadrature; that of the kind where not given.
     """
+    check_nodes(facets, len(points), "facet")
     kind = facet_kind(facets.shape[1])
     X, W = get_quadrature(kind.element.refdom, kind.degree if degree is None else degree)
     values, gradients = kind.shape(X)
@@ -161,6 +163,7 @@ def volume_weights(points: Floats, cells: Ints, n_nodes: int) -> Floats:
     n_nodes : int
         Length of the result.
     """
+    check_nodes(cells, len(points))
     kind = element_kind(cells.shape[1])
     X, W = get_quadrature(kind.element.refdom, kind.degree)
     values, gradients = kind.shape(X)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind, is_straight
 from fe_drivetrain.operator import kernels
 
@@ -42,7 +43,13 @@ def sparsity(cells: Ints, n_nodes: int) -> Pattern:
         (n_cells, k) node numbers in VTK's order.
     n_nodes : int
         Number of block rows.
+
+    Raises
+    ------
+    InputError
+        A cell has a node that there is not.
     """
+    check_nodes(cells, n_nodes)
     return Pattern(*kernels.sparsity(np.ascontiguousarray(cells, dtype=np.int32), n_nodes))
 
 
@@ -75,7 +82,13 @@ def assemble(
     -------
     stiffness
         Symmetric (n_dofs, n_dofs) in 3x3 blocks [N/m].
+
+    Raises
+    ------
+    InputError
+        A cell has a node that there is not.
     """
+    check_nodes(cells, len(points))
     n_blocks = len(points) if n_dofs is None else n_dofs // 3
     kind = element_kind(cells.shape[1])
     pattern = pattern or sparsity(cells, n_blocks)

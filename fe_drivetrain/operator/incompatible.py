@@ -17,6 +17,7 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
@@ -44,6 +45,7 @@ def assemble(
             f"incompatible modes are for hexahedra of 8 nodes, not for elements of "
             f"{cells.shape[1]}: elements of second order bend as they are"
         )
+    check_nodes(cells, len(points))
     size = 3 * len(points) if n_dofs is None else n_dofs
     rows = np.concatenate(
         [_condensed(points, cells[chunk], lame) for chunk in chunks(len(cells), CHUNK // 4)]

@@ -21,6 +21,7 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
@@ -54,6 +55,7 @@ def assemble(
     InputError
         The elements are tetrahedra of four nodes.
     """
+    check_nodes(cells, len(points))
     size = 3 * len(points) if n_dofs is None else n_dofs
     rows = np.concatenate(
         [_projected(points, cells[chunk])[0] for chunk in chunks(len(cells), CHUNK // 4)]

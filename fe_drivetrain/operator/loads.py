@@ -7,6 +7,7 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 
 Traction = Callable[[Floats, Floats], Floats]
@@ -77,6 +78,7 @@ def body_loads(
     forces
         (n_dofs,) [N].
     """
+    check_nodes(cells, len(points))
     kind = element_kind(cells.shape[1])
     X, W = get_quadrature(kind.element.refdom, _DEGREE)
     values, gradients = kind.shape(X)

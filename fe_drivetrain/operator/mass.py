@@ -7,6 +7,7 @@ from scipy import sparse
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 
 _DEGREE = 6  # exact where sides are straight; curved ones add what the stiffness neglects, too
@@ -30,6 +31,7 @@ def mass_matrix(points: Floats, cells: Ints, density: float, n_dofs: int) -> spa
     -------
     (n_dofs, n_dofs) [kg]
     """
+    check_nodes(cells, len(points))
     kind = element_kind(cells.shape[1])
     X, W = get_quadrature(kind.element.refdom, _DEGREE)
     values, gradients = kind.shape(X)

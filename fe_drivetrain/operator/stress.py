@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import ElementKind, element_kind, jacobian, shape_functions
 
 
@@ -40,6 +41,7 @@ def stresses(
 
 def strains(points: Floats, cells: Ints, u: Floats, at: Floats) -> Floats:
     """Strains inside the elements, as `stresses`; shear strains are those of the tensor."""
+    check_nodes(cells, len(points))
     kind = element_kind(cells.shape[1])
     gradients = kind.shape(at)[1]
     displacements = u[: 3 * len(points)].reshape(-1, 3)

@@ -19,7 +19,9 @@ from fe_drivetrain.mesh.checks import refuse_unsound
 from fe_drivetrain.mesh.facets import MEANS, face_weights, volume_weights
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.operator.incompressible import assemble_unlocked, warn_of_averaging
-from fe_drivetrain.scene.scene import BearingUnit, Scene, Springs, as_numbers
+from fe_drivetrain.scene.bearing_unit import BearingUnit, Springs
+from fe_drivetrain.scene.joint_springs import as_numbers
+from fe_drivetrain.scene.scene import Scene
 
 #: The unit loads of every scene, in the order of the columns of every response: hub forces [N] and
 #: moments [N m], a uniform acceleration [m/s^2] along each axis, 1 N of gearbox weight (along -z).

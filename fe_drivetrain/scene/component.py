@@ -15,10 +15,11 @@ from pydantic import Field, model_validator
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
+from fe_drivetrain.scene.bearing_unit import Keys
 from fe_drivetrain.scene.materials import Material, known_materials
 from fe_drivetrain.scene.scene import (
+    HEAVIEST,
     Coupling,
-    Keys,
     check_material,
 )
 
@@ -75,9 +76,7 @@ class HousingComponent(Keys):
     gearbox_housing: GearboxHousing
     bushings: Bushings
     ring: Reference = Reference()
-    weight: float = Field(
-        default=0.0, ge=0, allow_inf_nan=False, description="weight [N], along -z"
-    )
+    weight: float = Field(default=0.0, ge=0, le=HEAVIEST, description="weight [N], along -z")
     materials: Mapping[str, Material] = {}
     mesh: BodySizes = BodySizes()
 

@@ -12,6 +12,10 @@ HIGHEST_POISSON_RATIO = 0.499999
 (``cases/stability/volumetric_locking.py``); and here already they are those of 1/2."""
 
 
+LOWEST_DENSITY = 50.0
+"""Of anything that carries a load [kg/m^3]; lower ones are in t/m^3 or g/cm^3."""
+
+
 class Material(BaseModel):
     """A linear elastic, isotropic material."""
 
@@ -26,6 +30,16 @@ class Material(BaseModel):
         float, Field(gt=-1, le=HIGHEST_POISSON_RATIO, description="Poisson's ratio nu [-]")
     ]
     density: Annotated[float, Field(ge=0, le=1e5, description="density rho [kg/m^3]")]
+
+    @field_validator("density")
+    @classmethod
+    def _in_si_units(cls, density: float) -> float:
+        if 0 < density < LOWEST_DENSITY:
+            raise ValueError(
+                f"must be 0 (no mass), or from {LOWEST_DENSITY:g} to 1e5 kg/m^3: "
+                f"{1000 * density:g} if it is in t/m^3 or g/cm^3"
+            )
+        return density
 
     @property
     def shear_modulus(self) -> float:

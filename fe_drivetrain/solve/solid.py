@@ -10,6 +10,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import Constraint, eliminate, held_dofs
 from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.operator.elements import check_elements
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import Diagnostics, solve
 
@@ -81,9 +82,25 @@ def solve_solid(
     Raises
     ------
     InputError
-        The solid is not held, two constraints hold one degree of freedom, or an element has no
-        volume.
+        A cell has a node that there is not, or is folded over; a node belongs to no cell and is
+        not held; the solid is not held, or two constraints hold one degree of freedom.
     """
+    for some, _ in _parts(cells, lame):
+        check_elements(points, some)
+    return solve_unchecked(points, cells, lame, constraints, F, prescribed, method, assembly)
+
+
+def solve_unchecked(
+    points: Floats,
+    cells: Ints | Sequence[tuple[Ints, Lame]],
+    lame: Lame | None,
+    constraints: Sequence[Constraint],
+    F: Floats,
+    prescribed: tuple[Ints, Floats] | None = None,
+    method: str = "auto",
+    assembly: Assembly = assemble,
+) -> Static:
+    """`solve_solid` of elements that may be folded over: to see what becomes of the result."""
     parts = _parts(cells, lame)
     loads = F.reshape(len(F), -1)
     n = len(loads)
@@ -98,6 +115,7 @@ def solve_solid(
     if prescribed is not None:
         held.append(held_dofs("prescribed", prescribed[0], n))
         loads = np.broadcast_to(loads, (n, max(loads.shape[1], _columns(prescribed[1]))))
+    _refuse_orphans(points, parts, held)
     elimination = eliminate(held, n)
     offset = np.zeros_like(loads, dtype=float)
     if prescribed is not None:
@@ -111,6 +129,28 @@ def solve_solid(
     multipliers = elimination.multipliers(Ku - loads)
     reactions = {c.name: c.rows.T @ multipliers[c.name] for c in held}
     return Static(u, reactions, 0.5 * np.einsum("nm,nm->m", u, Ku), K, solution.diagnostics)
+
+
+def _refuse_orphans(
+    points: Floats, parts: Sequence[tuple[Ints, Lame]], held: Sequence[Constraint]
+) -> None:
+    """Refuse nodes that nothing holds: they belong to no cell, and no constraint has them."""
+    alone = np.ones(len(points), dtype=bool)
+    for cells, _ in parts:
+        alone[cells] = False
+    if not alone.any():
+        return
+    for constraint in held:
+        columns = np.unique(constraint.rows.indices) // 3
+        alone[columns[columns < len(points)]] = False
+    orphans = np.flatnonzero(alone)
+    if orphans.size:
+        others = f" (and {orphans.size - 1} more nodes)" if orphans.size > 1 else ""
+        at = ", ".join(f"{x:.3g}" for x in points[orphans[0]])
+        raise InputError(
+            f"node {orphans[0]} at ({at}) m belongs to no cell{others}, so that nothing holds it: "
+            "remove it with fe_drivetrain.mesh.renumbered, or hold it"
+        )
 
 
 def _parts(cells: Ints | Sequence[tuple[Ints, Lame]], lame: Lame | None) -> list[tuple[Ints, Lame]]:

@@ -9,6 +9,7 @@ import pkgutil
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -156,8 +157,13 @@ def find_cases(name: str) -> list[Case]:
         return group
     matches = [c for full, c in cases.items() if name in (full, full.rpartition("/")[2])]
     if len(matches) != 1:
+        known = [m.name for m in matches] or list(cases)
+        by_word = {word: full for full in cases for word in (full, full.rpartition("/")[2])}
+        by_word |= {full.partition("/")[0]: full.partition("/")[0] for full in cases}
+        close = [] if matches else get_close_matches(name, by_word, n=1)
+        hint = f" (did you mean {by_word[close[0]]!r}?)" if close else ""
         raise InputError(
-            f"case {name!r} is {'ambiguous' if matches else 'unknown'}: "
-            f"use one of {', '.join(cases)}"
+            f"case {name!r} is {'ambiguous' if matches else 'unknown'}{hint}: "
+            f"use one of {', '.join(known)}"
         )
     return matches

@@ -11,7 +11,8 @@ from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.report.pictures.surfaces import curved_surface
 
 if TYPE_CHECKING:
-    from fe_drivetrain.scene.scene import BearingUnit, Gearbox
+    from fe_drivetrain.scene.bearing_unit import BearingUnit
+    from fe_drivetrain.scene.scene import Gearbox
 
 FORCE = "#b3261e"
 MOMENT = "#6b3fa0"
