@@ -1,8 +1,10 @@
 """What several test modules use: coarse scenes, built once a session, and commands in a folder."""
 
+import json
 import os
 import shutil
 import signal
+import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass
@@ -12,6 +14,7 @@ from typing import Any
 import hypothesis
 import numpy as np
 import pytest
+from quick_cases import PROBLEMS
 from tiny_case import SCRIPT, Result, count
 
 from fe_drivetrain.commands.app import main
@@ -24,7 +27,6 @@ from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case
-from fe_drivetrain.suite.suite import run_cases
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.
@@ -101,20 +103,51 @@ class QuickRun:
         return read_results(self.folder.joinpath(*name.split("/")) / "results.json")
 
 
-@pytest.fixture(scope="session")
-def quick_run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> QuickRun:
-    """Every case that a selected test wants, side by side on all cores."""
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests of whole cases come last: these run beside all others meanwhile."""
+    items.sort(key=lambda item: item.get_closest_marker("quick") is not None)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def quick_cases(
+    request: pytest.FixtureRequest,
+    tmp_path_factory: pytest.TempPathFactory,
+    apart_from_the_user: None,
+) -> Iterator[tuple[Path, subprocess.Popen[bytes]] | None]:
+    """Every case that a selected test wants, in the background, side by side on all cores."""
     wanted = {
         name
         for item in request.session.items
         for mark in item.iter_markers("quick")
         for name in mark.args
     }
+    if not wanted:
+        yield None
+        return
     folder = tmp_path_factory.mktemp("quick")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv(threads.CORES_VARIABLE)
-        cases = [case for name, case in case_module.all_cases().items() if name in wanted]
-        return QuickRun(folder, run_cases(cases, folder, quick=True))
+    script = Path(__file__).with_name("quick_cases.py")
+    environment = {k: v for k, v in os.environ.items() if k != threads.CORES_VARIABLE}
+    with (
+        folder.with_suffix(".log").open("wb") as log,
+        subprocess.Popen(
+            [sys.executable, str(script), str(folder), *sorted(wanted)],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+        ) as process,
+    ):
+        yield folder, process
+        process.terminate()
+
+
+@pytest.fixture(scope="session")
+def quick_run(quick_cases: tuple[Path, subprocess.Popen[bytes]]) -> QuickRun:
+    """Results of those cases, once all are done."""
+    folder, process = quick_cases
+    assert process.wait() == 0, folder.with_suffix(".log").read_text()
+    problems = json.loads((folder / PROBLEMS).read_text())
+    return QuickRun(folder, {name: Problem(*problem) for name, problem in problems.items()})
 
 
 @pytest.fixture(scope="session", autouse=True)

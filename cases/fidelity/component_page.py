@@ -109,7 +109,7 @@ def band_of(sizes: Sequence[float], values: Sequence[float]) -> GridConvergence:
     return grid_convergence(sizes, values, least_order=LEAST_ORDER)
 
 
-def climb(run: Run, component: SomeComponent) -> Ladder:
+def all_levels(run: Run, component: SomeComponent) -> Ladder:
     """Solve a component at every level, and its solid on two coarser meshes, too."""
     models, seconds, coarse, solids = [], [], [], []
     with run.step("frames"):

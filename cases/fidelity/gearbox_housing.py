@@ -13,9 +13,9 @@ from fe_drivetrain.cases.fidelity.component_page import (
     TOLERANCE,
     Ladder,
     Quantity,
+    all_levels,
     assume_dimensions,
     check_rigid_motion,
-    climb,
     coarser,
     show_files,
     show_ladder,
@@ -76,7 +76,7 @@ def run(run: Run, page: Page) -> None:
     component = change_component(component, run.settings)
     if run.quick:
         component = coarser(component, QUICK)
-    ladder = climb(run, component)
+    ladder = all_levels(run, component)
     torsion = ring_stiffness(3)
     show_ladder(
         page,

@@ -1,4 +1,4 @@
-"""Library scenes, each climbed to the top of its model levels, and their stiffness in files."""
+"""Library scenes at all their model levels, and their stiffness in files."""
 
 from typing import Any
 

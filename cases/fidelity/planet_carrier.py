@@ -13,10 +13,10 @@ from fe_drivetrain.cases.fidelity.component_page import (
     SOLVED_REASON,
     Ladder,
     Quantity,
+    all_levels,
     assume_dimensions,
     band_of,
     check_rigid_motion,
-    climb,
     coarser,
     show_files,
     show_ladder,
@@ -70,7 +70,7 @@ def run(run: Run, page: Page) -> None:
     component = change_component(component, run.settings)
     if run.quick:
         component = coarser(component, QUICK)
-    ladder = climb(run, component)
+    ladder = all_levels(run, component)
 
     def wind_up(model: LevelModel) -> float:
         return pin_motions(component, model).wind_up if model.points else float("nan")

@@ -1,7 +1,6 @@
 """Which housing dimensions would give the K_R that the thesis found: families, not one answer."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,244 +16,32 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     ONE_BODY,
     PEDESTAL,
     PUBLISHED,
-    STEEL,
-    WALL,
-    WIDE_RING,
     WIDTH,
-    Form,
     Member,
-    Sampled,
 )
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.cases.main_bearing.housing_families import (
+    TOLERANCE,
+    Family,
+    assembled,
+    band_of,
+    family_of,
+    other_readings,
+    with_wide_ring,
+)
+from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run
 
-#: Housings sampled by form, and the order of the surface through them.
-SAMPLES, BOLTED_SAMPLES, ORDER = 60, 36, 2
-QUICK_SAMPLES, QUICK_ORDER = 10, 1
-#: Walls of the three curves [m], and members on each.
-WALLS, MEMBERS = (0.07, 0.11, 0.15), 6
-QUICK_WALLS, QUICK_MEMBERS = (0.11,), 2
-CLOUD, QUICK_CLOUD = 300, 40
+#: Housings sampled by form.
+SAMPLES, BOLTED_SAMPLES, QUICK_SAMPLES = 60, 36, 10
 QUICK_MESH = 1.25
-#: Relative: half of the last digit of 145 MN m/rad is 0.34 %, and one mesh and the next differ by
-#: some tenths of a percent where no dimension has changed.
-TOLERANCE = 0.005
 #: 0.2 % proof stress of EN-GJS-400-15 (EN 1563) [Pa].
 PROOF = 250e6
 
 NAMES = [d.name for d in DIMENSIONS]
-PAIR = (WIDTH, PEDESTAL)  # solved for along a curve, all else given
 PLANES = ("vertical", "horizontal")
 CENTRE_HEIGHT = "centre_height [m]"
-
-
-@dataclass(frozen=True)
-class Family:
-    """The housings of one form that give both published values.
-
-    Attributes
-    ----------
-    form : Form
-        How they are made and held.
-    samples : Sampled
-        Housings all over the bounds.
-    cloud : array
-        (m, d) dimensions that the surface takes to give both [m].
-    centre : array
-        (d,) medians of the cloud [m].
-    middle : Member
-        A housing near the centre, on the scene's own mesh.
-    coarse_over_fine : array
-        (2, 3) K_R of the middle on the samples' mesh over that on the scene's own.
-    curves : dict
-        By wall [m]: members from low to high, on the samples' mesh.
-    verified : list of Member
-        On the scene's own mesh, the middle first.
-    """
-
-    form: Form
-    samples: Sampled
-    cloud: Floats
-    centre: Floats
-    middle: Member
-    coarse_over_fine: Floats
-    curves: dict[float, list[Member]]
-    verified: list[Member]
-
-    @property
-    def label(self) -> str:
-        """Short, for charts."""
-        return "fixed" if self.form is ONE_BODY else "washers"
-
-    @property
-    def exponents(self) -> Floats:
-        """(2, d) of K_R by four nodes in the middle of the family."""
-        return self.samples.surfaces[0].exponents(self.middle.x)
-
-    def stresses(self, scene: Scene) -> Floats:
-        """At the foot, over the whole cloud [MPa]."""
-        found = [housings.stress_at_foot(housings.housed(scene, self.form, x)) for x in self.cloud]
-        return np.array(found) / 1e6
-
-
-def family_of(run: Run, scene: Scene, form: Form, count: int) -> Family:
-    """Sample the housings of a form, trace those that give both values, and verify some."""
-    with run.step(f"sample housings ({form.title})"):
-        order = QUICK_ORDER if run.quick else ORDER
-        samples = housings.sampled(run, scene, form, count, order)
-    surface = samples.surfaces[0]
-    with run.step("surface"):
-        many = QUICK_CLOUD if run.quick else CLOUD
-        cloud = housings.projected(scene, surface, form, PUBLISHED, many)
-        centre = np.median(cloud, axis=0)
-    # On the samples' mesh and then on the scene's own; the error of the former there.
-    with run.step(f"middle of the family ({form.title})"):
-        rough = housings.member(scene, form, surface, centre, PAIR, PUBLISHED, 0, TOLERANCE)
-        middle = housings.member(
-            scene,
-            form,
-            surface,
-            rough.x,
-            PAIR,
-            PUBLISHED,
-            0,
-            TOLERANCE,
-            scene.mesh,
-            ratio=rough.over(surface, 0),
-        )
-        coarse = housings.solved_coarsely(housings.housed(scene, form, middle.x))
-    coarse_over_fine = coarse.K_R / middle.K_R
-    walls = QUICK_WALLS if run.quick else WALLS if form is ONE_BODY else (float(centre[WALL]),)
-    curves = {}
-    for wall in walls:
-        start = centre.copy()
-        start[WALL] = wall
-        ratio = middle.over(surface, 0) / coarse_over_fine[:, 0]
-        wanted = PUBLISHED * coarse_over_fine[:, 0]
-        curve = curve_of(run, scene, samples, form, start, wanted, ratio)
-        if curve:
-            curves[wall] = curve
-    # ends of all curves that lie farthest apart
-    drawn = sorted((m for c in curves.values() for m in c), key=lambda m: float(m.x[CENTRE]))
-    chosen = [] if run.quick else [drawn[0], drawn[-1]] if len(drawn) > 1 else drawn
-    verified = [middle]
-    for rough in chosen:
-        with run.step(f"verify on the finer mesh ({form.title})"):
-            verified.append(
-                housings.member(
-                    scene,
-                    form,
-                    surface,
-                    rough.x,
-                    (WIDTH, CENTRE, PEDESTAL),
-                    PUBLISHED,
-                    0,
-                    TOLERANCE,
-                    scene.mesh,
-                    ratio=rough.over(surface, 0) * coarse_over_fine[:, 0],
-                )
-            )
-    return Family(form, samples, cloud, centre, middle, coarse_over_fine, curves, verified)
-
-
-def curve_of(
-    run: Run,
-    scene: Scene,
-    samples: Sampled,
-    form: Form,
-    start: Floats,
-    wanted: Floats,
-    ratio: Floats,
-) -> list[Member]:
-    """Members from low to high centres, on the samples' mesh; see `housing_dimensions.member`."""
-    surface = samples.surfaces[0]
-    ends = housings.reach(scene, surface, form, start, CENTRE, PAIR, wanted)
-    if ends is None:
-        return []
-    start, curve = start.copy(), []
-    with run.step(f"family ({form.title})"):
-        # off the ends, where a correction would leave the bounds
-        count = QUICK_MEMBERS if run.quick else MEMBERS
-        for height in ends[0] + np.ptp(ends) * np.linspace(0.04, 0.96, count):
-            start[CENTRE] = height
-            run.report(f"wall {start[WALL]:.3g} m, centre at {height:.3g} m")
-            try:
-                found = housings.member(
-                    scene, form, surface, start, PAIR, wanted, 0, TOLERANCE, ratio=ratio
-                )
-            except InputError:
-                continue  # a correction may leave what can be built
-            if found.miss <= TOLERANCE:
-                curve.append(found)
-                start, ratio = found.x.copy(), found.over(surface, 0)
-    return curve
-
-
-def other_readings(scene: Scene, one: Family) -> list[tuple[str, Member]]:
-    """What the values would mean by another estimator, or in another material."""
-    readings: tuple[tuple[str, Form, int, Floats], ...] = (
-        (
-            "four nodes, the vertical pair turned about a midpoint that stays (290 and 392)",
-            ONE_BODY,
-            0,
-            PUBLISHED * [2.0, 1.0],
-        ),
-        ("averaged seat", ONE_BODY, 1, PUBLISHED),
-        ("energy", ONE_BODY, 2, PUBLISHED),
-        ("four nodes, housing of steel", STEEL, 0, PUBLISHED),
-    )
-    return [
-        (
-            title,
-            housings.member(
-                scene,
-                form,
-                one.samples.surfaces[estimator],
-                one.middle.x,
-                (WIDTH, CENTRE, PEDESTAL),
-                target * one.coarse_over_fine[:, estimator],
-                estimator,
-                TOLERANCE,
-            ),
-        )
-        for title, form, estimator, target in readings
-    ]
-
-
-def with_wide_ring(scene: Scene, one: Family) -> Member:
-    """The nearest housing with a ring of 0.2 m on a fixed underside, all dimensions free."""
-    return housings.member(
-        scene,
-        WIDE_RING,
-        one.samples.surfaces[0],
-        np.maximum(one.middle.x, WIDE_RING.low),
-        tuple(range(len(DIMENSIONS))),
-        PUBLISHED * one.coarse_over_fine[:, 0],
-        0,
-        TOLERANCE,
-        most=2,
-    )
-
-
-def assembled(run: Run, scene: Scene, family: Family) -> bands.Series:
-    """The middle of a family with the whole shaft, independent of the stub, on three meshes."""
-    title = family.form.title
-    assembly = housings.housed(scene, family.form, family.middle.x)
-    with run.side_by_side(3) as jobs:
-        coarser = bands.start(jobs, assembly, title, solved=False, tilted=True)
-        tilt = study.solve_tilt(run, assembly, title, study.mesh_of(run, assembly, title))
-        return coarser.below(bands.of_tilt(tilt))
-
-
-def band_of(family: Family, series: bands.Series | None, plane: int) -> float:
-    """Relative; without a series of meshes, three times the distance of the coarser one."""
-    if series is not None and series.complete:
-        percent = series.percent(lambda f: float(f["K_R"][plane, 0]))
-        assert percent is not None
-        return percent / 100.0
-    return 3.0 * abs(float(family.coarse_over_fine[plane, 0]) - 1.0)
 
 
 def check_family(page: Page, family: Family, series: bands.Series | None) -> None:

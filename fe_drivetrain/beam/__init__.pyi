@@ -1,6 +1,7 @@
 from .beam import Beam as Beam
 from .beam import Support as Support
 from .closed_forms import MainBearingBeam as MainBearingBeam
+from .closed_forms import main_bearing_frame as main_bearing_frame
 from .closed_forms import pinned_model as pinned_model
 from .closed_forms import pinned_reaction as pinned_reaction
 from .closed_forms import torsional_spring_model as torsional_spring_model

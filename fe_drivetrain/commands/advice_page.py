@@ -220,7 +220,7 @@ def advised(
         source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
     )
     page.data(
-        "rungs",
+        "levels",
         [
             {
                 "level": result.model.level,
