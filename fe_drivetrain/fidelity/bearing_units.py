@@ -89,9 +89,45 @@ def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
     float
         Half width of the band of any entry, relative to the diagonal entries of its row and column.
     """
+    soft, stiff, mesh = unit_bounds(scene, name)
+    return stiff, largest_difference(soft, stiff) + mesh
+
+
+class UnitBounds(NamedTuple):
+    """What is known of a bearing unit's stiffness.
+
+    Attributes
+    ----------
+    soft, stiff : Floats
+        (6, 6) with a face that moves on average, and one that keeps its shape; where the joint
+        itself says how it moves, the same [N/m, N, N m/rad].
+    mesh : float
+        Band of the mesh, relative: by it both may be too stiff.
+    """
+
+    soft: Floats
+    stiff: Floats
+    mesh: float
+
+
+def unit_bounds(scene: Scene, name: str) -> UnitBounds:
+    """Stiffness of a bearing unit between its two bounds, and the band of its mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of the bearing.
+
+    Returns
+    -------
+    UnitBounds
+        See there.
+    """
     stiff = _solved_unit(scene, name, "rigid")
     soft = unit_stiffness(scene, name, "averaged")
-    return stiff.stiffness, largest_difference(soft, stiff.stiffness) + _mesh_band(scene, stiff)
+    return UnitBounds(soft, stiff.stiffness, _mesh_band(scene, stiff))
 
 
 class _SolvedUnit(NamedTuple):
@@ -109,10 +145,11 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     parts = [(mesh.cells[mesh.part_cells(p)], scene.material_of(p).lame) for p in unit.parts]
     stiffness = np.linalg.inv(unit.solid.loads.T @ unit.displacements)
     motions = unit.displacements @ stiffness
-    return SAFETY * max(
+    shares = [
         recovery_estimate(mesh.points, parts, u).error_energy / (0.5 * k)
-        for u, k in zip(motions.T, stiffness.diagonal(), strict=True)
-    )
+        for u, k in zip(motions.T, stiffness.diagonal().tolist(), strict=True)
+    ]
+    return SAFETY * float(max(shares))
 
 
 def _solved_unit(
