@@ -98,7 +98,16 @@ def test_bounds_of_k_r_and_reactions_are_in_order(content: SummaryFile) -> None:
     assert found[4, 4] == pytest.approx(top[4, 4], rel=0.15)
 
 
-def test_a_joint_has_no_k_r() -> None:
+def test_a_joint_has_no_k_r_and_bounds_of_all_else() -> None:
+    """The joint says how the face moves, so that the error of the mesh alone is between them."""
+    unit = summary(
+        coarse_scene("spherical", **{"bearing_units.main_bearing.interface": "rigid"}), 1
+    ).bearing_units["main_bearing"]
+    for low, high in (unit.radial_y, unit.radial_z, unit.axial):
+        assert 0 < low < high < 1.5 * low
+
+
+def test_a_sliding_joint_has_no_k_r() -> None:
     unit = summary(coarse_scene("spherical"), 1).bearing_units["main_bearing"]
     assert unit.tilt is None
     assert unit.yaw is None

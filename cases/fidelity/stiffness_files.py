@@ -103,8 +103,9 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
     )
     page.table(
         "Stiffness for other models; bands are of any entry, relative to the diagonal "
-        "entries of its row and column: of the shaft, the difference to elements of one order "
-        "less; of bearings, that between a face held in shape and one that moves on average",
+        "entries of its row and column: of the shaft, what elements of one order more change, "
+        "continued as at a crack; of bearings, the difference between a face held in shape and one "
+        "that moves on average, and what recovered stresses say of the mesh",
         rows,
         ["files", "points", "level", "mesh", "band ± [%]", "mass [kg]"],
     )

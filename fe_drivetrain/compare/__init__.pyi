@@ -8,6 +8,7 @@ from .comparison import Comparison as Comparison
 from .comparison import compare as compare
 from .comparison import compare_streamed as compare_streamed
 from .convergence import DOUBTFUL as DOUBTFUL
+from .convergence import SAFETY as SAFETY
 from .convergence import GridConvergence as GridConvergence
 from .convergence import band_of as band_of
 from .convergence import grid_convergence as grid_convergence

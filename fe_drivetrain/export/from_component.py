@@ -8,11 +8,11 @@ from importlib.metadata import version
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
-from fe_drivetrain.export.from_scene import COARSER, ORDER
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
+from fe_drivetrain.fidelity.shaft_bands import COARSER, ORDER
 from fe_drivetrain.scene.component import Component, HousingComponent, component_hash
 from fe_drivetrain.solve.condensation import Condensed, keep_points
 
@@ -43,7 +43,7 @@ def component_superelement(
     level : int
         1 frame of beams (without mass), 3 solid.
     solids : tuple[SolidComponent, SolidComponent] or None
-        The component's solid, and that with mesh sizes times `scene_superelements.COARSER`, where
+        The component's solid, and that with mesh sizes times `shaft_bands.COARSER`, where
         they are solved already.
 
     Raises

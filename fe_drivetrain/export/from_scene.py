@@ -11,21 +11,19 @@ import numpy as np
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.export.superelement import Origin, Superelement
-from fe_drivetrain.fidelity.bearing_units import unit_stiffness
+from fe_drivetrain.fidelity.bearing_units import banded_unit
 from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft, solid_shaft
+from fe_drivetrain.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
+from fe_drivetrain.fidelity.shafts import beam_shaft
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import keep_points
-
-#: Coarsening, and order of convergence that is relied upon, for the band of a solid shaft.
-COARSER, ORDER = 1.35, 1.0
 
 
 def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None) -> Superelement:
     """The free shaft of a scene, condensed.
 
-    Its band is, of a beam, the difference to the meridian; of the meridian, that to elements of one
-    order less; of a solid, the difference to element size zero estimated from a coarser mesh.
+    Its band is, of a beam, the difference to the meridian and the meridian's own; of the meridian
+    and of a solid see `fe_drivetrain.fidelity.shaft_bands`.
 
     Parameters
     ----------
@@ -41,32 +39,29 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
     InputError
         There is no such level or point.
     """
-    factor = 1.0
     if level == 1:
-        body, other = beam_shaft(scene), meridian_shaft(scene)
+        body = beam_shaft(scene)
+        body = body if at is None else keep_points(body, at)
+        meridian, band = banded_meridian(scene, at)
+        band += largest_difference(meridian.stiffness, body.stiffness)
         level_and_mesh = "1 Timoshenko beam", "none"
     elif level == 2:
-        filleted = any(piece.fillet > 0 for piece in scene.shaft.pieces)
-        order = 4 if filleted else 6
-        body, other = meridian_shaft(scene, order=order), meridian_shaft(scene, order=order - 1)
+        body, band = banded_meridian(scene, at)
+        order = meridian_order(scene)
         level_and_mesh = "2 meridian in harmonics", f"elements of order {order} in the meridian"
     elif level == 3:
-        coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)})
-        body, other = solid_shaft(scene), solid_shaft(coarse)
-        factor = 1.0 / (COARSER**ORDER - 1.0)
+        body, band = banded_solid(scene, at)
         size = f"{scene.mesh.shaft:g} m"
         level_and_mesh = "3 solid shaft with rings", f"curved tetrahedra of second order, {size}"
     else:
         raise InputError(f"level {level} has no free shaft: use one of 1, 2, 3")
-    if at is not None:
-        body, other = keep_points(body, at), keep_points(other, at)
     return Superelement(
         "shaft",
         body.names,
         body.positions,
         body.stiffness,
         body.mass,
-        band=factor * largest_difference(other.stiffness, body.stiffness),
+        band=band,
         origin=scene_origin(scene, *level_and_mesh),
     )
 
@@ -94,17 +89,18 @@ def supported_superelement(
 def unit_superelement(scene: Scene, name: str) -> Superelement:
     """A bearing and its housing on the ground, at the bearing's centre: K_R of both planes, too.
 
-    The shaft is taken to keep its face in shape; the band reaches to a face that moves on average.
+    The shaft is taken to keep its face in shape; the band reaches to a face that moves on average,
+    and holds the error of the mesh: see `fe_drivetrain.fidelity.banded_unit`.
     """
     x = scene.bearing_unit(name).bearing.x
-    stiff, soft = (unit_stiffness(scene, name, coupling=c) for c in ("rigid", "averaged"))
+    stiffness, band = banded_unit(scene, name)
     return Superelement(
         name.replace("-", "_"),
         (name,),
         np.array([[x, 0.0, 0.0]]),
-        stiff,
+        stiffness,
         supported=True,
-        band=largest_difference(soft, stiff),
+        band=band,
         origin=scene_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),
     )
 

@@ -2,6 +2,7 @@ from .ablation import simplified as simplified
 from .adviser import LEAST_ORDER as LEAST_ORDER
 from .adviser import Quantity as Quantity
 from .adviser import advise as advise
+from .bearing_units import banded_unit as banded_unit
 from .bearing_units import scene_supports as scene_supports
 from .bearing_units import unit_stiffness as unit_stiffness
 from .component_frames import housing_frame as housing_frame
@@ -34,5 +35,7 @@ from .over_loads import levels_of as levels_of
 from .over_loads import reaction_history as reaction_history
 from .over_loads import relative_errors as relative_errors
 from .quantities import unit_numbers as unit_numbers
+from .shaft_bands import banded_meridian as banded_meridian
+from .shaft_bands import banded_solid as banded_solid
 from .shafts import beam_shaft as beam_shaft
 from .shafts import meridian_shaft as meridian_shaft

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
@@ -18,7 +20,8 @@ from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
-from fe_drivetrain.solve.coupled_solid import coupled_solid, point_compliance
+from fe_drivetrain.solve.coupled_solid import CoupledSolid, coupled_solid, point_displacements
+from fe_drivetrain.solve.error_estimate import SAFETY, recovery_estimate
 
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
 
@@ -63,6 +66,97 @@ def unit_stiffness(
     -------
     (6, 6) at the bearing's centre, of joint, housing and bedplate in series [N/m, N, N m/rad].
     """
+    return _solved_unit(scene, name, coupling, method, ring).stiffness
+
+
+def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
+    """Stiffness of a bearing unit, its face held in shape, and its band.
+
+    Two things are in the band. The face between shaft and housing keeps its shape, or moves on
+    average only: where the joint itself says which, this leaves nothing open. The mesh makes the
+    solid too stiff: that is estimated from recovered stresses, whatever the joint.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of the bearing.
+
+    Returns
+    -------
+    Floats
+        (6, 6), see `unit_stiffness` [N/m, N, N m/rad].
+    float
+        Half width of the band of any entry, relative to the diagonal entries of its row and column.
+    """
+    soft, stiff, mesh = unit_bounds(scene, name)
+    return stiff, largest_difference(soft, stiff) + mesh
+
+
+class UnitBounds(NamedTuple):
+    """What is known of a bearing unit's stiffness.
+
+    Attributes
+    ----------
+    soft, stiff : Floats
+        (6, 6) with a face that moves on average, and one that keeps its shape; where the joint
+        itself says how it moves, the same [N/m, N, N m/rad].
+    mesh : float
+        Band of the mesh, relative: by it both may be too stiff.
+    """
+
+    soft: Floats
+    stiff: Floats
+    mesh: float
+
+
+def unit_bounds(scene: Scene, name: str) -> UnitBounds:
+    """Stiffness of a bearing unit between its two bounds, and the band of its mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of the bearing.
+
+    Returns
+    -------
+    UnitBounds
+        See there.
+    """
+    stiff = _solved_unit(scene, name, "rigid")
+    soft = unit_stiffness(scene, name, "averaged")
+    return UnitBounds(soft, stiff.stiffness, _mesh_band(scene, stiff))
+
+
+class _SolvedUnit(NamedTuple):
+    """A unit's solid, its parts, displacements (n, 6) for unit loads, and stiffness (6, 6)."""
+
+    solid: CoupledSolid
+    parts: list[str]
+    displacements: Floats
+    stiffness: Floats
+
+
+def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
+    """Band of the mesh, relative: joint and bedplate in series only make its share less."""
+    mesh = unit.solid.mesh
+    parts = [(mesh.cells[mesh.part_cells(p)], scene.material_of(p).lame) for p in unit.parts]
+    stiffness = np.linalg.inv(unit.solid.loads.T @ unit.displacements)
+    motions = unit.displacements @ stiffness
+    shares = [
+        recovery_estimate(mesh.points, parts, u).error_energy / (0.5 * k)
+        for u, k in zip(motions.T, stiffness.diagonal().tolist(), strict=True)
+    ]
+    return SAFETY * float(max(shares))
+
+
+def _solved_unit(
+    scene: Scene, name: str, coupling: Coupling, method: str = "auto", ring: bool = True
+) -> _SolvedUnit:
+    """A bearing and its housing without the shaft, see `unit_stiffness`."""
     unit = scene.bearing_unit(name)
     bonded = unit.interface == "bonded"
     seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
@@ -97,8 +191,8 @@ def unit_stiffness(
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
         ground = free.T @ free
         springs = [*roller_joint(unit, mesh, n_dofs).springs, (solid.points[0], ground)]
-    compliance = point_compliance(solid, held, springs, method)
-    stiffness = np.linalg.inv(compliance)
+    displacements = point_displacements(solid, held, springs, method)
+    stiffness = np.linalg.inv(solid.loads.T @ displacements)
     if unit.rollers is not None:
         carried = np.eye(6) - np.linalg.pinv(free) @ free
         stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
@@ -108,7 +202,9 @@ def unit_stiffness(
         softness = lever @ np.diag(1.0 / as_numbers(unit.bedplate)) @ lever.T
         stiffness = np.linalg.solve(np.eye(6) + stiffness @ softness, stiffness)
     stiffness = 0.5 * (stiffness + stiffness.T)
-    return stiffness if unit.rollers is not None else in_series(stiffness, joint_stiffness(unit))
+    if unit.rollers is None:
+        stiffness = in_series(stiffness, joint_stiffness(unit))
+    return _SolvedUnit(solid, parts, displacements, stiffness)
 
 
 def _free_motions(stiffness: Floats, length: float) -> Floats:

@@ -25,7 +25,7 @@ from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import Condensed, condense
-from fe_drivetrain.solve.coupled_solid import condensed_solid
+from fe_drivetrain.solve.coupled_solid import CondensedSolid, condensed_solid
 
 
 def reference_points(scene: Scene) -> tuple[tuple[str, ...], Floats]:
@@ -101,7 +101,11 @@ def beam_shaft(scene: Scene, shear: bool = True, rings: bool = True) -> Condense
 
 
 def shaft_meridian(
-    scene: Scene, size: float | None = None, order: int | None = None, rings: bool = True
+    scene: Scene,
+    size: float | None = None,
+    order: int | None = None,
+    rings: bool = True,
+    layers: int | None = None,
 ) -> tuple[Meridian, list[Ints]]:
     """The meridian of a scene's shaft, and its sides that each reference point moves with.
 
@@ -113,7 +117,8 @@ def shaft_meridian(
     corners = [(x, shaft.outer_radius(sum(span) / 2)) for span in spans for x in span]
     widest = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
     # fillets take triangles, of which gmsh makes many where corners are sharp: 2 layers are 4e-4
-    layers = 2 if any(p.fillet > 0 for p in shaft.pieces) else 4
+    if layers is None:
+        layers = 2 if any(p.fillet > 0 for p in shaft.pieces) else 4
     mesh = meridian(
         shaft.cut(ends),
         widest if size is None else size,
@@ -125,7 +130,11 @@ def shaft_meridian(
 
 
 def meridian_shaft(
-    scene: Scene, size: float | None = None, order: int | None = None, rings: bool = True
+    scene: Scene,
+    size: float | None = None,
+    order: int | None = None,
+    rings: bool = True,
+    layers: int | None = None,
 ) -> Condensed:
     """The shaft in its meridian, exact elasticity of a body of revolution.
 
@@ -138,16 +147,18 @@ def meridian_shaft(
         The scene; housings have no part in this.
     size : float or None
         Largest edge length [m]; the largest diameter where not given, for elements are of high
-        order and graded to steps and to the ends of seats: stiffness is right to 1e-4, of shafts
-        with fillets to 4e-4.
+        order and graded to steps and to the ends of seats: stiffness is right to about 1e-3; see
+        `fe_drivetrain.fidelity.shaft_bands` for the band of a shaft.
     order : int or None
         See `fe_drivetrain.revolution.meridian_mesh.meridian`.
     rings : bool
         Whether it has its rings, see `ringed_shaft`.
+    layers : int or None
+        Of ever smaller elements at corners; 4 where not given, of shafts with fillets 2.
     """
     names, positions = reference_points(scene)
     material = scene.material_of("shaft")
-    mesh, sides = shaft_meridian(scene, size, order, rings)
+    mesh, sides = shaft_meridian(scene, size, order, rings, layers)
     mass = harmonic_mass(mesh, material.density, 0)
     axial = _harmonic(mesh, material, 0, (0, 3), names, positions, sides, mass)
     mass = mass * (harmonics.turn(1) / harmonics.turn(0))
@@ -166,7 +177,7 @@ def meridian_shaft(
     return Condensed(names, positions, matrices[0], gravity, matrices[1])
 
 
-def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
+def shaft_solid(scene: Scene, method: str = "auto") -> CondensedSolid:
     """The shaft with the rings of its bearings as a solid, in curved tetrahedra of second order.
 
     Hub and gearbox move as the mean of the end faces, the bearings as that of their outer faces.
@@ -177,6 +188,11 @@ def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
         The scene; the housings have no part in this.
     method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
+
+    Returns
+    -------
+    CondensedSolid
+        With its mesh, and what leads back to its nodes.
     """
     names, positions = reference_points(scene)
     bearings = [unit.bearing for unit in scene.bearing_units]
@@ -187,7 +203,12 @@ def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
         for name, face, position in zip(names, faces, positions, strict=True)
     ]
     materials = {part: scene.material_of(part) for part in mesh.part_names}
-    return condensed_solid(mesh, materials, attachments, method).body
+    return condensed_solid(mesh, materials, attachments, method)
+
+
+def solid_shaft(scene: Scene, method: str = "auto") -> Condensed:
+    """The solid shaft condensed to its reference points, see `shaft_solid`."""
+    return shaft_solid(scene, method).body
 
 
 def condensed_shaft(scene: Scene, level: int) -> Condensed:

@@ -30,6 +30,7 @@ from .measures import area_vectors as area_vectors
 from .measures import inverted_cells as inverted_cells
 from .measures import jacobians as jacobians
 from .measures import lattice as lattice
+from .measures import mean_size as mean_size
 from .measures import quality as quality
 from .measures import volume as volume
 from .mesh import FACETS as FACETS

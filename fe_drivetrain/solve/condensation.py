@@ -141,8 +141,20 @@ def condense(
     )
 
 
-def keep_points(body: Condensed, at: Sequence[str]) -> Condensed:
-    """The body at some of its points; the others follow without load (Guyan 1965).
+def followed(body: Condensed, at: Sequence[str]) -> Floats:
+    """Motions of all points where some move and the others follow without load (Guyan 1965).
+
+    Parameters
+    ----------
+    body : Condensed
+        The body.
+    at : Sequence[str]
+        The k points that are moved.
+
+    Returns
+    -------
+    Floats
+        (6 n, 6 k) motions of all n points for a unit motion of each of these.
 
     Raises
     ------
@@ -161,6 +173,18 @@ def keep_points(body: Condensed, at: Sequence[str]) -> Condensed:
     if len(left):
         K = body.stiffness
         follow[left] = -np.linalg.solve(K[np.ix_(left, left)], K[np.ix_(left, kept)])
+    return follow
+
+
+def keep_points(body: Condensed, at: Sequence[str]) -> Condensed:
+    """The body at some of its points; the others follow without load, see `followed`.
+
+    Raises
+    ------
+    InputError
+        A point is unknown.
+    """
+    follow = followed(body, at)
     stiffness = follow.T @ body.stiffness @ follow
     mass = None if body.mass is None else follow.T @ body.mass @ follow
     return Condensed(

@@ -192,13 +192,13 @@ def condensed_solid(
     return CondensedSolid(mesh, body, system.n_free, loads, rigid, elimination, solver)
 
 
-def point_compliance(
+def point_displacements(
     solid: CoupledSolid,
     held: Sequence[Constraint],
     springs: Sequence[tuple[ReferencePoint, Floats]] = (),
     method: str = "auto",
 ) -> Floats:
-    """Motions of a held solid's reference points for unit forces and moments there.
+    """Displacements of a held solid for unit forces and moments at its reference points.
 
     Parameters
     ----------
@@ -213,8 +213,9 @@ def point_compliance(
 
     Returns
     -------
-    ndarray, (6 p, 6 p)
-        Of the p points [m/N, 1/N, rad/(N m)].
+    ndarray, (n, 6 p)
+        Of all n degrees of freedom, for the p points; ``solid.loads.T`` times this is the
+        compliance there [m/N, 1/N, rad/(N m)].
 
     Raises
     ------
@@ -226,8 +227,23 @@ def point_compliance(
         K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
     elimination = constraints.eliminate([*held, *solid.rigid_faces], solid.n_dofs)
     system = reduce(solid.mesh.points, solid.cells, K, elimination)
-    F = solid.loads
-    return np.asarray(F.T @ (elimination.T @ solve(system, elimination.T.T @ F, method).x))
+    return np.asarray(elimination.T @ solve(system, elimination.T.T @ solid.loads, method).x)
+
+
+def point_compliance(
+    solid: CoupledSolid,
+    held: Sequence[Constraint],
+    springs: Sequence[tuple[ReferencePoint, Floats]] = (),
+    method: str = "auto",
+) -> Floats:
+    """Motions of a held solid's points for unit loads there, see `point_displacements`.
+
+    Returns
+    -------
+    ndarray, (6 p, 6 p)
+        Of the p points [m/N, 1/N, rad/(N m)].
+    """
+    return np.asarray(solid.loads.T @ point_displacements(solid, held, springs, method))
 
 
 def _pins(points: Floats, allowed: Ints, n_dofs: int) -> Constraint:

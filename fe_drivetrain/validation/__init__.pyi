@@ -23,6 +23,7 @@ from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
 from . import published_drivetrains as published_drivetrains
 from . import quarter_disc as quarter_disc
+from . import random_shafts as random_shafts
 from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_solids as ring_solids
 from . import round_shafts as round_shafts

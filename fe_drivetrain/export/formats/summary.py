@@ -19,13 +19,13 @@ from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.export.formats.superelement_json import OriginFile, read_content
 from fe_drivetrain.export.from_scene import scene_origin
 from fe_drivetrain.export.superelement import FRAME, UNITS
-from fe_drivetrain.fidelity.bearing_units import unit_stiffness
+from fe_drivetrain.fidelity.bearing_units import UnitBounds, unit_bounds
 from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_level
 from fe_drivetrain.fidelity.quantities import shaft_numbers, unit_numbers
 from fe_drivetrain.fidelity.shafts import meridian_shaft
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.response.model import LOADS
-from fe_drivetrain.scene.scene import Coupling, Scene
+from fe_drivetrain.scene.scene import Scene
 
 
 class _File(BaseModel):
@@ -42,7 +42,11 @@ class ShaftFile(_File):
 
 
 class UnitFile(_File):
-    """A bearing with its housing, between bounds: its face moves on average, or keeps its shape."""
+    """A bearing with its housing, between bounds: its face moves on average, or keeps its shape.
+
+    The lower one is less the band of the mesh, so that there is a range where the joint itself says
+    how the face moves.
+    """
 
     tilt: tuple[float, float] | None = Field(
         description="K_R about y, vertical plane [N m/rad]; null of a joint that carries no moment"
@@ -105,18 +109,16 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
     if level not in (1, 2, 3, 4):
         raise InputError(f"level {level} of a summary is unknown: use 1, 2, 3 or 4")
     names = [unit.bearing.name for unit in scene.bearing_units]
-    couplings: tuple[Coupling, ...] = ("averaged", "rigid")
-    springs = {
-        c: {name: unit_stiffness(scene, name, coupling=c) for name in names} for c in couplings
-    }
+    bounds = {name: unit_bounds(scene, name) for name in names}
+    springs = {name: unit.stiff for name, unit in bounds.items()}
     meridian = meridian_shaft(scene)
     if level == 4:
         model = assembly_level(scene)
     else:
-        model = shaft_level(scene, level, springs["rigid"], meridian if level == 2 else None)
+        model = shaft_level(scene, level, springs, meridian if level == 2 else None)
     return SummaryFile(
         shaft=ShaftFile(**shaft_numbers(meridian)),
-        bearing_units={name: _unit([springs[c][name] for c in couplings]) for name in names},
+        bearing_units={name: _unit(unit) for name, unit in bounds.items()},
         reactions=_reactions(model),
         parts=_parts(scene),
         origin=OriginFile(**vars(scene_origin(scene, f"{level} {model.title}", "see the scene"))),
@@ -140,9 +142,10 @@ def read_summary(path: str | Path) -> SummaryFile:
     return read_content(Path(path), SummaryFile, "drivetrain summary")
 
 
-def _unit(bounds: list[Floats]) -> UnitFile:
-    soft, stiff = (unit_numbers(k) for k in bounds)
-    found = {name: (soft[name], stiff[name]) for name in soft}
+def _unit(bounds: UnitBounds) -> UnitFile:
+    soft, stiff = unit_numbers(bounds.soft), unit_numbers(bounds.stiff)
+    # a mesh makes the solid too stiff, never too soft
+    found = {name: (soft[name] / (1.0 + bounds.mesh), stiff[name]) for name in soft}
     tilt, yaw = (pair if any(pair) else None for pair in (found.pop("tilt"), found.pop("yaw")))
     return UnitFile(tilt=tilt, yaw=yaw, **found)
 
