@@ -7,7 +7,8 @@ from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.pictures.model import with_prefix
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
-from fe_drivetrain.scene.scene import SPHERICAL_JOINTS, BearingUnit, Scene, Springs
+from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
