@@ -13,7 +13,14 @@ from typing import TypeVar
 _Function = TypeVar("_Function", bound=Callable[..., None])
 
 
-def case(title: str, *, source: str, alone: bool = False) -> Callable[[_Function], _Function]:
+def case(
+    title: str,
+    *,
+    source: str,
+    alone: bool = False,
+    settings: tuple[str, ...] = (),
+    changes: str = "",
+) -> Callable[[_Function], _Function]:
     """Declare the function that runs the case of its file.
 
     Parameters
@@ -25,6 +32,10 @@ def case(title: str, *, source: str, alone: bool = False) -> Callable[[_Function
     alone : bool
         It measures time or memory: nothing may run beside it, and nothing it uses comes from the
         cache.
+    settings : tuple of str
+        Keys of ``--set`` that are the case's own. The command refuses keys that no case takes.
+    changes : str
+        What other keys change: "scene", or a kind of component, as in "planet_carrier".
 
     Notes
     -----
@@ -41,7 +52,9 @@ def case(title: str, *, source: str, alone: bool = False) -> Callable[[_Function
     return declared
 
 
-def cases(table: str) -> Callable[[_Function], _Function]:
+def cases(
+    table: str, *, settings: tuple[str, ...] = (), changes: str = ""
+) -> Callable[[_Function], _Function]:
     """Declare the function that runs each case of a table.
 
     Parameters
@@ -49,6 +62,8 @@ def cases(table: str) -> Callable[[_Function], _Function]:
     table : str
         Name of a YAML file beside the script: by name of the case its title, its source, and what
         else the function takes of it.
+    settings, changes : tuple of str, str
+        As of `case`, for each of them.
 
     Notes
     -----

@@ -197,10 +197,11 @@ def invoke(
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: str, work: Any = count, main: Callable[[], None] = main) -> Result:
+        takes: dict[str, Any] = {"settings": ("a", "k"), "changes": "scene"}
         cases = {
-            "group/tiny": Case("group/tiny", "A tiny case", "nobody", work),
-            "group/other": Case("group/other", "Another [bold] case", "nobody", work),
-            "next/third": Case("next/third", "A third", "nobody", work),
+            "group/tiny": Case("group/tiny", "A tiny case", "nobody", work, **takes),
+            "group/other": Case("group/other", "Another [bold] case", "nobody", work, **takes),
+            "next/third": Case("next/third", "A third", "nobody", work, **takes),
         }
         monkeypatch.setattr(case_module, "all_cases", lambda: dict(sorted(cases.items())))
         monkeypatch.setattr(sys, "argv", ["fe-drivetrain", *arguments])

@@ -46,7 +46,7 @@ def showing(*items: Text | Table | Chart | Image) -> Work:
 
 
 def tiny_case(work: Work = tiny) -> Case:
-    return Case("group/tiny", "A tiny case", "nobody", work)
+    return Case("group/tiny", "A tiny case", "nobody", work, settings=("a", "k"))
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -47,7 +47,7 @@ def test_help_and_list_import_nothing_heavy(argument: str) -> None:
 def test_a_script_of_a_case_has_the_same_options(
     invoke: Callable[..., Result], tmp_path: Path
 ) -> None:
-    case = Case("group/tiny", "A tiny case", "nobody", count)
+    case = Case("group/tiny", "A tiny case", "nobody", count, settings=("k",))
     status, out, _ = invoke("--out", "x", "--set", "k=1", main=lambda: main_of_case(case))
     assert status == 0
     assert out.endswith("x/report.html\n")

@@ -451,8 +451,6 @@ def test_own_drivetrain_runs_as_a_case(tmp_path):
         assert_allclose(frequencies, [0.0, exact], rtol=1e-12)
     assert results.figures["static_stiffness"] == pytest.approx(80.0, rel=1e-12)
     assert results.passed
-    with pytest.raises(InputError, match="setting 'tabel' is unknown"):
-        case.results(Run({"tabel": "x"}, True, tmp_path))
 
 
 def test_wrong_systems_say_what_is_wrong():

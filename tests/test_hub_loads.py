@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import struct
 from pathlib import Path
@@ -15,13 +16,19 @@ from hypothesis.extra.numpy import arrays
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.csv_table import read_csv, write_csv
-from fe_drivetrain.hub_loads.files import read_hub_loads
+from fe_drivetrain.hub_loads.files import (
+    hub_load_files,
+    read_hub_load_files,
+    read_hub_loads,
+)
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.openfast import read_openfast, turn_to_fixed
 
-REAL_FILE = Path(__file__).parents[2] / "shared" / "data" / "openfast" / "fastout_allnodes.outb"
+#: A folder with output files of OpenFAST, which are not distributed with the project.
+REAL_FOLDER = Path(os.environ.get("FE_DRIVETRAIN_OPENFAST", "no folder is given"))
+REAL_FILE = REAL_FOLDER / "fastout_allnodes.outb"
 needs_real_file = pytest.mark.skipif(
-    not REAL_FILE.is_file(), reason="the OpenFAST example file is not distributed with the project"
+    not REAL_FILE.is_file(), reason="FE_DRIVETRAIN_OPENFAST names no folder with real files"
 )
 
 TIME = 0.05 * np.arange(400)
@@ -202,13 +209,113 @@ def test_real_file_gage_and_tip_moments_tell_one_story() -> None:
             info["attribute_names"], info["attribute_units"], data.T, strict=True
         )
     }
-    _, at_tip = openfast._loads_from_channels("real", channels)
+    _, at_tip, _ = openfast._loads_from_channels("real", channels)
     only_gage = {n: c for n, c in channels.items() if not n.startswith("lsstipm")}
     # ShftGagL of the NREL 5 MW model is 1.912 m (Jonkman 2009).
-    _, from_gage = openfast._loads_from_channels("real", only_gage, gage_distance=1.912)
+    _, from_gage, _ = openfast._loads_from_channels("real", only_gage, gage_distance=1.912)
     # Each channel is packed in 16 bits; a few steps of the widest are the most they can differ.
     step = 1e3 * np.ptp(channels["lssgagmya"].values) / 65535.0
     np.testing.assert_allclose(from_gage, at_tip, atol=4.0 * step)
+
+
+@needs_real_file
+def test_real_histories_of_a_folder_keep_their_times_and_weights() -> None:
+    histories = read_hub_load_files(str(REAL_FOLDER / "nrel5mw_*.outb"), skip=60.0)
+    assert len(histories) == len({h.name for h in histories}) > 1
+    for history in histories:
+        assert history.time[0] == pytest.approx(120.0)
+        # NREL 5 MW (Jonkman 2009), as above; ten minutes of operation average the blades' motion
+        weight = 110e3 * 9.80665 * np.cos(np.deg2rad(5.0))
+        assert history.component("Fz").mean() == pytest.approx(-weight, rel=0.01)
+        assert "LSShftFys" in str(history.attributes["channels"])
+
+
+# --- many files, and what is read of each ---------------------------------------------------------
+
+
+def test_two_files_of_one_run_are_refused_and_one_kind_is_taken(tmp_path: Path) -> None:
+    """OpenFAST writes both where OutFileFmt is 3: the same history must not count twice."""
+    write_out(tmp_path / "run.out", rotating_columns())
+    write_outb(tmp_path / "run.outb", rotating_columns())
+    for pattern in (str(tmp_path), f"{tmp_path}/*", f"{tmp_path}/run.*", f"{tmp_path.parent}/**"):
+        with pytest.raises(InputError, match=r"two files of one OpenFAST run.*choose one kind"):
+            read_hub_load_files(pattern)
+    (history,) = read_hub_load_files(f"{tmp_path}/*.outb")
+    assert history.name == "run"
+
+
+def test_wildcards_find_files_in_any_part_of_the_path(tmp_path: Path) -> None:
+    for seed in ("seed1", "seed2"):
+        (tmp_path / seed / "deep").mkdir(parents=True)
+        write_out(tmp_path / seed / "run.out", rotating_columns())
+        write_out(tmp_path / seed / "deep" / "more.out", rotating_columns())
+        (tmp_path / seed / "run.sum").write_text("not hub loads")
+    find = {
+        f"{tmp_path}/seed*/run.out": 2,
+        f"{tmp_path}/seed*/run.*": 2,
+        f"{tmp_path}/seed?": 2,
+        f"{tmp_path}/*/deep": 2,
+        f"{tmp_path}/seed[2]/deep/*.out": 1,
+        f"{tmp_path}/**/*.out": 4,
+        f"{tmp_path}/seed1/run.out": 1,
+    }
+    assert {pattern: len(hub_load_files(pattern)) for pattern in find} == find
+    with pytest.raises(InputError, match=r"no \.out, \.outb, \.csv file is there"):
+        hub_load_files(f"{tmp_path}/other*/*.out")
+
+
+def test_histories_of_several_folders_have_names_of_their_own(tmp_path: Path) -> None:
+    """Results are written under the name of the history: one must not overwrite another."""
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        write_out(tmp_path / folder / "run.out", rotating_columns())
+    assert [h.name for h in read_hub_load_files(f"{tmp_path}/*/run.out")] == ["a_run", "b_run"]
+    write_csv(read_hub_loads(tmp_path / "a" / "run.out"), tmp_path / "a" / "run.csv")
+    names = {h.name.lower() for h in read_hub_load_files(f"{tmp_path}/*/*")}
+    assert len(names) == 3
+
+
+@pytest.mark.parametrize("skip", [0.0, 3.0, 12.0])
+def test_a_transient_is_left_out_from_the_beginning_of_each_file(
+    tmp_path: Path, skip: float
+) -> None:
+    """Files begin when they like; what is left out counts from there, and times stay."""
+    for start in (0.0, 60.0):
+        columns = rotating_columns()
+        columns["Time"] = ("(s)", TIME + start)
+        write_out(tmp_path / f"from_{start:g}.out", columns)
+    histories = read_hub_load_files(str(tmp_path), skip)
+    kept = int((skip + 1e-9 > 0.05 + TIME).sum())
+    for start, history in zip((0.0, 60.0), histories, strict=True):
+        np.testing.assert_allclose(history.time, start + TIME[kept:], atol=1e-9)
+        np.testing.assert_allclose(history.loads[:, 2], FORCE[2], rtol=1e-9)
+
+
+def test_a_transient_as_long_as_the_file_is_refused(tmp_path: Path) -> None:
+    write_out(tmp_path / "short.out", rotating_columns())
+    with pytest.raises(InputError, match=r"lasts 19\.95 s.*the first 60 s: skip less"):
+        read_hub_loads(tmp_path / "short.out", skip=60.0)
+
+
+def test_what_was_read_says_channels_signs_and_rotation(tmp_path: Path) -> None:
+    def read(columns: Columns) -> str:
+        history = read_openfast(write_out(tmp_path / "a.out", columns))
+        write_csv(history, tmp_path / "a.csv")
+        again = read_csv(tmp_path / "a.csv")
+        assert again.attributes["channels"] == history.attributes["channels"]
+        return str(history.attributes["channels"])
+
+    assert read(fixed_columns()) == (
+        "Fx = LSShftFxa [kN]; Fy, Fz = LSShftFys [kN], LSShftFzs [kN]; Mx = RotTorq [kN-m]; "
+        "My, Mz = LSSTipMys [kN-m], LSSTipMzs [kN-m]; signs as in the file; nothing turned"
+    )
+    turned = read(rotating_columns())
+    assert "Fy, Fz = LSShftFya [kN], LSShftFza [kN], turned back by Azimuth [deg]" in turned
+    assert "My, Mz = LSSTipMya [kN-m], LSSTipMza [kN-m], turned back by Azimuth [deg]" in turned
+    columns = fixed_columns()
+    columns["-RotTorq"] = ("(kN-m)", -columns.pop("RotTorq")[1])
+    assert "Mx = -RotTorq [kN-m], sign changed; " in read(columns)
+    assert "other signs as in the file" in read(columns)
 
 
 # --- binary and text -----------------------------------------------------------------------------
@@ -410,6 +517,7 @@ def test_csv_round_trip_is_exact(
     tmp_path: Path, loads: np.ndarray, start: float, step: float
 ) -> None:
     attributes = {"wind_speed": 12.0, "turbulence": "high", "seed": 3, "source": "test"}
+    attributes["channels"] = "as made"
     history = LoadHistory("round", start + step * np.arange(7.0), loads, attributes)
     write_csv(history, tmp_path / "round.csv")
     back = read_csv(tmp_path / "round.csv")

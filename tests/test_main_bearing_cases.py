@@ -14,6 +14,7 @@ from conftest import COARSE
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
+from fe_drivetrain.hub_loads.csv_table import read_csv
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import all_cases, find_cases
 from fe_drivetrain.suite.suite import run_cases
@@ -89,13 +90,18 @@ def test_stiffness_file_is_valid(reports, name):
 
 
 def test_reactions_of_own_histories_are_written(reports):
-    """What the user's hub loads do to the bearing stands in a file of its own."""
-    table = np.loadtxt(
-        reports / "rmse" / "reactions_spherical_loads.csv", delimiter=",", skiprows=1
-    )
-    assert table.shape == (40, 7)
-    # Statics of the short shaft: Fz on the bearing is ((L1 + L2) Fz + My) / L2.
-    np.testing.assert_allclose(table[0, 3], (2.2 * -370e3 + 600e3 - 90e3) / 1.2, rtol=1e-6)
+    """What the user's hub loads do to the bearing stands in a file of its own, with the weight."""
+    found = read_csv(reports / "rmse" / "reactions_spherical_loads.csv")
+    assert found.loads.shape == (40, 6)
+    # Statics of the short shaft: Fz on the bearing is ((L1 + L2) Fz + My) / L2 ...
+    without_weight = (2.2 * -370e3 + 600e3 - 90e3) / 1.2
+    # ... and the weight of the parts, which is stated: of the shaft what lies before the gearbox
+    stated = str(found.attributes["weight"])
+    weight = {p: float(w) * 1e3 for p, w in re.findall(r"([\w.]+) ([\d.]+) kN", stated)}
+    parts = weight["main_bearing"] + weight["main_bearing.housing"]
+    on_bearing = parts + weight["shaft"] * 1.1 / 1.2
+    np.testing.assert_allclose(found.loads[0, 2], without_weight - on_bearing, rtol=1e-4)
+    assert (reports / "rmse" / "reaction_statistics.csv").is_file()
 
 
 def test_meshes_are_written(reports):

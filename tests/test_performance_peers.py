@@ -406,7 +406,6 @@ def test_errors_are_against_the_direct_solvers_of_the_same_rule():
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"sises": [1000]}, "sises"),
         ({"tools": ["abaqus"]}, "abaqus"),
         ({"tools": ["ngsolve.pardiso"]}, r"ngsolve\.pardiso"),
         ({"problems": ["plate"]}, "plate"),

@@ -8,13 +8,16 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from tiny_case import check_one
 
+from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.threads import CORES_VARIABLE, cores
+from fe_drivetrain.report.junit import write_junit
 from fe_drivetrain.report.page import write_index
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import Case
@@ -64,7 +67,7 @@ def wait(run: Run, page: Page) -> None:
 
 
 def a_case(name: str, work: Callable[[Run, Page], None], alone: bool = False) -> Case:
-    return Case(name, f"Title of <{name}>", "nobody", work, alone)
+    return Case(name, f"Title of <{name}>", "nobody", work, alone, settings=("k",))
 
 
 @pytest.fixture(params=["1", "2"])
@@ -187,6 +190,39 @@ def test_results_that_cannot_be_read_are_listed_as_such(tmp_path: Path) -> None:
     assert "cannot be read: run it again" in page
 
 
+def read_the_index(run: Run, page: Page) -> None:
+    page.answer((run.folder.parents[1] / "index.html").read_text())
+    count(run, page)
+
+
+def test_what_a_kill_would_leave_looks_incomplete(tmp_path: Path) -> None:
+    """A process that is killed can write nothing more: the page is so at any time of the run."""
+    run_cases([a_case("a/one", count), a_case("a/two", count)], tmp_path)
+    cases = [a_case("a/one", count, alone=True), a_case("a/two", read_the_index, alone=True)]
+    run_cases(cases, tmp_path)
+    (meanwhile,) = read_results(tmp_path / "a/two/results.json").summary
+    assert '<p class="outcome fail">1 of 2 cases pass, 1 not run</p>' in meanwhile
+    after = (tmp_path / "index.html").read_text()
+    assert '<p class="outcome pass">2 of 2 cases pass</p>' in after
+    assert "not run" not in after
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_quick_runs_are_seen_to_be_quick(tmp_path: Path, quick: bool) -> None:
+    cases = [a_case("a/one", count), a_case("a/two", count)]
+    run_cases(cases, tmp_path, quick=quick)
+    results = read_results(tmp_path / "a/one/results.json")
+    assert results.environment.quick == quick
+    for page in (tmp_path / "a/one/report.html", tmp_path / "index.html"):
+        assert ('class="caution"' in page.read_text()) == quick
+    assert ("2 cases were run quickly" in (tmp_path / "index.html").read_text()) == quick
+    write_junit(tmp_path / "all.xml", ["a/one"], {"a/one": results}, {})
+    (suite,) = ElementTree.parse(tmp_path / "all.xml").getroot()
+    assert (suite.find("properties/property[@name='quick']") is not None) == quick
+    assert suite.get("tests") == str(len(results.verdicts))
+    assert results_text(results, tmp_path).startswith("Quick run: coarser") == quick
+
+
 @pytest.mark.parametrize(("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
     tmp_path: Path, sent: signal.Signals, status: int
@@ -224,6 +260,9 @@ def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
         assert process.wait(60) == status
         assert "Traceback" not in process.stderr.read()
     assert sorted(os.listdir(tmp_path / "reports")) == ["a", "index.html"]
-    assert "1 of 1 case passes" in (tmp_path / "reports/index.html").read_text()
+    page = (tmp_path / "reports/index.html").read_text()
+    assert '<p class="outcome fail">1 of 2 cases pass, 1 not run</p>' in page
+    assert ">not run<" in page
+    assert "Incomplete" in page
     assert os.listdir(tmp_path / "reports/a") == ["one"]
     assert (tmp_path / "reports/a/one/report.html").is_file()

@@ -203,7 +203,6 @@ def test_face_weights_of_both_triangles_add_up_to_the_area(bonded_model: Model):
 @pytest.mark.parametrize(
     ("given_settings", "message"),
     [
-        ({"part": "shaft"}, "setting 'part' is unknown"),
         ({"parts": "shafts"}, "parts: 'shafts' is unknown"),
         ({"parts": []}, "parts is empty"),
     ],

@@ -23,7 +23,7 @@ def work(run, page):
     page.equals("one", 1.0, 1.0, within=0.1, why="r", source="s")
 
 if __name__ == "__main__":
-    main_of_case(Case("group/tiny", "T\u00eft\u2082e", "s", work))
+    main_of_case(Case("group/tiny", "T\u00eft\u2082e", "s", work, settings=("work",)))
 """
 
 

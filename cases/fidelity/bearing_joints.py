@@ -112,6 +112,7 @@ class Rollers:
 @case(
     "The bearing's joint: bonded, 6x6 spring, rollers, spherical",
     source="Stirling 2023 (scene; tilt stiffness); Nejad et al. 2016; rollers assumed",
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Sweep the tilt stiffness of the joint from none to all, and set the other joints beside."""

@@ -68,6 +68,7 @@ def ring_stiffness(motion: int) -> Callable[[LevelModel], float]:
 @case(
     "Gearbox housing on torque arms: which level its suspension needs",
     source="bushings from the gearbox springs of Stirling 2023, Table 3.1; dimensions assumed",
+    changes="gearbox_housing",
 )
 def run(run: Run, page: Page) -> None:
     """Climb the ladder, vary the bushings, export."""

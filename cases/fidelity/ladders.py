@@ -14,7 +14,7 @@ from fe_drivetrain.suite import Page, Record, Run
 COARSER, TURN = 1.4, 8
 
 
-@cases("ladders.yaml")
+@cases("ladders.yaml", changes="scene")
 def run(run: Run, page: Page, row: Record) -> None:
     """All levels of a library scene with the user's changes to it, and its stiffness in files."""
     original = library_scene(row["scene"])

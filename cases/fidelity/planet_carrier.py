@@ -62,6 +62,7 @@ def stiffness_of_pin(axis: int) -> Callable[[LevelModel], float]:
     "Planet carrier with pins: wind-up and tilt, and the error of beams",
     source="first stage of the 5 MW reference gearbox (Nejad, Guo, Gao and Moan 2016); cheeks and "
     "webs assumed",
+    changes="planet_carrier",
 )
 def run(run: Run, page: Page) -> None:
     """Climb the ladder with two walls, compare with one, export."""

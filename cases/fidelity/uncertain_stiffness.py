@@ -85,6 +85,7 @@ Slopes = dict[str, dict[str, float]]
 @case(
     "Uncertain values: sensitivities of the cheap level against the assembly's",
     source="Stirling 2023, Table 3.1; spreads: ISO 286-1, ISO 8062-3, JCSS 2001, some assumed",
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """The study at the cheap level, the assembly's sensitivities, and both side by side."""

@@ -291,10 +291,12 @@ def method_section(page: Page, families: list[Family], bands_of: dict[str, list[
 @case(
     "Which housing dimensions would give a K_R of 145 and 392 MN m/rad",
     source="Stirling 2023, PhD thesis, section 3.3.1",
+    settings=("solver",),
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Sample housings, trace those that give both values, and verify some on finer meshes."""
-    scene = study.scene_of(run, "bonded", coarsen=False)
+    scene = study.scene_of(run, page, "bonded", coarsen=False)
     if run.quick:
         scene = scene.model_copy(update={"mesh": scene.mesh.scaled(QUICK_MESH)})
     counts = {ONE_BODY: QUICK_SAMPLES if run.quick else SAMPLES}

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from fe_drivetrain.hub_loads import (
     assumptions,
     hub_load_set,
     not_kept,
-    read_hub_loads,
+    read_hub_load_files,
     surrogate_grid,
 )
 from fe_drivetrain.report import Chart, rounded, trace
@@ -30,6 +29,7 @@ QUICK_SEEDS = 2
 
 Pairs = Mapping[str, tuple[str, Floats]]
 _PLANES = (("horizontal", "Fy", 1), ("vertical", "Fz", 2))
+_STAND_IN = "They stand in for the thesis's Bladed histories, which are not public."
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +38,8 @@ class HubLoads:
 
     Attributes
     ----------
-    time : Floats
-        (n,) [s].
+    times : Floats
+        (m, n) [s]: each history its own.
     loads : Floats
         (m, n, 6) [N, N m].
     names : tuple[str, ...]
@@ -52,27 +52,51 @@ class HubLoads:
         (name, value, unit, source) of the surrogate.
     seed : int or None
         None for the user's own files.
+    channels : tuple[str, ...]
+        (m,) which channels were read, with their sign and rotation; empty for a surrogate.
     """
 
-    time: Floats
+    times: Floats
     loads: Floats
     names: tuple[str, ...]
     conditions: tuple[Condition, ...]
     statement: str
     assumptions: list[tuple[str, float, str, str]]
     seed: int | None
+    channels: tuple[str, ...] = ()
 
 
 def own_hub_loads(run: Run) -> HubLoads | None:
-    """The user's files: ``--set loads=FILE``, a folder, or a pattern; None where not given."""
+    """The user's files: ``--set loads=FILE``, a folder, or a pattern; None where not given.
+
+    ``--set skip=SECONDS`` leaves out the beginning of each.
+    """
+    skip = _skip(run)
     if "loads" not in run.settings:
+        if skip:
+            raise InputError(
+                f"skip = {skip:g} leaves out the beginning of your own histories, and there are "
+                "none: give them with --set loads=FOLDER, or leave out skip"
+            )
         return None
     with run.step("hub loads"):
-        return _read(str(run.settings["loads"]))
+        return _read(str(run.settings["loads"]), skip)
+
+
+def _skip(run: Run) -> float:
+    skip = run.settings.get("skip", 0.0)
+    if isinstance(skip, bool) or not isinstance(skip, int | float) or not 0.0 <= skip < np.inf:
+        raise InputError(
+            f"skip = {skip!r} must be a number of seconds from 0 on: what is left out at the "
+            "beginning of each history, as in --set skip=60"
+        )
+    return float(skip)
 
 
 def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
     """Made hub loads; those that were not made before are made side by side."""
+    grid_of = "a" if "scene" in run.settings else "the thesis's"
+    stand_in = "" if "scene" in run.settings else f" {_STAND_IN}"
     grid = surrogate_grid()
     if run.quick:
         grid = [c for c in grid if c.seed <= QUICK_SEEDS]
@@ -89,15 +113,14 @@ def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
         if not groups and user_cache().folder is not None:
             step.name += ", from the cache"
     return HubLoads(
-        histories.time,
+        np.broadcast_to(histories.time, histories.loads.shape[:2]),
         histories.loads,
         tuple(c.name for c in histories.conditions),
         histories.conditions,
         f"Hub loads are a surrogate: {len(grid)} ten-minute histories at 20 Hz of a 2 MW, 80 m, "
-        "three-bladed rotor, quasi-steady blade elements in Kaimal turbulence, over the thesis's "
-        "grid of wind speed, turbulence and shear. They stand in for the thesis's Bladed "
-        "histories, which are not public; the same comparison on your own histories: "
-        "--set loads=FOLDER.",
+        f"three-bladed rotor, quasi-steady blade elements in Kaimal turbulence, over {grid_of} "
+        f"grid of wind speed, turbulence and shear.{stand_in} The same comparison on your own "
+        "histories: --set loads=FOLDER.",
         list(assumptions()),
         1,
     )
@@ -110,37 +133,31 @@ def _make(run: Run, wind_speed: float, conditions: Sequence[Condition]) -> None:
         hub_load_set(conditions, progress=lambda done, of: run.report(f"{name} ({done} of {of})"))
 
 
-def _read(pattern: str) -> HubLoads:
-    path = Path(pattern)
-    suffixes = (".out", ".outb", ".csv")
-    if path.is_dir():
-        files = sorted(f for f in path.iterdir() if f.suffix.lower() in suffixes)
-    elif path.exists() or not any(c in pattern for c in "*?["):
-        files = [path]
-    else:
-        files = sorted(path.parent.glob(path.name))
-    if not files:
-        raise InputError(f"loads = {pattern!r}: no {', '.join(suffixes)} file is there")
-    histories = [read_hub_loads(f) for f in files]
+def _read(pattern: str, skip: float) -> HubLoads:
+    histories = read_hub_load_files(pattern, skip)
     first = histories[0]
-    for file, history in zip(files, histories, strict=True):
-        if len(history.time) != len(first.time):
+    for history in histories:
+        if len(history) != len(first):
             raise InputError(
-                f"{file} has {len(history.time)} samples and {files[0]} has {len(first.time)}: "
-                "cut the histories to one length"
+                f"hub loads: {history.name} has {len(history)} samples and {first.name} has "
+                f"{len(first)}{f' without the first {skip:g} s' if skip else ''}: cut the "
+                "histories to one number of samples"
             )
     loads = np.stack([history.loads for history in histories])
     if not loads.any():
         raise InputError(f"loads = {pattern!r}: all hub loads are zero: give histories with loads")
+    count = len(histories)
+    left_out = f" The first {skip:g} s of each are left out." if skip else ""
     return HubLoads(
-        np.asarray(first.time),
+        np.stack([history.time for history in histories]),
         loads,
         tuple(history.name for history in histories),
         (),
-        f"Hub loads: {len(files)} file{'s' if len(files) > 1 else ''} of your own, "
-        f"{len(first.time):,} samples each.",
+        f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, "
+        f"{len(first):,} samples each.{left_out}",
         [],
         None,
+        tuple(str(history.attributes["channels"]) for history in histories),
     )
 
 
@@ -161,20 +178,21 @@ def load_table(page: Page, hub: HubLoads) -> None:
             for k, (component, unit) in enumerate(zip(FORCES, units, strict=True))
         ],
     )
-
-
-def write_reactions(folder: Path, hub: HubLoads, fe: Mapping[str, Floats]) -> None:
-    """FE reactions of the user's own histories as CSV, one file a history and bearing type."""
-    for kind, reaction in fe.items():
-        for name, history in zip(hub.names, reaction, strict=True):
-            np.savetxt(
-                folder / f"reactions_{kind}_{name}.csv",
-                np.column_stack([hub.time, history]),
-                delimiter=",",
-                fmt="%.9g",
-                header="time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]",
-                comments="",
-            )
+    if hub.channels:
+        by_channels: dict[str, list[str]] = {}
+        for name, channels in zip(hub.names, hub.channels, strict=True):
+            by_channels.setdefault(channels, []).append(name)
+        page.table(
+            "Channels that were read, in the units of the file",
+            [
+                {
+                    "histories": ", ".join(names[:3])
+                    + (f" and {len(names) - 3} more" if len(names) > 3 else ""),
+                    "channels": channels,
+                }
+                for channels, names in by_channels.items()
+            ],
+        )
 
 
 def rmse_charts(
@@ -230,14 +248,15 @@ def series_charts(
 ) -> None:
     """The beginning of one history, FE and beams, per plane."""
     chosen = len(hub.names) // 2
-    shown = hub.time - hub.time[0] <= seconds
-    shown_seconds = min(seconds, float(hub.time[-1] - hub.time[0]))
+    time = hub.times[chosen]
+    shown = time - time[0] <= seconds
+    shown_seconds = min(seconds, float(time[-1] - time[0]))
     for plane, quantity, component in _PLANES:
         for kind in ("spherical", "bonded"):
             traces = [
                 trace(
                     f"{kind} FE",
-                    hub.time[shown],
+                    time[shown],
                     fe[kind][chosen, shown, component] / 1e3,
                     line={"width": 3},
                 )
@@ -245,7 +264,7 @@ def series_charts(
             traces += [
                 trace(
                     label.partition(" against")[0],
-                    hub.time[shown],
+                    time[shown],
                     model[chosen, shown, component] / 1e3,
                     line={"dash": dash},
                 )

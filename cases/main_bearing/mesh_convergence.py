@@ -34,10 +34,12 @@ def quantities(solved: Solved, tilt: Tilt) -> dict[str, float]:
 @case(
     "Mesh convergence of reactions, stiffness and deflection",
     source="Stirling 2023, PhD thesis, section 3.2: 'a convergence study was again undertaken'",
+    settings=("scene", "solver"),
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Solve one scene on meshes from coarse to fine."""
-    scene = study.scene_of(run, "bonded", coarsen=False)
+    scene = study.scene_of(run, page, "bonded", coarsen=False)
     factors = QUICK_FACTORS if run.quick else FACTORS
     finer_scenes = {f"sizes x {factor:g}": bands.coarser(scene, factor) for factor in factors}
     with run.side_by_side(len(factors)) as jobs:

@@ -8,11 +8,12 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, loads, shown, study
+from fe_drivetrain.cases.main_bearing import bands, loads, reactions, shown, study
 from fe_drivetrain.cases.main_bearing.comparison import (
     MEAN_ERROR,
     PUBLISHED,
     SIXBYSIX,
+    THESIS,
     Comparison,
     compared,
     of_one_mesh,
@@ -23,7 +24,9 @@ from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.response import bearing_unit_stiffness
 from fe_drivetrain.suite import Page, Record, Run
 
-OWN_KEYS = ("scene", "loads", "solver")
+OF_THESIS = (
+    ". The thesis's stand beside them for orientation: its hub loads and its housing are not public"
+)
 
 
 def deflections(solved: Solved, matrix: Floats, series: bands.Series, label: str) -> list[Record]:
@@ -77,7 +80,7 @@ def check_beams(page: Page, found: Comparison, of_beams: bands.Series) -> None:
         found.mean_error[third],
         2.0,
         why="asked of the torsional-spring model: under 2 %",
-        source="FE of this study; the thesis reports 1.61 %",
+        source="FE of this study" + ("" if page.subject else "; the thesis reports 1.61 %"),
         unit="%",
         band=of_beams.band(lambda f: float(f["beams"][1])),
     )
@@ -87,7 +90,7 @@ def check_beams(page: Page, found: Comparison, of_beams: bands.Series) -> None:
             found.correlation[third],
             0.999,
             why="asked of the torsional-spring model: above 0.999",
-            source="FE of this study; the thesis reports 0.9996",
+            source="FE of this study" + ("" if page.subject else "; the thesis reports 0.9996"),
             band=of_beams.band(lambda f: float(f["beams"][2])),
         )
 
@@ -99,26 +102,27 @@ def result_section(
     page.section("Result")
     page.text(hub.statement)
     loads.load_table(page, hub)
-    columns = list(found.headline[0])
+    columns = [c for c in found.headline[0] if not (page.subject and c in THESIS)]
     place = columns.index(MEAN_ERROR) + 1
     page.table(
         "Resultant radial force on the main bearing over all histories: mean of each history's "
-        "value. The thesis's stand beside them for orientation: its hub loads and its housing are "
-        "not public",
+        "value" + ("" if page.subject else OF_THESIS),
         [{**row, f"± {MEAN_ERROR}": error_band.get(row["comparison"])} for row in found.headline],
         [*columns[:place], f"± {MEAN_ERROR}", *columns[place:]],
     )
     page.text(
-        "Mean error is the thesis's metric, |F_beam - F_FE| / |F_FE| averaged over samples; it "
-        "breaks down where the reference passes zero, so samples with a reference below 0.1 % of "
-        "its rms are left out and counted, and a robust measure stands beside it."
+        "Mean error is |F_beam - F_FE| / |F_FE| averaged over samples"
+        + ("" if page.subject else ", the thesis's metric")
+        + "; it breaks down where the reference passes zero, so samples with a reference below "
+        "0.1 % of its rms are left out and counted, and a robust measure stands beside it."
     )
-    page.text(
-        "The pinned beam's mean error on a bonded bearing depends on the housing and on the loads, "
-        "so likeness to the thesis's 22.74 % is chance: with the thesis's own K_R of 145 and 392 "
-        f"MN m/rad in Eq 3.19 the same hub loads give {found.with_their_stiffness:.1f} %, and its "
-        "hub loads were others."
-    )
+    if not page.subject:
+        page.text(
+            "The pinned beam's mean error on a bonded bearing depends on the housing and on the "
+            "loads, so likeness to the thesis's 22.74 % is chance: with the thesis's own K_R of "
+            "145 and 392 MN m/rad in Eq 3.19 the same hub loads give "
+            f"{found.with_their_stiffness:.1f} %, and its hub loads were others."
+        )
     page.table(
         "By quantity, means over all histories: usable as a model uncertainty. FE = slope x beam, "
         "with the residual's coefficient of variation (EN 1990, Annex D); relative scatter is the "
@@ -135,12 +139,15 @@ def result_section(
 @case(
     "Main-bearing study: beam models against FE over hub-load histories",
     source="Stirling 2023, PhD thesis, chapter 3 (Figures 3.6 to 3.15, Table 3.1, Eq 3.1-3.19)",
+    settings=("scene", "loads", "skip", "self_weight", "solver"),
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Make or read the hub loads, solve both scenes, compare over all histories."""
-    spherical_scene = study.scene_of(run, "spherical", OWN_KEYS)
-    bonded_scene = study.scene_of(run, "bonded", OWN_KEYS)
+    spherical_scene = study.scene_of(run, page, "spherical")
+    bonded_scene = study.scene_of(run, page, "bonded")
     pinned_beam = main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
+    self_weight = reactions.has_self_weight(run)
     given = loads.own_hub_loads(run)  # before the work: a fault in a file is reported at once
     with run.side_by_side(7) as jobs:
         solving = jobs.start(
@@ -169,8 +176,9 @@ def run(run: Run, page: Page) -> None:
             "bonded": coarser_bonded.below(bands.of_solved(bonded) | bands.of_tilt(tilt)),
         }
     name = bonded.bearing
+    kinds = {"spherical": spherical, "bonded": bonded}
     if not hub.conditions:
-        loads.write_reactions(run.folder, hub, found.fe)
+        reactions.write_files(run.folder, hub, kinds, self_weight)
     page.seed = hub.seed
     mean_error, correlation = found.mean_error, found.correlation
     _, second, third = PUBLISHED
@@ -199,7 +207,7 @@ def run(run: Run, page: Page) -> None:
     write_stiffness(run, bonded, tilt, stiffness)
     n_histories, n_samples = hub.loads.shape[:2]
     n_steps = n_histories * n_samples
-    page.answer(
+    on_bonded = (
         f"Over {n_histories:,} hub-load histor{'y' if n_histories == 1 else 'ies'} "
         f"({n_steps:,} load steps) the pinned beam's resultant force on a bonded bearing has a "
         f"mean error of {mean_error[second]:.1f} %, with a correlation of "
@@ -207,13 +215,21 @@ def run(run: Run, page: Page) -> None:
         f"With torsional springs, K_R from the averaged seat, the beam has a mean error of "
         f"{mean_error[third]:.2g} % and a correlation of {correlation[third]:.4f}; on the "
         f"full 6x6 stiffness {mean_error[SIXBYSIX]:.2g} % and {correlation[SIXBYSIX]:.6f}.",
+    )
+    on_spherical = (
         "On a spherical bearing pinned beam and FE agree to solver accuracy: statics decide, and "
         "their agreement says nothing about the FE model. Deflection, slope and stiffness, which "
         "do depend on it, stand below.",
     )
+    # the bearing that the scene has comes first
+    own_kind = study.kind_of(study.given_scene(run, "bonded"))
+    page.answer(
+        *(on_spherical + on_bonded if own_kind == "spherical" else on_bonded + on_spherical)
+    )
     page.section("Model")
     page.add(*pictures)
     result_section(page, hub, found, error_band)
+    reactions.statistics_section(run, page, hub, kinds, self_weight)
     if hub.conditions:
         page.section("RMSE by wind speed, turbulence and shear")
         loads.rmse_charts(page, hub.conditions, found.fe, found.pairs)

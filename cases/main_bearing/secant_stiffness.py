@@ -28,7 +28,6 @@ TITLES = {"library": "the scene's housing", "tall": f"a pedestal of {TALL:g} m"}
 EVERY = 40
 #: Couplings of each moment that the page shows.
 TERMS = 3
-OWN_KEYS = ("scene", "solver", "loads")
 
 Reacted = secants.Reacted
 
@@ -136,11 +135,13 @@ def secant_traces(key: str, unit: Reacted) -> list[Any]:
 @case(
     "K_R as a secant over load cases, and the coupling that makes it scatter",
     source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20",
+    settings=("scene", "loads", "skip", "solver"),
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
-    bonded = study.scene_of(run, "bonded", OWN_KEYS, coarsen=False)
-    spherical = study.scene_of(run, "spherical", OWN_KEYS, coarsen=False)
+    bonded = study.scene_of(run, page, "bonded", coarsen=False)
+    spherical = study.scene_of(run, page, "spherical", coarsen=False)
     hub, what = secants.hub_loads(run, EVERY)
     factors = QUICK_FACTORS if run.quick else FACTORS
     units = {

@@ -26,6 +26,9 @@ from fe_drivetrain.suite import Page, Run
 #: K_R by plane (Stirling 2023, section 3.3.1) [MN m/rad].
 PUBLISHED = {"vertical": 145.0, "horizontal": 392.0}
 
+_AS = ", as in the thesis"
+_OTHER_HOUSING = "The thesis's values belong to its own housing, whose dimensions it does not give"
+
 
 def check_solution(page: Page, solved: Solved, label: str) -> None:
     """The two independent checks that every solution carries."""
@@ -58,17 +61,18 @@ def check_series(page: Page, series: Series, label: str) -> None:
 
 
 def tilt_table(page: Page, tilt: Tilt, series: Series) -> None:
-    """K_R by plane and estimator, each with its band, beside the thesis's."""
+    """K_R by plane and estimator, each with its band; of the thesis's scene beside its own."""
     rows = []
     for p, (plane, values) in enumerate(tilt.by_plane.items()):
         row: dict[str, object] = {"plane": plane}
         for k, (estimator, value) in enumerate(zip(ESTIMATORS, values.values(), strict=True)):
             band = series.band(lambda f, p=p, k=k: float(f["K_R"][p, k]) / 1e6)
             row |= {estimator: value / 1e6, f"± {estimator}": band}
-        rows.append(row | {"spread [%]": spread(values), "Stirling 2023": PUBLISHED[plane]})
+        row["spread [%]"] = spread(values)
+        rows.append(row if page.subject else row | {"Stirling 2023": PUBLISHED[plane]})
     page.table(
-        "K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed. The "
-        "thesis's values belong to its own housing, whose dimensions it does not give",
+        "K_R = M / theta of bearing and housing [MN m/rad], gearbox springs removed"
+        + ("" if page.subject else f". {_OTHER_HOUSING}"),
         rows,
     )
 
@@ -183,15 +187,16 @@ def pictures_of(run: Run, solved: Solved, loads: Floats, what: str) -> Sequence[
 
 
 def assume(page: Page, scene: Scene) -> None:
-    """Everything that the thesis does not give."""
+    """Everything that the source of the scene does not give."""
+    own = bool(page.subject)
     unit = scene.bearing_units[0]
     torque = scene.gearbox.stiffness[3]
     page.assume(
         "gearbox torque reaction",
         torque if torque == "rigid" else float(torque),
         "" if torque == "rigid" else "N m/rad",
-        "a spherical joint lets the shaft spin, so the gearbox must react torque; the thesis "
-        "names three translational springs only",
+        "a spherical joint lets the shaft spin, so the gearbox must react torque"
+        + ("" if own else "; the thesis names three translational springs only"),
     )
     page.assume(
         "coupling of hub and gearbox",
@@ -200,12 +205,13 @@ def assume(page: Page, scene: Scene) -> None:
         "averaged: loads and springs act on the mean motion of the shaft's end face (RBE3)",
     )
     base = {
-        "fixed": "the whole underside of the housing is fixed, as in the thesis",
-        "bolted": "four washer footprints are fixed; in the thesis the whole underside",
+        "fixed": "the whole underside of the housing is fixed" + ("" if own else _AS),
+        "bolted": "four washer footprints are fixed"
+        + ("" if own else "; in the thesis the whole underside"),
     }[unit.housing.base]
     page.assume("bedplate", "rigid", "", base)
     page.assume(
-        "clearance, friction, damping", "none", "", "as in the thesis: quasi-static, linear"
+        "clearance, friction, damping", "none", "", "quasi-static, linear" + ("" if own else _AS)
     )
     for unit in scene.bearing_units:
         name = unit.bearing.name
@@ -216,11 +222,12 @@ def assume(page: Page, scene: Scene) -> None:
     names = [unit.bearing.name for unit in scene.bearing_units]
     for name in ("shaft", *names, *(f"{name}.housing" for name in names)):
         material = scene.material_of(name)
-        own = material in scene.materials.values()
+        given = material in scene.materials.values()
+        assumed = "of the library" if own else "assumed: the thesis names no material"
         page.assume(
             f"{name}: E, nu, density",
             f"{material.youngs_modulus / 1e9:g} GPa, {material.poisson_ratio:g}, "
             f"{material.density:g} kg/m³",
             "",
-            "given by the scene" if own else "assumed: the thesis names no material",
+            "given by the scene" if given else assumed,
         )

@@ -125,10 +125,17 @@ def axis_deflection(solved: Solved, load: int, n_slices: int) -> tuple[Floats, F
 @case(
     "Spherical main bearing: reactions, deflection and the joint's three forms",
     source="Stirling 2023, PhD thesis, sections 3.1 and 3.2 (DSRB), Table 3.1, Eq 3.1",
+    settings=("scene", "solver"),
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Solve the three forms of the joint and compare them with statics and with a beam."""
-    scene = study.scene_of(run, "spherical")
+    scene = study.scene_of(run, page, "spherical")
+    if scene.bearing_units[0].interface != FORMS[0]:
+        page.note(
+            f"The scene's joint is {scene.bearing_units[0].interface}: here stand all three forms "
+            f"of it, and what names none is of the {FORMS[0]} one."
+        )
     beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
     with run.side_by_side(len(FORMS) + 2) as jobs:
         meshed = study.mesh_of(run, scene, "all forms")  # which differ in their constraints only

@@ -22,10 +22,10 @@ from fe_drivetrain.response import (
 )
 from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
 from fe_drivetrain.solve import METHODS
-from fe_drivetrain.suite import Run
+from fe_drivetrain.suite import Page, Run
 
-#: Keys of --set that are the case's own; every other key changes the scene.
-OWN_KEYS = ("scene", "solver")
+#: Interfaces of a spherical bearing.
+SPHERICAL = ("sliding", "averaged", "rigid")
 
 ESTIMATORS = ("four nodes", "averaged seat", "energy")
 
@@ -48,17 +48,17 @@ class Solved:
         return self.scene.bearing_units[0].bearing.name
 
 
-def scene_of(
-    run: Run, kind: str, own_keys: tuple[str, ...] = OWN_KEYS, coarsen: bool = True
-) -> Scene:
-    """The library's scene, or the user's own, with the user's changes.
+def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
+    """The library's scene, or the user's own, with the user's changes, and a bearing of a kind.
+
+    Where the scene has another bearing, that is exchanged, and the page says so first.
 
     Parameters
     ----------
+    page : Page
+        Learns that it is about a scene of the user's.
     kind : str
-        "spherical" or "bonded". A user's scene is made to have that interface.
-    own_keys : tuple[str, ...]
-        Settings that are not changes of the scene.
+        "spherical" or "bonded".
     coarsen : bool
         Whether ``--quick`` coarsens the mesh.
 
@@ -67,7 +67,30 @@ def scene_of(
     InputError
         The scene has not exactly one bearing unit, as the closed forms need.
     """
-    changes = {key: value for key, value in run.settings.items() if key not in own_keys}
+    given = given_scene(run, kind)
+    if "scene" in run.settings:
+        page.subject = given.title
+        page.source = f"scene {run.settings['scene']}"
+    scene = with_kind(given, kind)
+    (before,), (after,) = given.bearing_units, scene.bearing_units
+    if before.interface != after.interface:
+        page.note(
+            f"Another bearing: {before.bearing.name!r} of the scene is {before.interface}, and "
+            f"this case needs a {kind} one. Its figures of a {kind} bearing are of the scene with "
+            f"that bearing made {after.interface}, not of the scene as it was given."
+        )
+    if run.quick and coarsen:
+        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*QUICK)})
+    return scene
+
+
+def given_scene(run: Run, kind: str) -> Scene:
+    """The user's scene, or the library's of a kind, with the user's changes; see `scene_of`."""
+    changes = {
+        key: value
+        for key, value in run.settings.items()
+        if key.partition(".")[0] in Scene.model_fields
+    }
     if "scene" in run.settings:
         scene = read_scene(str(run.settings["scene"]), changes)
     else:
@@ -77,22 +100,23 @@ def scene_of(
             f"scene {scene.title!r} has {len(scene.bearing_units)} bearing units: the "
             "main-bearing cases compare with closed forms for one; give a scene with one"
         )
-    if "scene" in run.settings:
-        scene = with_kind(scene, kind)
-    if run.quick and coarsen:
-        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*QUICK)})
     return scene
+
+
+def kind_of(scene: Scene) -> str:
+    """Kind of the scene's bearing: "spherical", "bonded", or the name of another interface."""
+    interface = scene.bearing_units[0].interface
+    return "spherical" if interface in SPHERICAL else interface
 
 
 def with_kind(scene: Scene, kind: str) -> Scene:
     """The scene with its bearing spherical (sliding joint) or bonded (plain ring)."""
-    unit = scene.bearing_units[0]
-    if kind == "spherical" and unit.interface == "bonded":
-        changes = {"bearing.kind": "spherical", "interface": "sliding"}
-    elif kind == "bonded" and unit.interface != "bonded":
-        changes = {"bearing.kind": "ring", "interface": "bonded"}
-    else:
+    if kind_of(scene) == kind:
         return scene
+    changes = {
+        "spherical": {"bearing.kind": "spherical", "interface": "sliding"},
+        "bonded": {"bearing.kind": "ring", "interface": "bonded"},
+    }[kind]
     return change_scene(scene, {f"bearing_units.0.{k}": v for k, v in changes.items()})
 
 

@@ -85,10 +85,12 @@ def by_load(free: Solved, series: bands.Series) -> list[Record]:
 @case(
     "Torsional stiffness K_R of bearing and housing, by three estimators",
     source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20, Figures 3.13 and 3.14",
+    settings=("scene", "solver"),
+    changes="scene",
 )
 def run(run: Run, page: Page) -> None:
     """Measure K_R, and show how much it depends on the estimator and on the load."""
-    scene = study.scene_of(run, "bonded")
+    scene = study.scene_of(run, page, "bonded")
     with run.side_by_side(3) as jobs:
         coarser = bands.start(jobs, scene, "bonded", solved=False, tilted=True)
         tilt = study.solve_tilt(run, scene, "without gearbox", study.mesh_of(run, scene, "bonded"))
@@ -106,9 +108,12 @@ def run(run: Run, page: Page) -> None:
         f"The three estimators spread by {spread['vertical']:.0f} % and "
         f"{spread['horizontal']:.0f} %: K_R is a property of the estimator as much as of the "
         "housing.",
-        "The thesis gives 145 and 392 MN m/rad for a housing whose dimensions it does not "
-        "state; this housing is another one, and nothing here is fitted to those values.",
     )
+    if not page.subject:
+        page.answer(
+            "The thesis gives 145 and 392 MN m/rad for a housing whose dimensions it does not "
+            "state; this housing is another one, and nothing here is fitted to those values."
+        )
     if series.complete:
         percent = [series.percent(lambda f, p=p: float(f["K_R"][p, 1])) for p in range(len(PLANES))]
         page.answer(
@@ -133,11 +138,12 @@ def run(run: Run, page: Page) -> None:
     layout = {"yaxis": {"title": {"text": "K_R [MN m/rad]"}}, "barmode": "group"}
     page.add(Chart(caption="K_R by plane and estimator", figure={"data": bars, "layout": layout}))
     page.text(
-        "Four nodes: rotation of the line between two housing points, as in the thesis; it misses "
-        "the compliance of the ring and of the shell between shaft and housing, so it is usually "
-        "the stiffest. Averaged seat: least-squares rotation of the face between shaft and "
-        "bearing. Energy: M²/2U with the energy of bearing and housing alone, without the shaft's "
-        "own compliance under the ring."
+        "Four nodes: rotation of the line between two housing points"
+        + ("" if page.subject else ", as in the thesis")
+        + "; it misses the compliance of the ring and of the shell between shaft and housing, so "
+        "it is usually the stiffest. Averaged seat: least-squares rotation of the face between "
+        "shaft and bearing. Energy: M²/2U with the energy of bearing and housing alone, without "
+        "the shaft's own compliance under the ring."
     )
     mesh = free.model.mesh
     page.table(

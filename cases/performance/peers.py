@@ -44,6 +44,16 @@ SYMBOLS = ("circle", "square", "diamond", "x")
     "Speed and memory beside other finite-element tools, at equal error",
     source="Measured here: the same meshes, boundary conditions and answers for every tool",
     alone=True,
+    settings=(
+        "tools",
+        "problems",
+        "sizes",
+        "repetitions",
+        "budget",
+        "time_limit",
+        "memory_limit",
+        "threads",
+    ),
 )
 def run(run: Run, page: Page) -> None:
     """Run every tool on every mesh in turns, and compare what they took at equal error."""

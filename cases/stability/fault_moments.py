@@ -63,7 +63,7 @@ def small(run: Run, page: Page) -> None:
 
 
 MESH_CONTENT = _content(SHAFT, [], {}, SIZES, frozenset())
-CASE_KILLED = Case("faults/small", "Small case", "Saint-Venant", small)
+CASE_KILLED = Case("faults/small", "Small case", "Saint-Venant", small, settings=("mark",))
 
 
 @dataclass(frozen=True)
@@ -320,7 +320,8 @@ def _one_of_three(out: Path) -> int:
             gmsh.model.mesh.generate = generate
 
     names = {"first": small, "fails": failing, "last": small}
-    cases = [Case(f"faults/{name}", "t", "s", work) for name, work in names.items()]
+    takes = ("mark",)
+    cases = [Case(f"faults/{n}", "t", "s", work, settings=takes) for n, work in names.items()]
     problems = run_cases(cases, out, {"mark": NEW})
     sys.stderr.write("".join(f"{name}: {p.message}\n" for name, p in problems.items()))
     return 2 if problems else 0

@@ -13,6 +13,7 @@ import typer
 
 from fe_drivetrain.commands.compare_runs import compare_runs_command
 from fe_drivetrain.commands.export import export_command
+from fe_drivetrain.commands.new_scene import new_command
 from fe_drivetrain.commands.run import (
     OutFolder,
     Quick,
@@ -21,7 +22,12 @@ from fe_drivetrain.commands.run import (
     run_command,
 )
 from fe_drivetrain.commands.settings import CaseSettings
-from fe_drivetrain.commands.studies import advise_command, uncertainty_command
+from fe_drivetrain.commands.studies import (
+    advise_command,
+    check_command,
+    study_command,
+    uncertainty_command,
+)
 from fe_drivetrain.commands.terminal import prepare_streams, write
 
 if TYPE_CHECKING:
@@ -36,6 +42,9 @@ _LOOK: dict[str, Any] = {
 app = typer.Typer(no_args_is_help=True, **_LOOK)
 """The commands of ``fe-drivetrain``."""
 
+app.command("new")(new_command)
+app.command("check")(check_command)
+app.command("study")(study_command)
 app.command("list")(list_command)
 app.command("run")(run_command)
 app.command("compare-runs")(compare_runs_command)

@@ -192,7 +192,7 @@ def cases_text(titles: Mapping[str, str]) -> str:
 
 
 def results_text(results: Results, page: Path) -> str:
-    """Outcome of one case: each check, the first sentences, and where its report is.
+    """Outcome of one case: its notes, each check, the first sentences, and where its report is.
 
     Parameters
     ----------
@@ -205,9 +205,41 @@ def results_text(results: Results, page: Path) -> str:
     -------
     str
     """
-    lines = [verdict_line(verdict) for verdict in results.verdicts]
+    lines = [*results.notes, *([""] if results.notes else [])]
+    lines += [verdict_line(verdict) for verdict in results.verdicts]
     lines += ["", *results.summary[:_SUMMARY_SENTENCES], ""]
     lines += [f"{_count(results)}: {page}"]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def tables_text(results: Results, page: Path) -> str:
+    """Summary and tables of a case in plain text, and where its report is.
+
+    Parameters
+    ----------
+    results : Results
+        Of the case.
+    page : Path
+        Its report.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.report.page import formatted
+    from fe_drivetrain.report.results import Table
+
+    lines = [*results.summary]
+    for section in results.sections:
+        for table in (item for item in section.items if isinstance(item, Table)):
+            rows = [table.columns, *([formatted(cell) for cell in row] for row in table.rows)]
+            widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+            lines += ["", table.caption]
+            lines += [
+                "  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
+                for row in rows
+            ]
+    lines += ["", f"Report: {page}"]
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -244,6 +276,7 @@ def several_results_text(
         found = results[name]
         outcome = "pass" if found.passed else "FAIL"
         lines.append(f"{outcome}  {name}: {_count(found)}, {sum(found.times.values()):.1f} s")
+        lines += [f"      {note}" for note in found.notes if not found.environment.quick]
         lines += [f"      {verdict_line(v)}" for v in found.verdicts if not v.passed]
     passed = sum(found.passed for found in results.values())
     lines += ["", f"{passed} of {len(names)} cases pass: {page}"]

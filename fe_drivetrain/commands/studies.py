@@ -1,4 +1,4 @@
-"""The commands ``advise`` and ``uncertainty``: studies of one scene, each with a report."""
+"""The commands ``check``, ``study``, ``advise``, ``uncertainty``: one scene, with a report."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.commands.progress import show_steps
-from fe_drivetrain.commands.run import results_text
+from fe_drivetrain.commands.run import Quick, results_text, tables_text
 from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import (
     Loads,
@@ -21,9 +21,11 @@ from fe_drivetrain.commands.settings import (
     parse_tolerance,
 )
 from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
+    from fe_drivetrain.report.results import Results
     from fe_drivetrain.suite.page import Page
     from fe_drivetrain.suite.run import Run
 
@@ -37,6 +39,87 @@ _OutFolder = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/COMMAND/SCENE."),
 ]
+
+
+def check_command(scene: _Scene, out: _OutFolder = None, set_: SceneSettings = None) -> None:
+    """Check a scene, describe and draw it, and predict what each level of the ladder costs.
+
+    Prints parts, bearings, supports, masses and costs; the report has the picture, too.
+
+    The exit status is 0 if the scene can be solved, 2 if it cannot.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.commands.scene_page import checked
+
+        title = f"{found.title}: what the scene is, and what it costs"
+        results, page = _results_of_scene(
+            "check", scene, title, out, lambda run, page: checked(run, page, found)
+        )
+        write(sys.stdout, tables_text(results, page))
+        return PASSED
+
+    raise typer.Exit(guarded(work))
+
+
+def study_command(
+    scene: _Scene,
+    loads: Annotated[
+        str | None,
+        typer.Option(
+            "--loads",
+            metavar="FILES",
+            help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
+            "quotes, as in 'outputs/*.outb'. Default: a surrogate of a generic 2 MW rotor.",
+        ),
+    ] = None,
+    skip: Annotated[
+        float,
+        typer.Option(
+            "--skip",
+            metavar="SECONDS",
+            min=0.0,
+            help="What is left out at the beginning of each file of --loads.",
+        ),
+    ] = 0.0,
+    quick: Quick = False,
+    out: _OutFolder = None,
+    set_: SceneSettings = None,
+) -> None:
+    """Study any scene over hub loads: K_R of its bearing units, reactions, beams against FE.
+
+    Solves the assembly of solids and the cheaper levels for unit loads; the reactions of every load
+    step are then one matrix product. Of your own files the reactions are also written as CSV, with
+    the weight of all parts.
+
+    The exit status is 0 if every check passes.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        if skip and loads is None:
+            raise InputError(
+                f"--skip {skip:g} leaves out the beginning of your own files, and there are none: "
+                "give them with --loads, or leave --skip out"
+            )
+        from fe_drivetrain.commands.study_loads import own_loads
+        from fe_drivetrain.commands.study_page import studied
+
+        # before the work: a fault in a file is reported at once
+        own = None if loads is None else own_loads(loads, skip)
+        return _run_on_scene(
+            "study",
+            scene,
+            f"{found.title}: stiffness, reactions, and beams against FE",
+            out,
+            lambda run, page: studied(run, page, found, own),
+            quick,
+        )
+
+    raise typer.Exit(guarded(work))
 
 
 def advise_command(
@@ -183,8 +266,23 @@ def _run_on_scene(
     title: str,
     out: Path | None,
     study: Callable[[Run, Page], None],
+    quick: bool = False,
 ) -> int:
     """Run a study as a case of its own and print its outcome; returns the exit status."""
+    results, page = _results_of_scene(command, scene, title, out, study, quick)
+    write(sys.stdout, results_text(results, page))
+    return PASSED if results.passed else FAILED
+
+
+def _results_of_scene(
+    command: str,
+    scene: str,
+    title: str,
+    out: Path | None,
+    study: Callable[[Run, Page], None],
+    quick: bool = False,
+) -> tuple[Results, Path]:
+    """Run a study as a case of its own; its results, and its report."""
     from fe_drivetrain.suite.case import Case
     from fe_drivetrain.suite.result_folders import run_case
 
@@ -192,6 +290,5 @@ def _run_on_scene(
     case = Case(f"{command}/{name}", title, f"the scene {name}", study)
     folder = Path("reports", command, name) if out is None else out
     with show_steps() as report:
-        results = run_case(case, folder.resolve(), report=report)
-    write(sys.stdout, results_text(results, folder / "report.html"))
-    return PASSED if results.passed else FAILED
+        results = run_case(case, folder.resolve(), quick=quick, report=report)
+    return results, folder / "report.html"

@@ -27,6 +27,12 @@ from .ladder import assembly_level as assembly_level
 from .ladder import housing_springs as housing_springs
 from .ladder import shaft_level as shaft_level
 from .ladder import statics_level as statics_level
+from .level_costs import Forecast as Forecast
+from .level_costs import forecast as forecast
+from .over_loads import Levels as Levels
+from .over_loads import levels_of as levels_of
+from .over_loads import reaction_history as reaction_history
+from .over_loads import relative_errors as relative_errors
 from .quantities import unit_numbers as unit_numbers
 from .shafts import beam_shaft as beam_shaft
 from .shafts import meridian_shaft as meridian_shaft

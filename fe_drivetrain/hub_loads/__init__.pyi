@@ -1,5 +1,7 @@
 from .aero_rotor import assumptions as assumptions
 from .csv_table import write_csv as write_csv
+from .files import hub_load_files as hub_load_files
+from .files import read_hub_load_files as read_hub_load_files
 from .files import read_hub_loads as read_hub_loads
 from .histories import UNITS as UNITS
 from .histories import LoadHistory as LoadHistory

@@ -108,7 +108,9 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     ]
     columns = dict(zip(FORCES, loads, strict=True))
     require_sound(f"hub loads '{source}'", time, columns, rows)
-    return LoadHistory(file.stem, time, np.column_stack(loads), {"source": file.name} | attributes)
+    read = ", ".join(f"{name} [{channels[name].unit}]" for name in FORCES)
+    origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
+    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes)
 
 
 def write_csv(history: LoadHistory, path: str | os.PathLike[str]) -> None:

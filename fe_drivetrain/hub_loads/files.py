@@ -1,31 +1,143 @@
-"""Hub loads from a file of any supported format."""
+"""Hub loads from one file or many, of any supported format."""
 
 from __future__ import annotations
 
+import glob
 import os
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.csv_table import read_csv
-from fe_drivetrain.hub_loads.histories import LoadHistory, require_variation
+from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, LoadHistory, require_variation
 from fe_drivetrain.hub_loads.openfast import read_openfast
 
+SUFFIXES = (".out", ".outb", ".csv")
+_OPENFAST = (".out", ".outb")
 
-def read_hub_loads(path: str | os.PathLike[str]) -> LoadHistory:
+
+def read_hub_loads(path: str | os.PathLike[str], skip: float = 0.0) -> LoadHistory:
     """Read a history, its format determined by the suffix: .out or .outb (OpenFAST), or .csv.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    skip : float
+        What is left out at the beginning of the file [s]: a start-up transient.
 
     Raises
     ------
     InputError
-        If the file is missing, of another kind, or unsound, or if its loads never vary.
+        If the file is missing, of another kind, or unsound, if its loads never vary, or if nothing
+        is left of it.
     """
     file = Path(path)
     suffix = file.suffix.lower()
-    if suffix not in (".out", ".outb", ".csv"):
+    if suffix not in SUFFIXES:
         raise InputError(
             f"hub loads '{file}': the suffix '{file.suffix}' is not one of .out, .outb (OpenFAST) "
             "and .csv; convert the file or rename it"
         )
     history = read_csv(file) if suffix == ".csv" else read_openfast(file)
+    if skip:
+        first, last = float(history.time[0]), float(history.time[-1])
+        if (history.time >= first + skip).sum() < MIN_SAMPLES:
+            raise InputError(
+                f"hub loads '{file}': it lasts {last - first:g} s, so that nothing is left without "
+                f"the first {skip:g} s: skip less"
+            )
+        history = history.between(first + skip)
     require_variation(f"hub loads '{file}'", history.loads)
     return history
+
+
+def read_hub_load_files(pattern: str, skip: float = 0.0) -> list[LoadHistory]:
+    """Read all histories that a pattern finds, each with a name of its own.
+
+    A history is named after its file; where files of several folders have one name, after its
+    folders, too.
+
+    Parameters
+    ----------
+    pattern : str
+        See `hub_load_files`.
+    skip : float
+        As of `read_hub_loads`.
+
+    Raises
+    ------
+    InputError
+        No file is found, two are of one run, or one cannot be read.
+    """
+    files = hub_load_files(pattern)
+    histories = [read_hub_loads(file, skip) for file in files]
+    return [replace(h, name=n) for h, n in zip(histories, _names(files), strict=True)]
+
+
+def hub_load_files(pattern: str) -> list[Path]:
+    """Files with hub loads, in order.
+
+    Parameters
+    ----------
+    pattern : str
+        A file; a folder, for the .out, .outb and .csv files in it; or a pattern with ``*``, ``?``
+        or ``[...]`` in any part, and ``**`` for folders of any depth.
+
+    Raises
+    ------
+    InputError
+        None is found, or two are the .out and the .outb of one run.
+    """
+    path = Path(pattern)
+    if path.exists() or not glob.has_magic(pattern):
+        found = [path]
+    else:
+        found = sorted(Path(name) for name in glob.glob(pattern, recursive=True))
+    if found == [path] and not path.is_dir():
+        return [path]  # named by the user: read, or refused with its suffix
+    files = [
+        file
+        for place in found
+        for file in (sorted(place.iterdir()) if place.is_dir() else [place])
+        if file.suffix.lower() in SUFFIXES and file.is_file()
+    ]
+    files = list(dict.fromkeys(files))
+    if not files:
+        raise InputError(f"loads = {pattern!r}: no {', '.join(SUFFIXES)} file is there")
+    runs: dict[Path, Path] = {}
+    for file in files:
+        if file.suffix.lower() in _OPENFAST:
+            other = runs.setdefault(file.with_suffix(""), file)
+            if other is not file:
+                raise InputError(
+                    f"loads = {pattern!r}: {other} and {file.name} are two files of one OpenFAST "
+                    "run, which would count twice: choose one kind, as in "
+                    f"loads='{file.parent / ('*' + file.suffix)}'"
+                )
+    return files
+
+
+def _names(files: Sequence[Path]) -> list[str]:
+    """Names of histories that differ from each other, whether or not case counts."""
+    names = [file.stem for file in files]
+    if _differ(names):
+        return names
+    whole = [file.resolve() for file in files]
+    above = Path(os.path.commonpath([file.parent for file in whole]))
+    names = ["_".join(file.relative_to(above).with_suffix("").parts) for file in whole]
+    if not _differ(names):  # of one folder, a.csv beside a.outb, or folders with underscores
+        names = ["_".join(file.relative_to(above).parts).replace(".", "_") for file in whole]
+    if not _differ(names):
+        number = Counter(name.lower() for name in names)
+        (twice, *_) = [name for name in names if number[name.lower()] > 1]
+        raise InputError(
+            f"hub loads: two files would both be called {twice!r} in tables and results: rename one"
+        )
+    return names
+
+
+def _differ(names: Sequence[str]) -> bool:
+    return len({name.lower() for name in names}) == len(names)

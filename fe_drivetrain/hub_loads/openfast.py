@@ -74,8 +74,10 @@ def read_openfast(
     """
     file = existing_file(path)
     channels = _openfast_channels(file)
-    time, loads = _loads_from_channels(str(file), channels, gage_distance, azimuth_blade1_up)
-    return LoadHistory(file.stem, time, loads, {"source": f"OpenFAST, {file.name}"})
+    time, loads, read = _loads_from_channels(str(file), channels, gage_distance, azimuth_blade1_up)
+    return LoadHistory(
+        file.stem, time, loads, {"source": f"OpenFAST, {file.name}", "channels": read}
+    )
 
 
 def _loads_from_channels(
@@ -83,8 +85,8 @@ def _loads_from_channels(
     channels: Mapping[str, Channel],
     gage_distance: float | None = None,
     azimuth_blade1_up: float = 0.0,
-) -> tuple[Floats, Floats]:
-    """Time (n,) [s] and hub loads (n, 6) [N, N m] from OpenFAST channels keyed in lower case."""
+) -> tuple[Floats, Floats, str]:
+    """Time (n,) [s], hub loads (n, 6) [N, N m], and what was read, by channels in lower case."""
     used: dict[str, Channel] = {}
 
     def first(names: Sequence[str]) -> Channel | None:
@@ -165,7 +167,35 @@ def _loads_from_channels(
         my, mz = my - gage_distance * fz, mz + gage_distance * fy
     fx = in_si(source, axial, FORCE_UNITS)
     mx = in_si(source, torque, MOMENT_UNITS)
-    return seconds, np.column_stack((fx, fy, fz, mx, my, mz))
+    turned = "" if azimuth is None else f", turned back by {azimuth.name} [{azimuth.unit}]"
+    if azimuth is not None and azimuth_blade1_up:
+        turned += f" less {azimuth_blade1_up:g} rad"
+    carried = f", carried {gage_distance:g} m from the gage to the hub" if at_gage else ""
+    changed = any(_reversed(c.name) for c in (axial, torque, *shear[0], *bending[0]))
+    read = "; ".join(
+        (
+            f"Fx = {_as_read(axial)}",
+            f"Fy, Fz = {_as_read(*shear[0])}{turned if shear[1] else ''}",
+            f"Mx = {_as_read(torque)}",
+            f"My, Mz = {_as_read(*bending[0])}{turned if bending[1] else ''}{carried}",
+            f"{'other ' if changed else ''}signs as in the file",
+            "nothing turned" if azimuth is None else "others not turned",
+        )
+    )
+    return seconds, np.column_stack((fx, fy, fz, mx, my, mz)), read
+
+
+def _as_read(*channels: Channel) -> str:
+    """Names and units of channels as the file has them, and whether their sign was changed."""
+    return ", ".join(
+        f"{c.name} [{c.unit.strip('()')}]" + (", sign changed" if _reversed(c.name) else "")
+        for c in channels
+    )
+
+
+def _reversed(name: str) -> re.Match[str] | None:
+    """Whether OutList reversed the sign of a channel: with a leading -, _, m or M."""
+    return re.fullmatch(r"[-_m]((?:LSS|Rot|Azimuth).*)", name, re.IGNORECASE)
 
 
 def turn_to_fixed(y: ArrayLike, z: ArrayLike, azimuth: ArrayLike) -> tuple[Floats, Floats]:
@@ -224,8 +254,7 @@ def _openfast_channels(file: Path) -> dict[str, Channel]:
         )
     by_name: dict[str, Channel] = {}
     for name, unit, values in zip(names, units, data.T, strict=True):
-        # OutList takes a leading -, _, m or M to reverse a channel's sign.
-        reversed_name = re.fullmatch(r"[-_m]((?:LSS|Rot|Azimuth).*)", name, re.IGNORECASE)
+        reversed_name = _reversed(name)
         key = (reversed_name[1] if reversed_name else name).lower()
         by_name.setdefault(key, Channel(name, unit, -values if reversed_name else values))
     return by_name

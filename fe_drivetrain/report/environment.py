@@ -22,7 +22,9 @@ _PACKAGES = (
 )
 
 
-def environment(settings: Mapping[str, Any], seed: int | None = None) -> Environment:
+def environment(
+    settings: Mapping[str, Any], seed: int | None = None, quick: bool = False
+) -> Environment:
     """Date, platform, versions, and the user's settings."""
     versions = {}
     for name in _PACKAGES:
@@ -37,4 +39,5 @@ def environment(settings: Mapping[str, Any], seed: int | None = None) -> Environ
         versions=versions,
         settings=dict(settings),
         seed=seed,
+        quick=quick,
     )

@@ -22,6 +22,8 @@ def write_junit(
 ) -> None:
     """Write a test suite for each case, and in it a test for each verdict.
 
+    A suite of a quick run has the property "quick".
+
     Parameters
     ----------
     path : Path
@@ -41,6 +43,9 @@ def write_junit(
             outcome = "skipped" if problem.is_missing_tool else "error"
             ElementTree.SubElement(test, outcome, message=problem.message)
         else:
+            if found.environment.quick:
+                properties = ElementTree.SubElement(suite, "properties")
+                ElementTree.SubElement(properties, "property", name="quick", value="true")
             suite.set("time", f"{sum(found.times.values()):.3f}")
             for verdict in found.verdicts:
                 test = ElementTree.SubElement(
@@ -52,7 +57,7 @@ def write_junit(
                     failure.text = f"{verdict.reason}\n{verdict.source}"
         for kind, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
             suite.set(kind, str(len(suite.findall(f"testcase/{tag}"))))
-        suite.set("tests", str(len(suite)))
+        suite.set("tests", str(len(suite.findall("testcase"))))
     ElementTree.indent(root)
     with atomic_path(path) as unfinished:
         ElementTree.ElementTree(root).write(unfinished, encoding="utf-8", xml_declaration=True)

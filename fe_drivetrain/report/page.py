@@ -31,6 +31,7 @@ from fe_drivetrain.report.results import (
     Verdict,
     bias_and_scatter,
     read_results,
+    results_below,
 )
 
 DIGITS = 5
@@ -108,7 +109,7 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
     folder : Path
         Holds GROUP/NAME/results.json of any number of cases.
     problems : Mapping[str, Problem] or None
-        Why a case has no results now, by its name; it is listed with that.
+        Why a case has no results now, or none of this run, by its name; it is listed with that.
 
     Returns
     -------
@@ -117,19 +118,20 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
     """
     folder = Path(folder)
     problems = problems or {}
-    names = {"/".join(f.parts[-3:-1]) for f in folder.glob("*/*/results.json")}
+    names = set(results_below(folder))
     rows = []
     for name in sorted(names | set(problems)):
         row: dict[str, Any] = {"name": name, "group": name.partition("/")[0], "results": None}
+        row |= {"skipped": False, "pending": False}
         if name in problems:
             row["problem"] = problems[name].message
             row["skipped"] = problems[name].is_missing_tool
+            row["pending"] = problems[name].is_pending
         else:
             try:
                 row["results"] = read_results(folder / name / "results.json")
             except (OSError, ValueError):  # of another version, say
                 row["problem"] = "its results.json cannot be read: run it again"
-                row["skipped"] = False
         rows.append(row)
     verdicts = [v for row in rows if row["results"] for v in row["results"].verdicts]
     environment = _environment()
@@ -137,12 +139,14 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
     limits = [
         (limit, row["name"]) for row in rows if row["results"] for limit in row["results"].limits
     ]
+    quick = {row["name"] for row in rows if row["results"] and row["results"].environment.quick}
     atlas = folder / "atlas.html"
     if limits:
         with atomic_path(atlas) as unfinished:
             content = environment.get_template("atlas.html").render(
                 limits=[limit for limit, _ in limits],
                 pages=[name for _, name in limits],
+                quick=sorted({name for _, name in limits} & quick),
                 style=_style(),
             )
             unfinished.write_text(content, encoding="utf-8")
@@ -153,7 +157,9 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
         content = environment.get_template("index.html").render(
             has_atlas=bool(limits),
             rows=rows,
-            skipped=sum(bool(row.get("skipped")) for row in rows),
+            skipped=sum(row["skipped"] for row in rows),
+            pending=sum(row["pending"] for row in rows),
+            quick=len(quick),
             passed=sum(row["results"] is not None and row["results"].passed for row in rows),
             verdicts=verdicts,
             statistics=bias_and_scatter(verdicts),

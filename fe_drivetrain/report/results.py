@@ -252,13 +252,15 @@ class Environment(_Result):
     versions: dict[str, str]
     settings: dict[str, Any]
     seed: int | None = None
+    quick: bool = Field(default=False, description="whether the run was coarser and smaller")
 
 
 class Problem(NamedTuple):
-    """Why a case has no results."""
+    """Why a case has no results, or none of this run."""
 
     message: str
     is_missing_tool: bool = False
+    is_pending: bool = False
 
 
 class Results(_Result):
@@ -268,6 +270,9 @@ class Results(_Result):
     case: str
     title: str
     source: str
+    notes: list[str] = Field(
+        default=[], description="what must be known before any figure, in sentences"
+    )
     summary: list[str] = Field(description="the answer first, in a few sentences")
     verdicts: list[Verdict]
     sections: list[Section]
@@ -281,6 +286,12 @@ class Results(_Result):
     def passed(self) -> bool:
         """Whether every verdict passed."""
         return all(verdict.passed for verdict in self.verdicts)
+
+
+def results_below(folder: Path) -> dict[str, Path]:
+    """Files of results below a folder, by "GROUP/NAME"; not those of runs that were killed."""
+    files = sorted(folder.glob("*/*/results.json"))
+    return {"/".join(f.parts[-3:-1]): f for f in files if not f.parent.name.startswith(".")}
 
 
 def read_results(path: str | Path) -> Results:

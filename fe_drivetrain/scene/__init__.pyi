@@ -1,3 +1,7 @@
+from .arrangements import ARRANGEMENTS as ARRANGEMENTS
+from .arrangements import Arrangement as Arrangement
+from .arrangements import scene_schema as scene_schema
+from .arrangements import starting_scene as starting_scene
 from .bearing_unit import BearingUnit as BearingUnit
 from .bearing_unit import Rollers as Rollers
 from .bearing_unit import Springs as Springs

@@ -21,6 +21,11 @@ if TYPE_CHECKING:
     from fe_drivetrain.suite.page import Page
     from fe_drivetrain.suite.run import Run
 
+QUICK = (
+    "Quick run: coarser and smaller than the case, for a first look; its figures and bands are not "
+    "those of the case."
+)
+
 
 @dataclass(frozen=True)
 class Case:
@@ -39,6 +44,11 @@ class Case:
     alone : bool
         It measures time or memory: nothing may run beside it, and nothing it uses comes from the
         cache.
+    settings : tuple of str
+        Keys of ``--set`` that are the case's own.
+    changes : str
+        What its other keys change: "scene", or a kind of component, as in "planet_carrier"; empty
+        where it takes no others.
     """
 
     name: str
@@ -46,6 +56,8 @@ class Case:
     source: str
     run: Callable[[Run, Page], None]
     alone: bool = False
+    settings: tuple[str, ...] = ()
+    changes: str = ""
 
     def results(self, run: Run) -> Results:
         """Run the case; what it found."""
@@ -57,8 +69,9 @@ class Case:
         self.run(run, page)
         return Results(
             case=self.name,
-            title=self.title,
-            source=self.source,
+            title=f"{page.subject}: {self.title}" if page.subject else self.title,
+            source=page.source or self.source,
+            notes=[*([QUICK] if run.quick else []), *page.notes],
             summary=page.summary,
             verdicts=page.verdicts,
             sections=page.sections,
@@ -66,7 +79,7 @@ class Case:
             assumptions=page.assumptions,
             times=run.times,
             figures=page.figures,
-            environment=environment(run.settings, page.seed),
+            environment=environment(run.settings, page.seed, run.quick),
         )
 
 
@@ -120,6 +133,7 @@ def _declared_in(module: str) -> list[Case]:
             row["source"],
             partial(_run_declared, module, function, row=row),
             row.get("alone", False),
+            **named,
         )
         for key, row in rows.items()
     ]

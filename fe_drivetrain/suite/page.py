@@ -33,6 +33,10 @@ class Page:
 
     Attributes
     ----------
+    subject, source : str
+        What a page is about, and from where, if the user gave it; empty where it is the case's own.
+    notes : list of str
+        What must be known before any figure, in sentences.
     verdicts : list of Verdict
         Of all checks so far.
     summary : list of str
@@ -50,6 +54,9 @@ class Page:
     """
 
     def __init__(self) -> None:
+        self.subject = ""
+        self.source = ""
+        self.notes: list[str] = []
         self.verdicts: list[Verdict] = []
         self.summary: list[str] = []
         self.sections: list[Section] = []
@@ -220,6 +227,11 @@ class Page:
     def answer(self, *sentences: str) -> None:
         """The answer first: added to the summary on top of the page."""
         self.summary.extend(sentences)
+
+    def note(self, sentence: str) -> None:
+        """State, above all else, what must be known before any figure; the same sentence once."""
+        if sentence not in self.notes:
+            self.notes.append(sentence)
 
     def section(self, title: str) -> None:
         """Begin a section; what is added from now on stands under its heading."""

@@ -12,6 +12,7 @@ from fe_drivetrain.common.files import HiddenFolder
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.run import Run
+from fe_drivetrain.suite.settings import settings_by_case
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
@@ -54,9 +55,10 @@ def run_case(
         The settings are wrong, or ``out`` cannot be written or holds something else.
     """
     out = Path(out)
+    taken = settings_by_case([case], settings or {})[case.name]
     folder = new_folder(out)
     try:
-        results = run_into(case, folder.path, settings or {}, quick, report)
+        results = run_into(case, folder.path, taken, quick, report)
         put_in_place(folder, out)
     finally:
         folder.discard()

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.results import Results, Verdict, read_results
+from fe_drivetrain.report.results import Results, Verdict, read_results, results_below
 
 ROUND_OFF = 1e-9
 """Relative difference up to which a value counts as changed by rounding alone."""
@@ -115,13 +115,13 @@ def compare_runs(before: Path, after: Path) -> RunComparison:
 
 
 def _read(folder: Path) -> dict[str, Results]:
-    files = sorted(folder.glob("*/*/results.json"))
+    files = results_below(folder)
     if not files:
         raise InputError(
             f"{folder} has no GROUP/NAME/results.json: name a folder that "
             "'fe-drivetrain run --all --out' wrote"
         )
-    return {"/".join(file.parts[-3:-1]): read_results(file) for file in files}
+    return {name: read_results(file) for name, file in files.items()}
 
 
 def _checks(case: str, before: Results, after: Results) -> tuple[list[Change], int]:

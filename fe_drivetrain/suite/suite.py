@@ -20,6 +20,9 @@ from fe_drivetrain.suite.result_folders import (
     result_folder,
     run_into,
 )
+from fe_drivetrain.suite.settings import settings_by_case
+
+_NOT_RUN = Problem("not run: the run has not come to its end", is_pending=True)
 
 
 def run_cases(
@@ -34,7 +37,7 @@ def run_cases(
     Independent cases run in processes side by side, as many as the cores allow; those that are to
     be `alone` come after them, one by one, each in a process that starts afresh. A case that fails
     does not keep the others from their work. Each result folder appears whole or not at all; when
-    stopped, those of finished cases stay.
+    stopped, those of finished cases stay, and the page lists the others as not run.
 
     Parameters
     ----------
@@ -43,7 +46,7 @@ def run_cases(
     out : Path
         The folder above theirs.
     settings : mapping, optional
-        As of `Run`.
+        As of `Run`; each case is given those that it takes.
     quick : bool
         As of `Run`.
     report : callable
@@ -57,32 +60,32 @@ def run_cases(
     Raises
     ------
     InputError
-        A result folder cannot be written or holds something else.
+        A result folder cannot be written or holds something else, or no case takes a setting.
     """
     from fe_drivetrain.report.page import write_index
 
     out = Path(out)
+    taken = settings_by_case(cases, settings or {})
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
-
-    finished: list[str] = []
+    pending = {case.name: _NOT_RUN for case in cases}
 
     def finish(case: Case, problem: Problem | None) -> None:
         if problem:
             problems[case.name] = problem
         else:
             put_in_place(folders[case.name], result_folder(out, case))
-        finished.append(case.name)
+        del pending[case.name]
+        write_index(out, problems | pending)  # a run that is killed later could not
 
     try:
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
+        write_index(out, problems | pending)
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), report, each_for_itself=True) as processes:
             jobs: dict[Future[Problem | None], Case] = {
-                processes.start(
-                    _run, case, folders[case.name].path, dict(settings or {}), quick
-                ): case
+                processes.start(_run, case, folders[case.name].path, taken[case.name], quick): case
                 for case in beside
             }
             for job in processes.finished(jobs):
@@ -91,14 +94,14 @@ def run_cases(
             if case.alone:
                 with Processes(1, report, always=True, each_for_itself=True) as processes:
                     job = processes.start(
-                        _run, case, folders[case.name].path, dict(settings or {}), quick
+                        _run, case, folders[case.name].path, taken[case.name], quick
                     )
                     finish(case, _outcome(job))
     finally:
         for folder in folders.values():
             folder.discard()
-        if finished:  # when stopped, those that were done by then
-            write_index(out, problems)
+        if len(folders) == len(cases):  # else nothing was begun
+            write_index(out, problems | pending)
     return problems
 
 

@@ -1,0 +1,176 @@
+"""Reactions to hub-load histories, with the weight of the parts: tables, and files of one's own."""
+
+import csv
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.cases.main_bearing.loads import HubLoads
+from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.common import FORCES, GRAVITY, Floats, InputError
+from fe_drivetrain.suite import Page, Record, Run
+
+FRAME = "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor"
+STATISTICS = "reaction_statistics.csv"
+_COLUMNS = ("least", "mean", "largest", "standard deviation")
+_UNITS = 3 * ("N",) + 3 * ("N m",)
+#: Share of a reaction's largest component below which the page shows round-off as zero.
+_ROUND_OFF = 1e-9
+
+
+def has_self_weight(run: Run) -> bool:
+    """Whether reactions hold the weight of shaft, bearings and housings.
+
+    They do, but for ``--set self_weight=false``.
+    """
+    chosen = run.settings.get("self_weight", True)
+    if not isinstance(chosen, bool):
+        raise InputError(
+            f"self_weight = {chosen!r} must be true or false: whether the reactions hold the "
+            "weight of shaft, bearings and housings"
+        )
+    return chosen
+
+
+def reaction_of(solved: Solved, name: str, loads: Floats, self_weight: bool) -> Floats:
+    """(..., 6) one reaction [N, N m] to (..., 6) hub loads, the weight of the gearbox included."""
+    gravity = GRAVITY if self_weight else 0.0
+    return solved.response.history(name, loads, solved.scene.gearbox.weight, gravity)
+
+
+def weight_statement(solved: Solved, self_weight: bool) -> str:
+    """Which weights are in the reactions, and which are not."""
+    parts = " + ".join(
+        f"{part} {GRAVITY * float(mass.sum()) / 1e3:.4g} kN"
+        for part, mass in solved.model.part_mass.items()
+    )
+    gearbox = f"gearbox {solved.scene.gearbox.weight / 1e3:.4g} kN"
+    rotor = "the rotor's as far as the hub loads hold it"
+    if self_weight:
+        return f"included along -z: {parts} + {gearbox}; {rotor}"
+    return f"left out: {parts} (self_weight = false); included along -z: {gearbox}; {rotor}"
+
+
+def origin_of(solved: Solved, name: str) -> str:
+    """The point that a reaction's moments are about, in words."""
+    x, y, z = (float(value) + 0.0 for value in solved.response.positions[name])
+    point = "centre of the rear face" if name == "gearbox" else f"centre of {name.split('.')[0]}"
+    return f"{point} at x = {x:.6g} m, y = {y:.6g} m, z = {z:.6g} m"
+
+
+def meaning_of(solved: Solved, name: str) -> str:
+    """What a reaction is: who puts it on whom."""
+    if name == "gearbox":
+        return "the shaft on the gearbox's springs and torque reaction"
+    bearing, _, face = name.partition(".")
+    if face == "seat":
+        return f"the shaft on the bearing {bearing}"
+    if face == "outer":
+        return f"the bearing {bearing} on its housing"
+    return f"the housing of {bearing} on its bedplate"
+
+
+def write_files(
+    folder: Path, hub: HubLoads, solved: Mapping[str, Solved], self_weight: bool
+) -> None:
+    """The main bearing's reaction as CSV, one file a history and bearing type.
+
+    Each states in lines before its table what is in it; it can be read again as hub loads are.
+    """
+    for kind, of in solved.items():
+        reactions = reaction_of(of, of.bearing, hub.loads, self_weight)
+        for k, name in enumerate(hub.names):
+            facts = {
+                "reaction": f"{of.bearing}, {kind}: {meaning_of(of, of.bearing)}",
+                "history": name,
+                "frame": FRAME,
+                "origin of moments": origin_of(of, of.bearing),
+                "weight": weight_statement(of, self_weight),
+                "channels": hub.channels[k],
+                "loads": hub.statement.removeprefix("Hub loads: "),
+            }
+            columns = ["time [s]"]
+            columns += [f"{c} [{unit}]" for c, unit in zip(FORCES, _UNITS, strict=True)]
+            np.savetxt(
+                folder / f"reactions_{kind}_{name}.csv",
+                np.column_stack([hub.times[k], reactions[k]]),
+                delimiter=",",
+                fmt="%.9g",
+                header="\n".join([*(f"# {f} = {v}" for f, v in facts.items()), ",".join(columns)]),
+                comments="",
+                encoding="utf-8",
+            )
+
+
+def statistics_of(reaction: Floats) -> Floats:
+    """(6, 4) least, mean, largest and standard deviation of (..., 6) samples of a reaction."""
+    flat = reaction.reshape(-1, 6)
+    return np.column_stack([flat.min(0), flat.mean(0), flat.max(0), flat.std(0)])
+
+
+def statistics_section(
+    run: Run, page: Page, hub: HubLoads, solved: Mapping[str, Solved], self_weight: bool
+) -> None:
+    """Extremes, means and standard deviations of every reaction, on the page and as a CSV."""
+    with run.step("statistics of the reactions"):
+        over_all = list(_write_statistics(run.folder / STATISTICS, hub, solved, self_weight))
+    page.section("Reactions: extremes, means, standard deviations")
+    any_solved = next(iter(solved.values()))
+    page.text(
+        f"Weight {weight_statement(any_solved, self_weight)}. Frame: {FRAME}. What is compared "
+        "with beams is without self-weight, which the beams do not have. By history: "
+        f"{STATISTICS}" + ("." if hub.conditions else "; over time: reactions_*.csv.")
+    )
+    page.table(
+        "Every reaction of the FE models over all histories, forces in kN and moments in kN\u00a0m",
+        over_all,
+    )
+    page.table(
+        "What each reaction is, and the origin of its moments",
+        [
+            {
+                "reaction": name,
+                "load of": meaning_of(any_solved, name),
+                "moments about": origin_of(any_solved, name),
+            }
+            for name in any_solved.response.reactions
+        ],
+    )
+    page.data("reaction_statistics_kN", over_all)
+
+
+def _write_statistics(
+    path: Path, hub: HubLoads, solved: Mapping[str, Solved], self_weight: bool
+) -> Iterator[Record]:
+    """Write each history's statistics, and yield those over all as rows of the page [kN, kN m]."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.write(f"# frame = {FRAME}\n")
+        file.write(f"# loads = {hub.statement.removeprefix('Hub loads: ')}\n")
+        for kind, of in solved.items():
+            file.write(f"# weight, {kind} = {weight_statement(of, self_weight)}\n")
+            for name in of.response.reactions:
+                file.write(f"# {name}, {kind} = {meaning_of(of, name)}; moments about ")
+                file.write(f"{origin_of(of, name)}\n")
+        for history, channels in zip(hub.names, hub.channels, strict=False):
+            file.write(f"# channels of {history} = {channels}\n")
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["bearing type", "history", "reaction", "component", "unit", *_COLUMNS])
+        for kind, of in solved.items():
+            for name in of.response.reactions:
+                reaction = reaction_of(of, name, hub.loads, self_weight)
+                whole = statistics_of(reaction)
+                by_history = [*zip(hub.names, map(statistics_of, reaction), strict=True)]
+                for history, found in [("all", whole), *by_history]:
+                    for component, unit, row in zip(FORCES, _UNITS, found, strict=True):
+                        numbers = [f"{value:.9g}" for value in row]
+                        table.writerow([kind, history, name, component, unit, *numbers])
+                size = np.abs(whole).max()
+                shown = np.where(np.abs(whole) < _ROUND_OFF * size, 0.0, whole) / 1e3
+                for component, row in zip(FORCES, shown.tolist(), strict=True):
+                    yield {
+                        "bearing type": kind,
+                        "reaction": name,
+                        "component": component,
+                        **dict(zip(_COLUMNS, row, strict=True)),
+                    }

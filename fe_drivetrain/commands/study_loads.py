@@ -1,0 +1,86 @@
+"""Hub loads of a study: the user's files, or the surrogate's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.aero_rotor import assumptions
+from fe_drivetrain.hub_loads.files import read_hub_load_files
+from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.suite.run import Run
+
+_QUICK_SEEDS = 1
+
+
+@dataclass(frozen=True)
+class StudyLoads:
+    """Hub-load histories, and what they are.
+
+    Attributes
+    ----------
+    histories : Sequence[LoadHistory]
+        One or more, each with its own time.
+    statement : str
+        What they are, as a sentence.
+    own : bool
+        Whether they are the user's.
+    assumptions : Sequence[tuple[str, float, str, str]]
+        Name, value, unit and source of what a surrogate assumes.
+    """
+
+    histories: Sequence[LoadHistory]
+    statement: str
+    own: bool
+    assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
+
+
+def own_loads(pattern: str, skip: float) -> StudyLoads:
+    """Read the user's files.
+
+    Parameters
+    ----------
+    pattern : str
+        A file, a folder, or a pattern.
+    skip : float
+        What is left out at the beginning of each file [s].
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or all loads are zero.
+    """
+    histories = read_hub_load_files(pattern, skip)
+    if not any(history.loads.any() for history in histories):
+        raise InputError(f"--loads {pattern!r}: all hub loads are zero: give histories with loads")
+    count, samples = len(histories), sum(map(len, histories))
+    return StudyLoads(
+        histories,
+        f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, {samples:,} load steps"
+        + (f"; the first {skip:g} s of each are left out." if skip else "."),
+        True,
+    )
+
+
+def surrogate_loads(run: Run) -> StudyLoads:
+    """The surrogate's histories; under ``--quick`` those of one seed.
+
+    Parameters
+    ----------
+    run : Run
+        The run that this is a step of.
+    """
+    grid = [c for c in surrogate_grid() if not run.quick or c.seed <= _QUICK_SEEDS]
+    with run.step("hub loads"):
+        found = hub_load_set(
+            grid, progress=lambda done, of: run.report(f"hub loads ({done} of {of})")
+        )
+    return StudyLoads(
+        list(found),
+        f"Hub loads are a surrogate, not those of your turbine: {len(grid)} ten-minute histories "
+        "of a generic 2 MW, 80 m rotor in turbulent wind. Give your own with --loads.",
+        False,
+        list(assumptions()),
+    )

@@ -1,0 +1,133 @@
+"""What each level of the ladder will take for a scene: unknowns, seconds, memory.
+
+Levels without a large system are run, for they take less than a forecast could save. Of the others
+the systems are made and the solver's cost is predicted (`fe_drivetrain.solve.cost_model`).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Ints
+from fe_drivetrain.fidelity.ladder import TITLES, shaft_level, statics_level
+from fe_drivetrain.fidelity.shafts import condensed_shaft
+from fe_drivetrain.interfaces.constraints import eliminate, fixed
+from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.solve.cost_model import predict
+from fe_drivetrain.solve.reduction import System, in_blocks, reduce
+
+_BOUNDS = 2  # of a unit's stiffness: its face in shape, and on average
+_OF_A_POINT = 6  # right-hand sides
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What a level takes.
+
+    Attributes
+    ----------
+    level : int
+        0 to 4.
+    title : str
+        Of the level, with what its housings are.
+    unknowns : int
+        Of its largest system.
+    seconds : float
+        Of the solution, without mesh and assembly where predicted.
+    bytes : float or None
+        Memory of its largest system, with what the solver keeps; None where it was run.
+    solver : str
+        That is predicted to be fastest; empty where the level was run.
+    fits : bool
+        Whether there is the memory for it now.
+    """
+
+    level: int
+    title: str
+    unknowns: int
+    seconds: float
+    bytes: float | None
+    solver: str
+    fits: bool
+
+
+def forecast(model: Model) -> list[Forecast]:
+    """What the levels of the ladder take, from cheap to expensive.
+
+    Units are solved apart on nearly the mesh that they have in the assembly, so their cost is
+    predicted from that.
+
+    Parameters
+    ----------
+    model : Model
+        The assembled model of the scene, see `fe_drivetrain.response.build_model`.
+
+    Returns
+    -------
+    list of Forecast
+
+    Raises
+    ------
+    InputError
+        A level refuses the scene.
+    """
+    scene = model.scene
+    statics, beam = statics_level(scene), shaft_level(scene, 1)
+    start = time.perf_counter()
+    body = condensed_shaft(scene, 2)
+    meridian = time.perf_counter() - start
+    units = []
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        parts = [name, f"{name}.housing"] if unit.ring_on_housing else [f"{name}.housing"]
+        system = _of_parts(model, parts, model.mesh.face_nodes(f"{name}.housing.base"))
+        units.append(_predicted(1, TITLES[1], system, _OF_A_POINT))
+    largest = max(units, key=lambda unit: unit.unknowns)
+    on_springs = [
+        Forecast(
+            level,
+            f"{TITLES[level]}, housings as springs between two bounds",
+            largest.unknowns,
+            _BOUNDS * sum(unit.seconds for unit in units) + seconds,
+            largest.bytes,
+            largest.solver,
+            all(unit.fits for unit in units),
+        )
+        for level, seconds in ((1, beam.cost.seconds), (2, meridian))
+    ]
+    rings = [u.bearing.name for u in scene.bearing_units]
+    shaft = _of_parts(model, ["shaft", *rings], model.mesh.face_nodes("shaft.rear"))
+    elimination = eliminate(model.constraints, model.n_dofs)
+    whole = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
+    return [
+        Forecast(0, statics.title, statics.cost.unknowns, statics.cost.seconds, None, "", True),
+        Forecast(1, beam.title, beam.cost.unknowns, beam.cost.seconds, None, "", True),
+        *on_springs,
+        _predicted(3, f"{TITLES[3]} alone", shaft, _OF_A_POINT * len(body.names)),
+        _predicted(4, TITLES[4], whole, len(LOADS) + 1),
+    ]
+
+
+def _predicted(level: int, title: str, system: System, n_rhs: int) -> Forecast:
+    best = predict(system, n_rhs)[0]
+    K = system.K
+    held = K.data.nbytes + K.indices.nbytes + K.indptr.nbytes
+    return Forecast(
+        level, title, system.n_free, best.seconds, held + best.bytes, best.method, best.fits
+    )
+
+
+def _of_parts(model: Model, parts: Sequence[str], held: Ints) -> System:
+    """The system of some parts alone, held at some of their nodes."""
+    mesh = model.mesh
+    cells = np.concatenate([mesh.cells[mesh.part_cells(part)] for part in parts])
+    nodes, local = np.unique(cells, return_inverse=True)
+    rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+    K = sum(model.part_stiffness[part] for part in parts).tocsr()[rows][:, rows]
+    base = fixed("held", np.searchsorted(nodes, np.intersect1d(held, nodes)), len(rows))
+    elimination = eliminate([base], len(rows))
+    return reduce(mesh.points[nodes], local.reshape(cells.shape), in_blocks(K), elimination)

@@ -1,0 +1,183 @@
+"""A scene at every level over load histories: reactions by one matrix product, and their errors.
+
+Reactions of all levels come from unit loads, so that a million load steps cost a product.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.fidelity.ladder import (
+    TITLES,
+    Cost,
+    LevelModel,
+    assembly_level,
+    housing_springs,
+    shaft_level,
+)
+from fe_drivetrain.fidelity.shafts import condensed_shaft, reference_points
+from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.scene.scene import Scene
+
+COARSER = 1.35
+"""Factor on the mesh sizes of the second assembly, which shows what the mesh does."""
+
+ROUND_OFF = 1e-6
+"""Share of a reaction below which its force or moment is the noise of a mesh, and left out."""
+
+
+@dataclass(frozen=True)
+class Levels:
+    """A scene solved at several levels.
+
+    Attributes
+    ----------
+    stiff, soft : Mapping[str, Floats]
+        (6, 6) of each bearing unit by name, its face held in shape and on average: two bounds
+        [N/m, N, N m/rad].
+    models : Mapping[str, LevelModel]
+        By name, from cheap to expensive. The last one is the assembly that all are compared with.
+    """
+
+    stiff: Mapping[str, Floats]
+    soft: Mapping[str, Floats]
+    models: Mapping[str, LevelModel]
+
+    @property
+    def reference(self) -> LevelModel:
+        """The assembly of solids."""
+        return list(self.models.values())[-1]
+
+
+def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Levels:
+    """Solve a scene at levels 1 and 2, between two bounds of its housings, beside the assembly.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any scene, with any number of bearings and sections.
+    response : Response
+        Of the assembly.
+    report : callable
+        Called with what is being done.
+
+    Returns
+    -------
+    Levels
+        With an assembly on a coarser mesh, where such a mesh can be made.
+
+    Raises
+    ------
+    InputError
+        A level refuses the scene.
+    """
+    models = {"beam, rigid housings": shaft_level(scene, 1)}
+    report("bearing units, two bounds")
+    stiff, soft = (housing_springs(scene, coupling)[0] for coupling in ("rigid", "averaged"))
+    for level, word in ((1, "beam"), (2, "meridian")):
+        report(f"level {level}, housings as springs")
+        body = condensed_shaft(scene, level)
+        for name, springs in (("stiff", stiff), ("soft", soft)):
+            models[f"{word}, {name} housings"] = shaft_level(scene, level, springs, body)
+    report("assembly on a coarser mesh")
+    try:
+        mesh = scene.mesh.scaled(COARSER)
+        models["assembly, coarser mesh"] = assembly_level(scene.model_copy(update={"mesh": mesh}))
+    except InputError:  # too coarse for a wall
+        pass
+    models["assembly"] = _assembly(scene, response)
+    return Levels(stiff, soft, models)
+
+
+def _assembly(scene: Scene, response: Response) -> LevelModel:
+    names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
+    found = response.diagnostics
+    cost = Cost(found.setup_seconds + found.solve_seconds, found.n_unknowns)
+    reactions = {name: response.reactions[name] for name in names}
+    return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
+
+
+def reaction_history(
+    model: LevelModel, name: str, hub_loads: Floats, gearbox_weight: float, gravity: float
+) -> Floats:
+    """One reaction over any number of load steps.
+
+    Parameters
+    ----------
+    model : LevelModel
+        The scene at a level.
+    name : str
+        Of a bearing, or "gearbox".
+    hub_loads : ndarray, (..., 6)
+        Hub forces [N] and moments [N m].
+    gearbox_weight : float
+        Weight of the gearbox [N], along -z.
+    gravity : float
+        Acceleration along -z that gives all parts their weight [m/s^2]; 0 leaves it out.
+
+    Returns
+    -------
+    ndarray, (..., 6)
+        What the drivetrain puts on its support [N, N m].
+    """
+    R = model.reaction_matrices[name]
+    result = hub_loads @ R[:, :6].T
+    result += gearbox_weight * R[:, 9] - gravity * R[:, 8]
+    return np.asarray(result)
+
+
+def relative_errors(reference: Floats, found: Floats, length: float) -> Floats:
+    """Error of a reaction's force and of its moment, each as a vector.
+
+    Parameters
+    ----------
+    reference, found : ndarray, (n, 6)
+        Samples of a reaction [N, N m].
+    length : float
+        Of the shaft [m], which makes forces comparable to moments.
+
+    Returns
+    -------
+    ndarray, (2,)
+        Root mean square of the difference over that of the reference; NaN where the reference is
+        but noise, see `ROUND_OFF`.
+    """
+    size, error = (
+        np.array([np.sqrt((part**2).sum(axis=1).mean()) for part in (v[:, :3], v[:, 3:])])
+        for v in (reference, found - reference)
+    )
+    scale = np.array([1.0, length])
+    real = size > ROUND_OFF * (size / scale).max() * scale
+    return np.where(real, error / np.where(real, size, 1.0), np.nan)
+
+
+def imbalance(scene: Scene, model: LevelModel) -> float:
+    """Largest difference of the reactions to unit hub loads from the loads, relative.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    model : LevelModel
+        The scene at a level.
+
+    Returns
+    -------
+    float
+        Moments are taken about the hub and divided by the length of the shaft.
+    """
+    names, positions = reference_points(scene)
+    at = dict(zip(names, positions, strict=True))
+    total = sum(
+        wrench_transport(at[name] - at["hub"]) @ R[:, :6]
+        for name, R in model.reaction_matrices.items()
+    )
+    length = np.array([1.0, 1.0, 1.0, *3 * (scene.shaft.length,)])
+    return float(np.abs((total - np.eye(6)) / length[:, None] * length).max())

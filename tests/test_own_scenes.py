@@ -1,0 +1,103 @@
+"""Main-bearing cases on a user's scene: the page is about that scene, and says what is not."""
+
+import re
+
+import numpy as np
+import pytest
+import yaml
+from conftest import COARSE, coarse_scene
+
+from fe_drivetrain.cases.main_bearing import study
+from fe_drivetrain.common.threads import CORES_VARIABLE
+from fe_drivetrain.report.results import Results, read_results
+from fe_drivetrain.suite.case import all_cases
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
+from fe_drivetrain.suite.suite import run_cases
+
+#: Cases that take a scene of the user's; what each needs its bearing to be.
+NEEDS = {
+    "bonded": "bonded",
+    "mesh_convergence": "bonded",
+    "rmse": "bonded",
+    "shaft_thickness": "bonded",
+    "spherical": "spherical",
+    "torsional_stiffness": "bonded",
+}
+#: Takes minutes, and reads its scene as these do.
+SLOW = {"secant_stiffness"}
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory) -> dict[str, Results]:
+    """Results of each case on a small scene with a sliding bearing."""
+    folder = tmp_path_factory.mktemp("own")
+    scene = coarse_scene("spherical", title="Turbine of mine").model_dump(mode="json")
+    (folder / "mine.yaml").write_text(yaml.safe_dump(scene))
+    time = 0.05 * np.arange(40)
+    loads = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
+    table = np.column_stack([time, loads])
+    header = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
+    np.savetxt(folder / "loads.csv", table, delimiter=",", header=header, comments="")
+    settings = {"scene": str(folder / "mine.yaml"), "loads": str(folder / "loads.csv")}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv(CORES_VARIABLE)
+        cases = [all_cases()[f"main_bearing/{name}"] for name in NEEDS]
+        assert run_cases(cases, folder / "reports", settings, quick=True) == {}
+    return {
+        name: read_results(folder / "reports/main_bearing" / name / "results.json")
+        for name in NEEDS
+    }
+
+
+def test_these_are_all_cases_that_take_a_scene():
+    found = {n.partition("/")[2] for n, case in all_cases().items() if "scene" in case.settings}
+    assert found == set(NEEDS) | SLOW
+
+
+@pytest.mark.parametrize("name", NEEDS)
+def test_the_page_is_about_the_users_scene(pages, name):
+    results = pages[name]
+    assert results.title.startswith("Turbine of mine: ")
+    assert re.fullmatch(r"scene .*mine\.yaml", results.source)
+    assert "thesis" not in results.model_dump_json().lower()
+    # the source of a formula is named where it is used, that of a default where it is listed
+    text = results.model_dump_json(exclude={"assumptions"})
+    assert re.findall(r"Stirling 2023(?!, Eq)", text) == []
+
+
+@pytest.mark.parametrize("name", NEEDS)
+def test_another_bearing_than_the_scenes_is_the_first_that_is_said(pages, name):
+    quick, *notes = pages[name].notes
+    assert quick.startswith("Quick run")
+    exchanged = [note for note in notes if note.startswith("Another bearing")]
+    if NEEDS[name] == "spherical":
+        assert exchanged == []
+    else:
+        (note,) = exchanged
+        assert note == notes[0]
+        assert "'main_bearing' of the scene is sliding" in note
+        assert "needs a bonded one" in note
+        assert "made bonded, not of the scene as it was given" in note
+
+
+def test_the_study_begins_with_the_bearing_that_the_scene_has(pages):
+    assert "spherical bearing" in pages["rmse"].summary[0]
+
+
+@pytest.mark.parametrize("kind", ["spherical", "bonded"])
+@pytest.mark.parametrize("interface", ["bonded", "sliding", "averaged", "rigid"])
+def test_no_bearing_is_exchanged_in_silence(tmp_path, kind, interface):
+    """Of the library's scene with the user's change as of a file."""
+    bearing = "ring" if interface == "bonded" else "spherical"
+    changes = {
+        "bearing_units.0.interface": interface,
+        "bearing_units.0.bearing.kind": bearing,
+    }
+    page = Page()
+    scene = study.scene_of(Run(COARSE | changes, False, tmp_path), page, kind)
+    assert study.kind_of(scene) == kind
+    kept = scene.bearing_units[0].interface == interface
+    assert kept == (page.notes == [])
+    assert kept == ((interface == "bonded") == (kind == "bonded"))
+    assert page.subject == ""
