@@ -114,7 +114,7 @@ def test_export_overwrites_only_if_asked(
             "level 'two'",
         ),
         ((*CONDENSED, "--at", ","), "none must be"),
-        ((*CONDENSED, "--modes", "3"), "--modes works for the level-2 shaft in json only"),
+        ((*CONDENSED, "--modes", "3"), "--modes is written in json, not as --format csv"),
         ((*CONDENSED, "--what", "summary"), "--what summary is json, not csv"),
         (
             (*CONDENSED, "--at", "hub,hub"),
