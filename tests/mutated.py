@@ -56,9 +56,9 @@ def lever_arm() -> None:
 
 def spring() -> None:
     """Springs of bearings are 5 % too stiff in the solid."""
-    from fe_drivetrain.interfaces import joints
+    from fe_drivetrain.scene import joint_springs
 
-    _wrap(joints, "spring_matrix", lambda right, unit: 1.05 * right(unit))
+    _wrap(joint_springs, "spring_matrix", lambda right, unit: 1.05 * right(unit))
 
 
 def unit() -> None:
