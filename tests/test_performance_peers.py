@@ -13,15 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.performance import (
-    peer_settings,
-    peers,
-    problems,
-    rounds,
-)
+from fe_drivetrain.cases.performance import peer_settings, peers
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.mesh import FACETS
-from fe_drivetrain.peers import launching, runner
+from fe_drivetrain.peers import launching, problems, rounds, runner
 from fe_drivetrain.peers.launching import (
     Limits,
     Outcome,

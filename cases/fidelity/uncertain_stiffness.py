@@ -10,14 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.fidelity.moved_meshes import (
-    BORE,
-    FRONT,
-    OUTER,
-    PEDESTAL,
-    WALL,
-    moved,
-)
 from fe_drivetrain.commands import bands
 from fe_drivetrain.common import (
     FORCES,
@@ -48,8 +40,14 @@ from fe_drivetrain.response import (
 from fe_drivetrain.scene import Scene, change_scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.uncertainty import (
+    BORE,
+    FRONT,
+    OUTER,
+    PEDESTAL,
+    WALL,
     Study,
     first_order,
+    moved,
     nominal_value,
     relative_spread,
     study,

@@ -2,10 +2,8 @@
 
 from typing import Any
 
-from fe_drivetrain.cases.performance.problems import BENCHMARKS
-from fe_drivetrain.cases.performance.rounds import Plan
 from fe_drivetrain.common import InputError
-from fe_drivetrain.peers import TOOLS, Limits, parse
+from fe_drivetrain.peers import BENCHMARKS, TOOLS, Limits, Plan, parse
 from fe_drivetrain.suite import Run
 
 OURS = "this_project"

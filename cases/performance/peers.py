@@ -5,18 +5,22 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.performance import problems, rounds
 from fe_drivetrain.cases.performance.peer_settings import OURS, plan_of, settings_of
-from fe_drivetrain.cases.performance.problems import BENCHMARKS, Benchmark
-from fe_drivetrain.cases.performance.rounds import EQUAL, Plan, Row
 from fe_drivetrain.common import Progress
 from fe_drivetrain.peers import (
+    BENCHMARKS,
+    EQUAL,
+    Benchmark,
     Outcome,
+    Plan,
+    Row,
     Variant,
     how_to_install,
     interpreters,
     launch,
     parse,
+    problems,
+    rounds,
     write_problem,
 )
 from fe_drivetrain.report import Cell, formatted, trace

@@ -1,3 +1,5 @@
+from . import problems as problems
+from . import rounds as rounds
 from .launching import TOOLS as TOOLS
 from .launching import Limits as Limits
 from .launching import Outcome as Outcome
@@ -6,5 +8,10 @@ from .launching import how_to_install as how_to_install
 from .launching import interpreters as interpreters
 from .launching import launch as launch
 from .launching import parse as parse
+from .problems import BENCHMARKS as BENCHMARKS
+from .problems import Benchmark as Benchmark
+from .rounds import EQUAL as EQUAL
+from .rounds import Plan as Plan
+from .rounds import Row as Row
 from .runner import Problem as Problem
 from .runner import write_problem as write_problem

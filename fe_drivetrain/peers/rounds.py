@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.peers import Limits, Outcome, Variant, launch
+from fe_drivetrain.peers.launching import Limits, Outcome, Variant, launch
 
 EQUAL = 1e-6
 """Tools are compared where the solver leaves less of the stiffness than this."""
@@ -26,7 +26,7 @@ class Row:
     unknowns : int
         Of the mesh.
     found : list of dict
-        What each run measured, see `tools.runner.measure`.
+        What each run measured, see `fe_drivetrain.peers.runner.measure`.
     trouble : str
         Why there is nothing, or no more, in words.
     least_seconds : float or None

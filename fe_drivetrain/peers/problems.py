@@ -7,12 +7,14 @@ import numpy as np
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
-from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
-from fe_drivetrain.mesh import Mesh, cached_mesh
-from fe_drivetrain.peers import Problem
-from fe_drivetrain.response import mesh_scene
-from fe_drivetrain.scene import MATERIALS, Material, library_scene
+from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.peers.runner import Problem
+from fe_drivetrain.response.model import mesh_scene
+from fe_drivetrain.scene.materials import MATERIALS, Material
+from fe_drivetrain.scene.reading import library_scene
 
 OUTER, INNER, LENGTH = 0.7, 0.3, 2.0
 """Diameters and length of the hollow shaft [m]."""
