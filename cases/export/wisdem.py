@@ -58,6 +58,9 @@ def run(run: Run, page: Page) -> None:
         scene = change_scene(
             scene,
             {
+                # no ring that stiffens the shaft: WISDEM knows of none
+                "bearing_units.1.bearing.kind": "ring",
+                "bearing_units.1.interface": "bonded",
                 "shaft.sections.0.length": length,
                 "shaft.sections.0.outer_diameter": OUTER,
                 "shaft.sections.0.inner_diameter": INNER,
