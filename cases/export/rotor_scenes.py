@@ -17,6 +17,6 @@ ORDER = 4
 def scene_and_units(name: str) -> tuple[Scene, dict[str, Floats]]:
     """A library scene on a coarse mesh, and the (6, 6) stiffness of each of its bearing units."""
     scene = library_scene(name)
-    sizes = scene.mesh.scaled(FACTOR).model_copy(update={"elements_per_turn": 8})
+    sizes = scene.mesh.scaled(FACTOR, 8)
     scene = scene.model_copy(update={"mesh": sizes})
     return scene, housing_springs(scene)[0]

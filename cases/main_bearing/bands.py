@@ -77,7 +77,7 @@ def of_tilt(tilt: Tilt) -> dict[str, Floats]:
 def coarser(scene: Scene, factor: float) -> Scene:
     """The scene with its mesh sizes times a factor, and fewer elements round a turn."""
     turn = max(_LEAST_TURN, round(scene.mesh.elements_per_turn / factor))
-    sizes = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": turn})
+    sizes = scene.mesh.scaled(factor, turn)
     return scene.model_copy(update={"mesh": sizes})
 
 

@@ -98,7 +98,7 @@ class Compared:
 def scene_of(kind: str, factor: float) -> Scene:
     """The library's main bearing on a coarser mesh."""
     scene = library_scene(f"main_bearing_{kind}")
-    sizes = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": 8})
+    sizes = scene.mesh.scaled(factor, 8)
     return scene.model_copy(update={"mesh": sizes})
 
 

@@ -40,7 +40,7 @@ SHARES = {
 def scene_of(form: str, factor: float) -> Scene:
     """The library's main bearing with an interface of that form, on a coarse mesh."""
     scene = library_scene(f"main_bearing_{'bonded' if form == 'bonded' else 'spherical'}")
-    sizes = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": 8})
+    sizes = scene.mesh.scaled(factor, 8)
     scene = scene.model_copy(update={"mesh": sizes})
     return scene if form == "bonded" else change_scene(scene, {"bearing_units.0.interface": form})
 

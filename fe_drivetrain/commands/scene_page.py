@@ -21,9 +21,7 @@ _UNITS = (*3 * ("N/m",), *3 * ("N m/rad",))
 
 def quick_scene(scene: Scene) -> Scene:
     """The scene on a coarser mesh, for a first look."""
-    factor, turn = _QUICK
-    mesh = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": turn})
-    return scene.model_copy(update={"mesh": mesh})
+    return scene.model_copy(update={"mesh": scene.mesh.scaled(*_QUICK)})
 
 
 def checked_model(run: Run, scene: Scene) -> Model:

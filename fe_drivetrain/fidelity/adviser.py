@@ -282,7 +282,7 @@ def _assembly(
     for factor in COARSER:
         report(f"level 4: assembly of solids, sizes times {factor:g}")
         turn = max(8, round(scene.mesh.elements_per_turn / factor))
-        mesh = scene.mesh.scaled(factor).model_copy(update={"elements_per_turn": turn})
+        mesh = scene.mesh.scaled(factor, turn)
         try:
             coarse = assembly_level(scene.model_copy(update={"mesh": mesh}))
         except InputError:  # too coarse for a wall

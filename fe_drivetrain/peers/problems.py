@@ -101,8 +101,7 @@ def main_bearing() -> Benchmark:
     name = scene.bearing_units[0].bearing.name
 
     def at(factor: float) -> Problem:
-        turns = {"elements_per_turn": _ELEMENTS_PER_TURN}
-        sizes = scene.mesh.scaled(factor).model_copy(update=turns)
+        sizes = scene.mesh.scaled(factor, _ELEMENTS_PER_TURN)
         mesh = mesh_scene(scene.model_copy(update={"mesh": sizes}))
         faces = mesh.faces[f"{name}.housing.base"], mesh.faces["shaft.front"]
         materials = [scene.material_of(part) for part in mesh.part_names]
