@@ -51,6 +51,9 @@ def curved(per_turn: float, method: str = "") -> Mesh:
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
         if method:
+            # What cannot be repaired is the sweep's to count. By default gmsh throws, and from a
+            # thread of its own, where nothing catches: the process would end.
+            gmsh.option.setNumber("General.AbortOnError", 1)
             gmsh.model.mesh.optimize(method)
         return read_gmsh([])
 
