@@ -17,10 +17,12 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
+from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
-from fe_drivetrain.fidelity.ladder import shaft_level
+from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance, relative_errors
 from fe_drivetrain.hub_loads.surrogate import Condition
@@ -34,7 +36,7 @@ from fe_drivetrain.scene.arrangements import (
     scene_schema,
     starting_scene,
 )
-from fe_drivetrain.scene.reading import is_component, library_scene, parse_scene
+from fe_drivetrain.scene.reading import change_scene, is_component, library_scene, parse_scene
 from fe_drivetrain.scene.scene import Scene
 
 ROOT = Path(__file__).parents[1]
@@ -487,3 +489,47 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
         "shaft.bdf",
     ):
         assert (tmp_path / made).stat().st_size > 0, made
+
+
+def test_loads_about_another_point_are_the_same_loads(
+    tmp_path: Path, rng: np.random.Generator
+) -> None:
+    """About any third point of the axis, force and moment are what they were in the file."""
+    write_loads(tmp_path / "gauge.csv", 3)
+    scene = library_scene("two_bearings")
+    here = own_loads(str(tmp_path / "gauge.csv"), 0.0, scene)
+    gauge = change_scene(scene, {"hub.loads_at": 0.7})
+    (moved,) = own_loads(str(tmp_path / "gauge.csv"), 0.0, gauge).histories
+    (plain,) = here.histories
+    third = rng.normal()
+    about = [
+        history.loads[:, 3:] + np.cross([x - third, 0.0, 0.0], history.loads[:, :3])
+        for history, x in ((plain, 0.7), (moved, scene.shaft.front))
+    ]
+    np.testing.assert_allclose(about[1], about[0], rtol=0, atol=1e-9 * np.abs(about[0]).max())
+    np.testing.assert_array_equal(moved.loads[:, :3], plain.loads[:, :3])
+    assert "about x = 0.7 m moved to x = -1.2 m" in str(moved.attributes["channels"])
+    assert "moved" in own_loads(str(tmp_path / "gauge.csv"), 0.0, gauge).statement
+    assert "moved" not in here.statement
+
+
+def test_a_bearing_free_along_x_leaves_the_axial_force_to_its_neighbour() -> None:
+    scene = change_scene(
+        library_scene("two_bearings"),
+        {
+            "bearing_units.rear.interface": "spring",
+            "bearing_units.rear.stiffness": [0, "rigid", "rigid", 0, 0, 0],
+        },
+    )
+    for model in (statics_level(scene), shaft_level(scene, 1), shaft_level(scene, 2)):
+        axial = {name: matrix[0] for name, matrix in model.reaction_matrices.items()}
+        np.testing.assert_allclose(axial["rear"][:6], 0.0, atol=1e-9)
+        np.testing.assert_allclose(axial["front"][0], 1.0, rtol=1e-9)
+    with pytest.raises(InputError, match=r"shaft.* can move freely along x"):
+        change_scene(
+            scene,
+            {
+                "bearing_units.front.interface": "spring",
+                "bearing_units.front.stiffness": [0, "rigid", "rigid", 0, "rigid", "rigid"],
+            },
+        )

@@ -22,6 +22,7 @@ from fe_drivetrain.hub_loads import (
     surrogate_grid,
 )
 from fe_drivetrain.report import Chart, rounded, trace
+from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Jobs, Page, Run
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
@@ -66,10 +67,11 @@ class HubLoads:
     channels: tuple[str, ...] = ()
 
 
-def own_hub_loads(run: Run) -> HubLoads | None:
+def own_hub_loads(run: Run, scene: Scene) -> HubLoads | None:
     """The user's files: ``--set loads=FILE``, a folder, or a pattern; None where not given.
 
-    ``--set skip=SECONDS`` leaves out the beginning of each.
+    ``--set skip=SECONDS`` leaves out the beginning of each; the scene says which point of the shaft
+    they are about.
     """
     skip = _skip(run)
     if "loads" not in run.settings:
@@ -80,7 +82,7 @@ def own_hub_loads(run: Run) -> HubLoads | None:
             )
         return None
     with run.step("hub loads"):
-        return _read(str(run.settings["loads"]), skip)
+        return _read(str(run.settings["loads"]), skip, scene)
 
 
 def _skip(run: Run) -> float:
@@ -133,8 +135,9 @@ def _make(run: Run, wind_speed: float, conditions: Sequence[Condition]) -> None:
         hub_load_set(conditions, progress=lambda done, of: run.report(f"{name} ({done} of {of})"))
 
 
-def _read(pattern: str, skip: float) -> HubLoads:
-    histories = read_hub_load_files(pattern, skip)
+def _read(pattern: str, skip: float, scene: Scene) -> HubLoads:
+    front, at = scene.shaft.front, scene.loads_at
+    histories = [history.moved(at, front) for history in read_hub_load_files(pattern, skip)]
     first = histories[0]
     for history in histories:
         if len(history) != len(first):
@@ -148,6 +151,8 @@ def _read(pattern: str, skip: float) -> HubLoads:
         raise InputError(f"loads = {pattern!r}: all hub loads are zero: give histories with loads")
     count = len(histories)
     left_out = f" The first {skip:g} s of each are left out." if skip else ""
+    if at != front:
+        left_out += f" Their moments, about x = {at:g} m, are moved to the front face."
     return HubLoads(
         np.stack([history.time for history in histories]),
         loads,

@@ -148,7 +148,7 @@ def run(run: Run, page: Page) -> None:
     bonded_scene = study.scene_of(run, page, "bonded")
     pinned_beam = main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
     self_weight = reactions.has_self_weight(run)
-    given = loads.own_hub_loads(run)  # before the work: a fault in a file is reported at once
+    given = loads.own_hub_loads(run, bonded_scene)  # first: a fault in a file is reported at once
     with run.side_by_side(7) as jobs:
         solving = jobs.start(
             study.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"

@@ -142,7 +142,7 @@ def run(run: Run, page: Page) -> None:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
     bonded = study.scene_of(run, page, "bonded", coarsen=False)
     spherical = study.scene_of(run, page, "spherical", coarsen=False)
-    hub, what = secants.hub_loads(run, EVERY)
+    hub, what = secants.hub_loads(run, EVERY, bonded)
     factors = QUICK_FACTORS if run.quick else FACTORS
     units = {
         "library": secants.series(run, bonded, factors["library"], hub),

@@ -53,12 +53,12 @@ class Reacted:
     fit: secant_stiffness.Spring
 
 
-def hub_loads(run: Run, every: int) -> tuple[Floats, str]:
+def hub_loads(run: Run, every: int, scene: Scene) -> tuple[Floats, str]:
     """Load cases (m, 6) at the hub [N, N m], and what they are.
 
     The user's own, where ``--set loads=FILE`` is given; else samples of made histories.
     """
-    own = loads.own_hub_loads(run)
+    own = loads.own_hub_loads(run, scene)
     if own is not None:
         return own.loads.reshape(-1, 6), own.statement
     speeds = WIND_SPEEDS[1:2] if run.quick else WIND_SPEEDS

@@ -109,7 +109,7 @@ def study_command(
         from fe_drivetrain.commands.study_page import studied
 
         # before the work: a fault in a file is reported at once
-        own = None if loads is None else own_loads(loads, skip)
+        own = None if loads is None else own_loads(loads, skip, found)
         return _run_on_scene(
             "study",
             scene,

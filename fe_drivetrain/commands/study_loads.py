@@ -10,6 +10,7 @@ from fe_drivetrain.hub_loads.aero_rotor import assumptions
 from fe_drivetrain.hub_loads.files import read_hub_load_files
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.run import Run
 
 _QUICK_SEEDS = 1
@@ -37,7 +38,7 @@ class StudyLoads:
     assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
 
 
-def own_loads(pattern: str, skip: float) -> StudyLoads:
+def own_loads(pattern: str, skip: float, scene: Scene) -> StudyLoads:
     """Read the user's files.
 
     Parameters
@@ -46,20 +47,25 @@ def own_loads(pattern: str, skip: float) -> StudyLoads:
         A file, a folder, or a pattern.
     skip : float
         What is left out at the beginning of each file [s].
+    scene : Scene
+        Says which point of the shaft they are about.
 
     Raises
     ------
     InputError
         A file cannot be read, or all loads are zero.
     """
-    histories = read_hub_load_files(pattern, skip)
+    front, at = scene.shaft.front, scene.loads_at
+    histories = [history.moved(at, front) for history in read_hub_load_files(pattern, skip)]
+    moved = f" Their moments, about x = {at:g} m, are moved to the front face." * (at != front)
     if not any(history.loads.any() for history in histories):
         raise InputError(f"--loads {pattern!r}: all hub loads are zero: give histories with loads")
     count, samples = len(histories), sum(map(len, histories))
     return StudyLoads(
         histories,
         f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, {samples:,} load steps"
-        + (f"; the first {skip:g} s of each are left out." if skip else "."),
+        + (f"; the first {skip:g} s of each are left out." if skip else ".")
+        + moved,
         True,
     )
 

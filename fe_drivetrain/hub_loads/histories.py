@@ -99,6 +99,28 @@ class LoadHistory:
         kept = (self.time >= start) & (self.time <= stop)
         return LoadHistory(self.name, self.time[kept], self.loads[kept], self.attributes)
 
+    def moved(self, start: float, stop: float) -> LoadHistory:
+        """The same loads with their moments about another point of the shaft's axis.
+
+        Parameters
+        ----------
+        start, stop : float
+            x of the point that they are about, and of the other [m].
+
+        Returns
+        -------
+        LoadHistory
+            Itself where both are one; its "channels" say that it was moved.
+        """
+        if start == stop:
+            return self
+        loads = self.loads.copy()
+        loads[:, 4] -= (start - stop) * self.loads[:, 2]
+        loads[:, 5] += (start - stop) * self.loads[:, 1]
+        read = self.attributes.get("channels", "as in the file")
+        channels = f"{read}; moments about x = {start:g} m moved to x = {stop:g} m"
+        return LoadHistory(self.name, self.time, loads, {**self.attributes, "channels": channels})
+
 
 def require_sound(
     source: str,

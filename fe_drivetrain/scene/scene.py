@@ -47,9 +47,19 @@ def check_material(name: str, defined: Mapping[str, Material], of: str = "") -> 
 
 
 class Hub(Keys):
-    """The reference point of the hub loads, at the centre of the shaft's front face."""
+    """The reference point of the hub loads, at the centre of the shaft's front face.
+
+    Histories of one's own may be about another point of the shaft's axis: the rotor's centre ahead
+    of the flange, say, or a strain gauge behind it.
+    """
 
     coupling: Coupling = "averaged"
+    loads_at: float | None = Field(
+        default=None,
+        ge=-1e3,
+        le=1e3,
+        description="x of what files of hub loads are about [m]; left out, the front face",
+    )
 
 
 class Gearbox(Keys):
@@ -135,6 +145,11 @@ class Scene(Keys):
         name, _, housing = part.partition(".")
         unit = self.bearing_unit(name)
         return known[unit.housing.material if housing else unit.bearing.material]
+
+    @property
+    def loads_at(self) -> float:
+        """x of the point that files of hub loads are about [m]."""
+        return self.shaft.front if self.hub.loads_at is None else self.hub.loads_at
 
     def bearing_unit(self, name: str) -> BearingUnit:
         """The bearing unit of that name."""
