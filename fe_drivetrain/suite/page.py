@@ -22,7 +22,21 @@ from fe_drivetrain.report.results import (
     Verdict,
     judge,
 )
-from fe_drivetrain.suite.records import Record, column, grouped
+from fe_drivetrain.suite.records import MeshSeries, Record, column, grouped
+
+UNITS_OF: Mapping[str, Measure] = {
+    "MPa": "stress",
+    "psi": "stress",
+    "m": "deflection",
+    "mm": "deflection",
+    "µm": "deflection",
+    "mrad": "rotation",
+    "rad": "rotation",
+    "J/m": "energy",
+    "N m/rad": "stiffness",
+    "N m^2": "stiffness",
+}
+"""Kind of quantity, for bias and scatter over all cases, of units that have but one."""
 
 
 class Page:
@@ -151,6 +165,55 @@ class Page:
             measure=measure,
             basis=basis,
             band=band,
+        )
+
+    def finest(
+        self,
+        series: MeshSeries,
+        key: str,
+        reference: float,
+        *,
+        within: float,
+        why: str,
+        source: str,
+        name: str = "",
+        relative: bool = True,
+        measure: Measure | None = None,
+        order: float | None = None,
+    ) -> None:
+        """The value of the finest of several meshes is the reference; its band is theirs.
+
+        Parameters
+        ----------
+        series : MeshSeries
+            What each mesh gave.
+        key : str
+            Key of the value, which ends with its unit: "deflection of the end [mm]".
+        reference : float
+            As for `equals`.
+        within, why, source : float, str, str
+            As for `equals`.
+        relative : bool
+            As for `equals`.
+        name : str
+            What was computed, where the key does not state it alone.
+        measure : str, optional
+            As for `equals`; that of the unit in `UNITS_OF` where left out.
+        order : float, optional
+            Expected order of convergence.
+        """
+        quantity, _, unit = key.removesuffix("]").partition(" [")
+        self.equals(
+            name or quantity,
+            series.rows[-1][key],
+            reference,
+            within=within,
+            why=why,
+            source=source,
+            unit="" if unit == "-" else unit,
+            relative=relative,
+            measure=measure or UNITS_OF.get(unit),
+            band=series.band(key, order),
         )
 
     def at_most(
@@ -292,6 +355,32 @@ class Page:
     ) -> None:
         """Add a chart of traces; see `fe_drivetrain.report.chart`."""
         self.add(chart(caption, traces, x, y, logarithmic, safe))
+
+    def meshes(
+        self,
+        caption: str,
+        series: MeshSeries,
+        references: Mapping[str, float],
+        heading: str = "reference",
+    ) -> None:
+        """Add a table of quantities on several meshes beside their references, and its data.
+
+        Parameters
+        ----------
+        caption : str
+            What it shows; the records stand under it among `figures`.
+        series : MeshSeries
+            What each mesh gave.
+        references : dict
+            Key of a quantity, with its unit, and its reference.
+        heading : str
+            Of the references' column.
+        """
+        rows, by = series.rows, series.by
+        columns = ["quantity", *(f"{row[by]} {by}" for row in rows), heading]
+        cells = [[key, *column(rows, key), value] for key, value in references.items()]
+        self.table(caption, cells, columns)
+        self.data(caption, [{key: row[key] for key in (by, *references)} for row in rows])
 
     def sweep(
         self,
