@@ -18,10 +18,7 @@ def half_band(samples: Samples) -> float:
 
 
 def first_order(found: Study, number: Number) -> float:
-    """Relative standard deviation predicted by the sensitivities, for independent inputs.
-    number : Number
-        The quantity.
-    """
+    """Relative standard deviation predicted by the sensitivities, for independent inputs."""
     parts = [
         found.slopes[number.name][key] * relative_spread(spread)
         for key, spread in found.scene.uncertainty.items()
