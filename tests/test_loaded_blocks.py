@@ -7,7 +7,7 @@ from fe_drivetrain.compare.convergence import band_of
 from fe_drivetrain.mesh.blocks import Block, brick
 from fe_drivetrain.operator.loads import pressure
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.page import Page, Target
 from fe_drivetrain.suite.records import MeshSeries
 from fe_drivetrain.validation.loaded_blocks import (
     edge_nodes,
@@ -79,7 +79,7 @@ def test_a_bar_between_planes_of_symmetry_is_stretched_uniformly(bar: Block) -> 
 def test_the_finest_of_a_series_is_judged_with_the_band_of_all() -> None:
     rows = [{"elements": n, "deflection [mm]": 2.0 + 1.0 / n**2} for n in (2, 4, 8)]
     page, series = Page(), MeshSeries(rows, "elements")
-    page.finest(series, "deflection [mm]", 2.0, within=0.01, why="w", source="s")
+    page.finest(series, Target("deflection [mm]", 2.0, 0.01, "why", "source"))
     (found,) = page.verdicts
     assert (found.quantity, found.unit, found.measure) == ("deflection", "mm", "deflection")
     assert found.computed == 2.0 + 1.0 / 64
@@ -103,3 +103,19 @@ def test_a_table_of_meshes_ends_with_the_references() -> None:
         {"elements": 1, "stress [MPa]": 11.0},
         {"elements": 2, "stress [MPa]": 12.0},
     ]
+
+
+def test_targets_are_checked_and_shown_beside_the_meshes() -> None:
+    rows = [{"elements": n, "twist [mrad]": 4.0 + 1.0 / n**2} for n in (1, 2, 4)]
+    page = Page()
+    printed = Target("twist [mrad]", 4.0, 0.02, "rounding", "a manual", order=2.0)
+    closed = Target("twist [mrad]", 4.3, 0.1, "shear", "a book", "closed form", relative=False)
+    page.targets("By mesh", MeshSeries(rows, "elements"), [printed, closed])
+    assert [(v.quantity, v.passed) for v in page.verdicts] == [
+        ("twist", True),
+        ("closed form", False),
+    ]
+    assert {v.measure for v in page.verdicts} == {"rotation"}
+    (table,) = page.sections[0].items
+    assert [row[0] for row in table.rows] == ["twist [mrad]", "closed form [mrad]"]
+    assert [row[-1] for row in table.rows] == [4.0, 4.3]

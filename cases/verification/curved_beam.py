@@ -8,7 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.loaded_blocks import edge_nodes, face_loads, solve_block, supports
 from fe_drivetrain.validation.plane_rings import CurvedBar, plane_strain
 from fe_drivetrain.validation.ring_solids import (
@@ -102,6 +102,19 @@ def missed(field: Callable[[Floats], Floats], r: float, h: float) -> float:
     return float(abs(around[0] - 2.0 * around[1] + around[2]) / step**2 * h**2 / 12.0)
 
 
+def target(key: str, within: float, h: float) -> Target:
+    """One quantity, and what a finest mesh of elements of size h may miss of it."""
+    source = "Golovin 1881; Timoshenko and Goodier 1970, art "
+    source += "29 and 31" if key.startswith("bending") else "33"
+    if key not in HOOP:
+        why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
+        return Target(key, EXACT[key], within, why + "only there", source)
+    miss = missed(*HOOP[key], h)
+    why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the Gauss "
+    why += "points misses at a surface; the element's own error is of that size"
+    return Target(key, EXACT[key], 4.0 * miss, why, source, relative=False)
+
+
 @case(
     "Thick curved bar in bending and under an end force",
     source="Golovin 1881; Timoshenko and Goodier 1970, Theory of Elasticity, art 29 and 33",
@@ -111,23 +124,6 @@ def run(run: Run, page: Page) -> None:
     divisions = (3, 6, 12) if run.quick else (4, 8, 16)
     rows = [run.timed(f"{n} {THROUGH}", solve, n) for n in divisions]
     series, last = MeshSeries(rows, THROUGH), rows[-1]
-    h = (OUTER - INNER) / divisions[-1]
-    for key, reference in EXACT.items():
-        if key in HOOP:
-            miss = missed(*HOOP[key], h)
-            within = 4.0 * miss
-            why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the "
-            why += "Gauss points misses at a surface; the element's own error is of that size"
-        else:
-            within = 1e-3 if run.quick else 1e-4
-            why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
-            why += "only there"
-        source = "Golovin 1881; Timoshenko and Goodier 1970, art "
-        source += "29 and 31" if key.startswith("bending") else "33"
-        relative = key not in HOOP
-        page.finest(
-            series, key, reference, within=within, why=why, source=source, relative=relative
-        )
     r = np.linspace(INNER, OUTER, 80)
     radial, hoop = BAR.bending(r, MOMENT)
     winkler = BAR.winkler(r, MOMENT)
@@ -153,7 +149,8 @@ def run(run: Run, page: Page) -> None:
         "radius [m]",
         "stress [MPa]",
     )
-    page.meshes("By mesh", series, EXACT, "exact")
+    within, h = 1e-3 if run.quick else 1e-4, (OUTER - INNER) / divisions[-1]
+    page.targets("By mesh", series, [target(key, within, h) for key in EXACT], "exact")
     page.text(
         "Plane strain, hexahedra of 27 nodes, a quarter circle. The ends carry the exact "
         "tractions, so no clamp disturbs the stress."

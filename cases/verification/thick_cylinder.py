@@ -8,7 +8,7 @@ from fe_drivetrain.interfaces import held_nodes
 from fe_drivetrain.operator import pressure
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, column, grouped
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped
 from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.validation.plane_rings import Lame, Plane, plane_strain
 from fe_drivetrain.validation.ring_solids import plane_strain_hold, ring_sector, sector_symmetry
@@ -81,16 +81,11 @@ def run(run: Run, page: Page) -> None:
     tolerance = 1e-3 if run.quick else 1e-4
     for name, series in by_element.items():
         check(page, name, series, tolerance)
-    page.finest(
-        MeshSeries(free, THROUGH),
-        MOVED,
-        1e6 * float(EXACT.displacement(BORE, Plane(E, NU))),
-        name="free ends: mean radial displacement of the bore",
-        order=4.0,
-        within=tolerance,
-        why="as in plane strain: the axial strain is uniform, and adds no error of its own",
-        source=LAME,
-    )
+    uniform = "as in plane strain: the axial strain is uniform, and adds no error of its own"
+    moved = 1e6 * float(EXACT.displacement(BORE, Plane(E, NU)))
+    name = "free ends: mean radial displacement of the bore"
+    target = Target(MOVED, moved, tolerance, uniform, LAME, name, order=4.0)
+    page.finest(MeshSeries(free, THROUGH), target)
     errors = {
         key: {
             # no smaller than a chart can show
@@ -150,30 +145,16 @@ def check(page: Page, name: str, series: list[Record], tolerance: float) -> None
     if name in FIRST_ORDER.values():
         return
     of, n = MeshSeries(series, THROUGH), series[-1][THROUGH]
-    page.finest(
-        of,
-        MOVED,
-        REFERENCES[MOVED],
-        name=f"{name}: mean radial displacement of the bore, plane strain",
-        order=4.0,
-        within=tolerance,
-        why="(h/r)^4 of the finest mesh, with h an element at the bore, is "
-        f"{(1.0 / n) ** 4:.0e}, and its factor may be some units; rounded up to the next "
-        "power of ten that a stiffness needs",
-        source=LAME,
-    )
+    why = "(h/r)^4 of the finest mesh, with h an element at the bore, is "
+    why += f"{(1.0 / n) ** 4:.0e}, and its factor may be some units; rounded up to the next "
+    why += "power of ten that a stiffness needs"
+    title = f"{name}: mean radial displacement of the bore, plane strain"
+    page.finest(of, Target(MOVED, REFERENCES[MOVED], tolerance, why, LAME, title, order=4.0))
     # a linear field through Gauss points at 0.577 misses f'' h^2 / 12 at the surface
     curvature = 6.0 * (REFERENCES[HOOP] - REFERENCES[RADIAL]) / 2.0 / INNER**2
     missed = curvature * ((OUTER - INNER) / n) ** 2 / 12.0
+    why = "four times s'' h^2 / 12, what a linear stress through the Gauss points of a "
+    why += f"hexahedron misses at its surface ({missed:.2g} MPa); tetrahedra are less even"
     for key in (HOOP, RADIAL):
-        page.finest(
-            of,
-            key,
-            REFERENCES[key],
-            name=f"{name}: {key.split(' [')[0]}, plane strain",
-            within=4.0 * missed,
-            relative=False,
-            why="four times s'' h^2 / 12, what a linear stress through the Gauss points of a "
-            f"hexahedron misses at its surface ({missed:.2g} MPa); tetrahedra are less even",
-            source=LAME,
-        )
+        title, value = f"{name}: {key.split(' [')[0]}, plane strain", REFERENCES[key]
+        page.finest(of, Target(key, value, 4.0 * missed, why, LAME, title, relative=False))

@@ -7,7 +7,7 @@ from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 from fe_drivetrain.common import Floats
 from fe_drivetrain.operator import principal
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.bar_sections import ROUNDED_LATERAL, round_bar, solve_bar
 
 LENGTH, DIAMETER = 300.0 * INCH, 4.67017 * INCH
@@ -22,13 +22,7 @@ SHEAR = "largest shear stress at the root [MPa]"
 DEFLECTION, TWIST = "deflection of the end [mm]", "twist of the end [mrad]"
 
 MANUAL = "Ansys Mechanical APDL verification manual, VM12, target as in PyMAPDL's example"
-KGA = 6.0 * (1.0 + NU) / (7.0 + 6.0 * NU) * G * AREA
-#: The manual's targets, and beam theory.
-TARGETS = {PRINCIPAL: 1e-6 * (7527.0 * PSI), SHEAR: 1e-6 * (3777.0 * PSI)}
-THEORY = {
-    DEFLECTION: 1e3 * (FORCE * LENGTH**3 / (3.0 * E * INERTIA) + FORCE * LENGTH / KGA),
-    TWIST: 1e3 * (TORQUE * LENGTH / (2.0 * G * INERTIA)),
-}
+THEORY = "beam theory: F l^3 / (3 E I) + F l / (k G A), Cowper 1966; T l / (G J)"
 
 
 def end_traction(x: Floats, normal: Floats) -> Floats:
@@ -61,44 +55,25 @@ def run(run: Run, page: Page) -> None:
     """Solve the bar on three meshes and look at its root and its end."""
     around = (4, 8, 12) if run.quick else (12, 16, 20)
     rows = [run.timed(f"{n} elements round", solve, n) for n in around]
-    series = MeshSeries(rows, ROUND)
-    for key, target in TARGETS.items():
-        page.finest(
-            series,
-            key,
-            target,
-            within=0.015 if run.quick else 0.01,
-            why=ROUNDED_LATERAL,
-            source=MANUAL,
-        )
-    for key, within, why in (
-        (
-            DEFLECTION,
-            5e-3 if run.quick else 1e-3,
-            "theory is exact but for the coefficient of shear, whose whole part is 2e-4; away from "
-            "the root elements are 3.5 diameters long, in a quick run 6",
-        ),
-        (
-            TWIST,
-            1e-3,
-            "exact for a round bar; elements of second order on the true circle",
-        ),
-    ):
-        page.finest(
-            series,
-            key,
-            THEORY[key],
-            within=within,
-            why=why,
-            source="beam theory: F l^3 / (3 E I) + F l / (k G A), Cowper 1966; T l / (G J)",
-        )
+    close, far = (0.015, 5e-3) if run.quick else (0.01, 1e-3)
+    kGA = 6.0 * (1.0 + NU) / (7.0 + 6.0 * NU) * G * AREA
+    deflection = FORCE * LENGTH**3 / (3.0 * E * INERTIA) + FORCE * LENGTH / kGA
+    of_shear = "theory is exact but for the coefficient of shear, whose whole part is 2e-4; away "
+    of_shear += "from the root elements are 3.5 diameters long, in a quick run 6"
+    exact = "exact for a round bar; elements of second order on the true circle"
+    targets = [
+        Target(PRINCIPAL, 1e-6 * (7527.0 * PSI), close, ROUNDED_LATERAL, MANUAL),
+        Target(SHEAR, 1e-6 * (3777.0 * PSI), close, ROUNDED_LATERAL, MANUAL),
+        Target(DEFLECTION, 1e3 * deflection, far, of_shear, THEORY),
+        Target(TWIST, 1e3 * (TORQUE * LENGTH / (2.0 * G * INERTIA)), 1e-3, exact, THEORY),
+    ]
     last = rows[-1]
     page.answer(
         f"The bar's root carries a largest principal stress of {last[PRINCIPAL] * 1e6 / PSI:.0f} "
         f"psi (target 7527) and a largest shear of {last[SHEAR] * 1e6 / PSI:.0f} psi (3777)."
     )
     page.section("Stresses and motions")
-    page.meshes("By mesh", series, TARGETS | THEORY, "target")
+    page.targets("By mesh", MeshSeries(rows, ROUND), targets)
     page.text(
         "The bar goes on two diameters behind its root and is clamped there, so that the clamp's "
         "singular rim does not reach the root; displacements are against the root section's mean "

@@ -9,7 +9,7 @@ from fe_drivetrain.cases.verification.units import INCH, POUND, PSI
 from fe_drivetrain.common import Floats
 from fe_drivetrain.operator import tensor
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.bar_sections import ROUNDED_LATERAL, round_bar, solve_bar
 from fe_drivetrain.validation.ring_solids import node_at
 
@@ -28,12 +28,6 @@ CLOSED = FORCE * RADIUS**3 * FLEXIBILITY  # m
 ROUND, DEFLECTION = "elements round", "deflection of the end [mm]"
 BENDING = "bending stress at the root [MPa]"
 TORSION = "shear stress of torsion at the root [MPa]"
-#: The manual's targets.
-TARGETS = {
-    DEFLECTION: 1e3 * (2.648 * INCH),
-    BENDING: 1e-6 * (6366.0 * PSI),
-    TORSION: 1e-6 * (3183.0 * PSI),
-}
 MANUAL = "Ansys Mechanical APDL verification manual, VM18, target as in PyMAPDL's example"
 
 
@@ -67,34 +61,18 @@ def run(run: Run, page: Page) -> None:
     """Solve the bar on three meshes and look at its root and its end."""
     around = (4, 8, 12) if run.quick else (12, 16, 20)
     rows = [run.timed(f"{n} elements round", solve, n) for n in around]
-    series = MeshSeries(rows, ROUND)
+    close = 0.015 if run.quick else 0.01
     left_out = "shear and curvature, which it leaves out, are 1e-4 and (d/R)^2 = 4e-4"
-    page.finest(
-        series,
-        DEFLECTION,
-        TARGETS[DEFLECTION],
-        within=2e-3,
-        why=f"the closed form evaluated here is 0.05 % above the printed target; {left_out}",
-        source=MANUAL,
-    )
-    page.finest(
-        series,
-        DEFLECTION,
-        1e3 * CLOSED,
-        name="deflection of the end, closed form",
-        within=1e-3,
-        why=left_out,
-        source="Timoshenko, Strength of Materials, part I, 1955, eq 241, evaluated here",
-    )
-    for key in (BENDING, TORSION):
-        page.finest(
-            series,
-            key,
-            TARGETS[key],
-            within=0.015 if run.quick else 0.01,
-            why=f"{ROUNDED_LATERAL}; curvature adds (d/R)^2 = 4e-4",
-            source=MANUAL,
-        )
+    printed = f"the closed form evaluated here is 0.05 % above the printed target; {left_out}"
+    curvature = f"{ROUNDED_LATERAL}; curvature adds (d/R)^2 = 4e-4"
+    evaluated = "Timoshenko, Strength of Materials, part I, 1955, eq 241, evaluated here"
+    closed = "deflection of the end, closed form"
+    targets = [
+        Target(DEFLECTION, 1e3 * (2.648 * INCH), 2e-3, printed, MANUAL),
+        Target(DEFLECTION, 1e3 * CLOSED, 1e-3, left_out, evaluated, closed),
+        Target(BENDING, 1e-6 * (6366.0 * PSI), close, curvature, MANUAL),
+        Target(TORSION, 1e-6 * (3183.0 * PSI), close, curvature, MANUAL),
+    ]
     last = rows[-1]
     page.answer(
         f"The end sinks by {1e-3 * last[DEFLECTION] / INCH:.4f} in (target 2.648, closed form "
@@ -102,10 +80,9 @@ def run(run: Run, page: Page) -> None:
         f"(6366) and {1e6 * last[TORSION] / PSI:.0f} psi in torsion (3183)."
     )
     page.section("Deflection and stresses")
-    page.meshes("By mesh", series, TARGETS, "target")
+    page.targets("By mesh", MeshSeries(rows, ROUND), targets)
     page.text(
         "The bar goes on two diameters behind its root and is clamped there, so that the clamp's "
         "singular rim does not reach the root; the deflection is against the root section's mean "
         "motion. Stresses of the root are taken from the elements' own strains."
     )
-    page.data("closed form [m]", CLOSED)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,6 +37,40 @@ UNITS_OF: Mapping[str, Measure] = {
     "N m^2": "stiffness",
 }
 """Kind of quantity, for bias and scatter over all cases, of units that have but one."""
+
+
+class Target(NamedTuple):
+    """What a benchmark asks of the finest mesh; see `Page.equals`.
+
+    Attributes
+    ----------
+    key : str
+        Key of the value in a mesh's record, which ends with its unit: "deflection [mm]".
+    value : float
+        What it should be.
+    within : float
+        Allowed difference, relative to the value.
+    why, source : str
+        Why the tolerance is what it is, and where the value comes from.
+    name : str
+        What was computed, where the key does not state it alone.
+    relative : bool
+        False where `within` is in the unit.
+    measure : str or None
+        Kind of quantity; that of the unit where left out.
+    order : float or None
+        Expected order of convergence.
+    """
+
+    key: str
+    value: float
+    within: float
+    why: str
+    source: str
+    name: str = ""
+    relative: bool = True
+    measure: Measure | None = None
+    order: float | None = None
 
 
 class Page:
@@ -167,53 +201,28 @@ class Page:
             band=band,
         )
 
-    def finest(
-        self,
-        series: MeshSeries,
-        key: str,
-        reference: float,
-        *,
-        within: float,
-        why: str,
-        source: str,
-        name: str = "",
-        relative: bool = True,
-        measure: Measure | None = None,
-        order: float | None = None,
-    ) -> None:
-        """The value of the finest of several meshes is the reference; its band is theirs.
+    def finest(self, series: MeshSeries, target: Target) -> None:
+        """The finest of several meshes meets a target; the band of its value is that of them all.
 
         Parameters
         ----------
         series : MeshSeries
             What each mesh gave.
-        key : str
-            Key of the value, which ends with its unit: "deflection of the end [mm]".
-        reference : float
-            As for `equals`.
-        within, why, source : float, str, str
-            As for `equals`.
-        relative : bool
-            As for `equals`.
-        name : str
-            What was computed, where the key does not state it alone.
-        measure : str, optional
-            As for `equals`; that of the unit in `UNITS_OF` where left out.
-        order : float, optional
-            Expected order of convergence.
+        target : Target
+            What the finest should give.
         """
-        quantity, _, unit = key.removesuffix("]").partition(" [")
+        quantity, _, unit = target.key.removesuffix("]").partition(" [")
         self.equals(
-            name or quantity,
-            series.rows[-1][key],
-            reference,
-            within=within,
-            why=why,
-            source=source,
-            unit="" if unit == "-" else unit,
-            relative=relative,
-            measure=measure or UNITS_OF.get(unit),
-            band=series.band(key, order),
+            target.name or quantity,
+            series.rows[-1][target.key],
+            target.value,
+            within=target.within,
+            why=target.why,
+            source=target.source,
+            unit=unit,
+            relative=target.relative,
+            measure=target.measure or UNITS_OF.get(unit),
+            band=series.band(target.key, target.order),
         )
 
     def at_most(
@@ -376,11 +385,44 @@ class Page:
         heading : str
             Of the references' column.
         """
-        rows, by = series.rows, series.by
-        columns = ["quantity", *(f"{row[by]} {by}" for row in rows), heading]
-        cells = [[key, *column(rows, key), value] for key, value in references.items()]
+        rows = [(key, key, value) for key, value in references.items()]
+        self._meshes(caption, series, rows, heading)
+
+    def _meshes(
+        self, caption: str, series: MeshSeries, rows: list[tuple[str, str, float]], heading: str
+    ) -> None:
+        """The same with what is shown of a key in its row's first cell."""
+        meshes, by = series.rows, series.by
+        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
+        cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
         self.table(caption, cells, columns)
-        self.data(caption, [{key: row[key] for key in (by, *references)} for row in rows])
+        keys = [by, *dict.fromkeys(key for _, key, _ in rows)]
+        self.data(caption, [{key: mesh[key] for key in keys} for mesh in meshes])
+
+    def targets(
+        self, caption: str, series: MeshSeries, targets: Sequence[Target], heading: str = "target"
+    ) -> None:
+        """Check the finest of several meshes against targets, and show all meshes beside them.
+
+        Parameters
+        ----------
+        caption : str
+            Of the table; the records stand under it among `figures`.
+        series : MeshSeries
+            What each mesh gave.
+        targets : sequence of Target
+            In the order of the checks.
+        heading : str
+            Of the targets' column.
+        """
+        for target in targets:
+            self.finest(series, target)
+        rows = []
+        for target in targets:
+            unit = target.key.partition(" [")[2]
+            shown = f"{target.name} [{unit}" if target.name and unit else target.name
+            rows.append((shown or target.key, target.key, target.value))
+        self._meshes(caption, series, rows, heading)
 
     def sweep(
         self,
