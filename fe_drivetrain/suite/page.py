@@ -32,20 +32,24 @@ UNITS_OF: Mapping[str, Measure] = {
     "µm": "deflection",
     "mrad": "rotation",
     "rad": "rotation",
+    "N": "reaction",
+    "MN": "reaction",
     "J/m": "energy",
+    "N/m": "stiffness",
     "N m/rad": "stiffness",
     "N m^2": "stiffness",
+    "kg": "mass",
 }
 """Kind of quantity, for bias and scatter over all cases, of units that have but one."""
 
 
 class Target(NamedTuple):
-    """What a benchmark asks of the finest mesh; see `Page.equals`.
+    """What a benchmark asks for; see `Page.equals`.
 
     Attributes
     ----------
     key : str
-        Key of the value in a mesh's record, which ends with its unit: "deflection [mm]".
+        The quantity with its unit: "deflection [mm]"; in the record of a mesh its key.
     value : float
         What it should be.
     within : float
@@ -211,10 +215,15 @@ class Page:
         target : Target
             What the finest should give.
         """
+        value, band = series.rows[-1][target.key], series.band(target.key, target.order)
+        self.meets(value, target, band)
+
+    def meets(self, computed: float, target: Target, band: float | None = None) -> None:
+        """The computed value meets a target; `band` as for `equals`."""
         quantity, _, unit = target.key.removesuffix("]").partition(" [")
         self.equals(
             target.name or quantity,
-            series.rows[-1][target.key],
+            computed,
             target.value,
             within=target.within,
             why=target.why,
@@ -222,7 +231,7 @@ class Page:
             unit=unit,
             relative=target.relative,
             measure=target.measure or UNITS_OF.get(unit),
-            band=series.band(target.key, target.order),
+            band=band,
         )
 
     def at_most(
