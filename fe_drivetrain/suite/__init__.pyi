@@ -2,6 +2,8 @@ from .case import Case as Case
 from .case import all_cases as all_cases
 from .case import find_cases as find_cases
 from .page import Page as Page
+from .page import Target as Target
+from .records import MeshSeries as MeshSeries
 from .records import Record as Record
 from .records import band_of_rows as band_of_rows
 from .records import column as column
