@@ -1,3 +1,12 @@
+from .answers import LoadZone as LoadZone
+from .answers import approaches as approaches
+from .answers import ball_contacts as ball_contacts
+from .answers import by_row as by_row
+from .answers import end_loads as end_loads
+from .answers import lamina_loads as lamina_loads
+from .answers import load_zones as load_zones
+from .answers import pressures as pressures
+from .answers import secant_stiffness as secant_stiffness
 from .contact import ContactLaw as ContactLaw
 from .contact import PointContact as PointContact
 from .contact import houpert as houpert
@@ -9,6 +18,10 @@ from .contact import log_profile as log_profile
 from .contact import palmgren_line as palmgren_line
 from .contact import point_contact as point_contact
 from .contact import straight_roller as straight_roller
+from .distribution import effective_centre as effective_centre
+from .distribution import load_zone_share as load_zone_share
+from .distribution import sjovall as sjovall
+from .distribution import superposed_peak as superposed_peak
 from .geometry import Arrangement as Arrangement
 from .geometry import BallRow as BallRow
 from .geometry import Bearing as Bearing
@@ -21,6 +34,9 @@ from .geometry import pitch_ratio as pitch_ratio
 from .geometry import spherical_roller as spherical_roller
 from .geometry import tapered_row as tapered_row
 from .geometry import toroidal as toroidal
+from .rating import Ratings as Ratings
+from .rating import capacity_factor as capacity_factor
+from .rating import ratings as ratings
 from .rolling import COMPONENTS as COMPONENTS
 from .rolling import Equilibrium as Equilibrium
 from .rolling import elements as elements

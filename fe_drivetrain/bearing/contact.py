@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
+from fe_drivetrain.bearing.kernels import closed
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
@@ -294,16 +295,9 @@ def straight_roller(
     load, moment : float
         Integrals of K/L (middle + slope x)_+^n, and of that times x [N, N m].
     """
-    n, per_length = law.exponent, law.stiffness / length
-    if abs(slope) * length < 1e-9 * abs(middle) or slope == 0.0:
-        q = per_length * max(middle, 0.0) ** n
-        return q * length, q * n * slope / middle * length**3 / 12.0 if middle > 0.0 else 0.0
-    z1 = max(middle - 0.5 * abs(slope) * length, 0.0)
-    z2 = max(middle + 0.5 * abs(slope) * length, 0.0)
-    first = (z2 ** (n + 1.0) - z1 ** (n + 1.0)) / (n + 1.0)
-    second = (z2 ** (n + 2.0) - z1 ** (n + 2.0)) / (n + 2.0)
-    load = per_length * first / abs(slope)
-    return load, per_length * (second - middle * first) / (slope * abs(slope))
+    sums = np.zeros(5)
+    closed(middle, slope, law.stiffness, law.exponent, length, sums)
+    return float(sums[0]), float(sums[1])
 
 
 def _positive(**sizes: float) -> None:

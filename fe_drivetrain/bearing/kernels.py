@@ -42,7 +42,7 @@ def _power(x: float, n: float) -> float:
 
 
 @njit(cache=True)
-def _closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
+def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
     """Integrals along a straight roller: s becomes load, moment, and three of the tangent."""
     half = 0.5 * abs(c) * L
     z1, z2 = max(b - half, 0.0), b + half
@@ -132,7 +132,7 @@ def _element(
     if b + 0.5 * abs(c) * d[LENGTH] <= 0.0:
         return 0.0
     if d[KIND] == CLOSED:
-        _closed(b, c, d[STIFF], d[EXPONENT], d[LENGTH], s)
+        closed(b, c, d[STIFF], d[EXPONENT], d[LENGTH], s)
     else:
         _laminae(b, c, d[STIFF], d[EXPONENT], xi, free, s)
     Q = s[0]

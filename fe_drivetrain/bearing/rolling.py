@@ -34,6 +34,9 @@ MOTIONS = (
 TOLERANCE = 1e-8
 """Residual over load, moments over the pitch radius."""
 
+CONTINUED = 4.0
+"""Loads fall by this factor from one to the next where a case has to be followed down to it."""
+
 CARRIED = 1e-9
 """Share of a load that may act on a motion that nothing carries: round-off of who made it."""
 
@@ -436,18 +439,56 @@ def _solved(
             np.linalg.solve(soft + 1e-9 * _mean_diagonal(soft), targets[..., None])[..., 0]
             / scales[:, None]
         )
-    u = np.empty((n, 5))
-    steps, evaluations, residuals = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n)
-    turned, guesses, pack = (
-        np.ascontiguousarray(turned),
-        np.ascontiguousarray(guesses),
-        packed(bearing),
+    found = _run(bearing, turned, B, guesses, soft, scales, tolerance, warm, damped)
+    lost = np.flatnonzero(found.residuals > 1.0)
+    if damped and len(lost):
+        some = lost if len(B) > 1 else np.array([0])
+        again = _continued(
+            bearing, turned[lost], B[some], soft[some], scales[lost], deflection[lost], tolerance
+        )
+        for whole, part in zip(found, again, strict=True):
+            whole[lost] = part
+    u = found.displacements
+    if phases is not None:
+        u = turn(u, np.asarray(phases, dtype=float))
+    return Equilibrium(
+        bearing,
+        loads,
+        u,
+        found.residuals,
+        found.residuals <= 1.0,
+        found.steps,
+        found.evaluations,
     )
+
+
+class _Found(NamedTuple):
+    displacements: Floats
+    steps: Ints
+    evaluations: Ints
+    residuals: Floats
+
+
+def _run(
+    bearing: Bearing,
+    loads: Floats,
+    B: Floats,
+    guesses: Floats,
+    soft: Floats,
+    scales: Floats,
+    tolerance: float,
+    warm: bool,
+    damped: bool,
+) -> _Found:
+    """The compiled Newton method over chunks of cases, in threads."""
+    n, pack = len(loads), packed(bearing)
+    loads, guesses = np.ascontiguousarray(loads), np.ascontiguousarray(guesses)
+    found = _Found(np.empty((n, 5)), np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n))
 
     def solve(cases: slice) -> None:
         own = cases if len(B) > 1 else slice(None)
         kernels.solve_cases(
-            turned[cases],
+            loads[cases],
             B[own],
             guesses[cases],
             soft[own],
@@ -456,24 +497,42 @@ def _solved(
             tolerance,
             warm,
             damped,
-            u[cases],
-            steps[cases],
-            evaluations[cases],
-            residuals[cases],
+            *(whole[cases] for whole in found),
         )
 
     in_threads(solve, n, kernels.CHUNK)
-    if phases is not None:
-        u = turn(u, np.asarray(phases, dtype=float))
-    return Equilibrium(
-        bearing,
-        loads,
-        u,
-        residuals,
-        residuals <= 1.0,
-        steps,
-        evaluations,
-    )
+    return found
+
+
+def _continued(
+    bearing: Bearing,
+    loads: Floats,
+    B: Floats,
+    soft: Floats,
+    scales: Floats,
+    deflection: Floats,
+    tolerance: float,
+) -> _Found:
+    """Down from larger loads, under which a clearance is small: each from the one before.
+
+    A load that just closes a clearance is nearly a problem of rigid contacts, whose few carrying
+    rollers Newton's method alone finds slowly.
+    """
+    n, m = len(loads), B.shape[2]
+    row = max(bearing.rows, key=lambda r: r.law.exponent)
+    free = max(max(abs(r.clearance) for r in bearing.rows), 1e-6)
+    most = max(free / max(float(deflection.min()), 1e-30), 10.0) ** row.law.exponent
+    factors = CONTINUED ** np.arange(np.ceil(np.log(most) / np.log(CONTINUED)), -1.0, -1.0)
+    back = np.broadcast_to(np.linalg.pinv(B), (n, m, 5))
+    at = np.zeros((n, m))
+    steps, evaluations = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    for factor in factors:
+        stiffer = scales * factor ** (1.0 - 1.0 / row.law.exponent)
+        found = _run(bearing, factor * loads, B, at, soft, stiffer, tolerance, False, True)
+        at = np.einsum("nij,nj->ni", back, found.displacements)
+        steps += found.steps
+        evaluations += found.evaluations
+    return _Found(found.displacements, steps, evaluations, found.residuals)
 
 
 def _mean_diagonal(soft: Floats) -> Floats:
