@@ -7,6 +7,9 @@ from .answers import lamina_loads as lamina_loads
 from .answers import load_zones as load_zones
 from .answers import pressures as pressures
 from .answers import secant_stiffness as secant_stiffness
+from .catalogue import Entry as Entry
+from .catalogue import catalogue_bearing as catalogue_bearing
+from .catalogue import read_catalogue as read_catalogue
 from .contact import ContactLaw as ContactLaw
 from .contact import PointContact as PointContact
 from .contact import houpert as houpert

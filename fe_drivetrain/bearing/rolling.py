@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import nnls
 
 from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, angles
@@ -130,7 +131,7 @@ def equilibrium(
     Raises
     ------
     InputError
-        A load is no number, or acts on a motion that nothing carries.
+        A load is no number, or acts on a motion that nothing carries, or lifts the inner ring off.
 
     Notes
     -----
@@ -448,6 +449,7 @@ def _solved(
         )
         for whole, part in zip(found, again, strict=True):
             whole[lost] = part
+        _refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
     u = found.displacements
     if phases is not None:
         u = turn(u, np.asarray(phases, dtype=float))
@@ -581,3 +583,33 @@ def _refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools
             f"{loads[case, component]:.6g} {unit_name}, and no contact of the bearing carries it: "
             f"leave it to another bearing, or give one that resists {MOTIONS[component]}"
         )
+
+
+def _refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
+    """Raise where no pushes of rollers add up to the load, as of a single row pushed open."""
+    rollers = [row for row in bearing.rows if isinstance(row, RollerRow)]
+    if not len(loads) or len(rollers) < len(bearing.rows):
+        return  # the normals of balls turn
+    scale = np.array([1.0, 1.0, 1.0, bearing.arm, bearing.arm])
+    normals = []
+    for row in rollers:
+        psi = angles(row)
+        co, si = np.cos(psi), np.sin(psi)
+        ends = (
+            [0.0] if row.aligning else (row.arm + row.places[[0, -1]] * (1 if row.laminae else 0))
+        )
+        half = 0.5 * row.length if not row.laminae and not row.aligning else 0.0
+        for arm in np.add.outer(ends, [-half, half]).ravel():
+            one = np.sin(row.angle) * np.ones_like(psi)
+            cosine = np.cos(row.angle)
+            normals.append(np.array([one, -cosine * co, cosine * si, -arm * si, -arm * co]))
+    H = np.concatenate(normals, axis=1) / scale[:, None]
+    for case, load in zip(cases, loads / scale, strict=True):
+        size = np.linalg.norm(load)
+        if nnls(H, load / size)[1] > 1e-6:
+            given = ", ".join(f"{x:.6g}" for x in load * scale)
+            raise InputError(
+                f"loads ({given}) N and N m of case {case} on {bearing.name}: no rollers balance "
+                "them, and the inner ring lifts off; add axial force, or a second row that opposes "
+                "the first"
+            )
