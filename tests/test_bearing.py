@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.answers import (
     approaches,
     end_loads,
@@ -552,3 +553,11 @@ def test_a_moment_that_arms_of_zero_cannot_carry_is_refused() -> None:
     with pytest.raises(InputError, match="no contact of the bearing carries"):
         equilibrium(Bearing("mechanism", rows), [0, 0, -1e5, 1e5, 0])
     assert equilibrium(Bearing("mechanism", rows), [1e4, 0, -1e5, 0, 0]).converged.all()
+
+
+@pytest.mark.parametrize("exponent", [0.0, 0.1, 1 / 9, 0.5, 1.0])
+def test_powers_from_a_table_are_those_of_the_library(exponent: float) -> None:
+    x = 10.0 ** np.random.default_rng(3).uniform(-30, 3, 2000)
+    spoilt, found = x.copy(), np.empty_like(x)
+    kernels.powers(spoilt, spoilt.view(np.int64), len(x), kernels.power_table(exponent), found)
+    assert_allclose(found, x**exponent, rtol=2e-15)

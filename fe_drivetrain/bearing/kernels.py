@@ -31,6 +31,42 @@ MAX_TRIALS = 80
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(10)
 
 
+# Powers of many numbers without a logarithm each: x = 2^e m, m near one of these middles, m^q from
+# a table and six terms of the binomial series, whose rest is below round-off. (A library's power
+# takes most of the time of an equilibrium otherwise.)
+_BITS = 7
+_TERMS = 6
+POWERS = 2048 + 2 * 2**_BITS + _TERMS
+_TO_MIDDLE, _OF_MIDDLE, _SERIES = 2048, 2048 + 2**_BITS, 2048 + 2 * 2**_BITS
+
+
+def power_table(q: float) -> Floats:
+    """What `powers` needs for the exponent q: (POWERS,)."""
+    table = np.zeros(POWERS)
+    with np.errstate(over="ignore", under="ignore"):
+        table[1:_TO_MIDDLE] = 2.0 ** (q * (np.arange(1.0, 2048.0) - 1023.0))
+    middles = 1.0 + (np.arange(2**_BITS) + 0.5) / 2**_BITS
+    table[_TO_MIDDLE:_OF_MIDDLE] = 1.0 / middles
+    table[_OF_MIDDLE:_SERIES] = middles**q
+    k = np.arange(_TERMS)
+    table[_SERIES:] = np.cumprod((q - k) / (k + 1.0))
+    return table
+
+
+@njit(cache=True)
+def powers(x: Floats, bits: Ints, n: int, table: Floats, out: Floats) -> None:
+    """out = x^q of the first n, all positive; ``bits`` is the same memory as x, and is spoilt."""
+    c1, c2, c3 = table[_SERIES], table[_SERIES + 1], table[_SERIES + 2]
+    c4, c5, c6 = table[_SERIES + 3], table[_SERIES + 4], table[_SERIES + 5]
+    for k in range(n):
+        b = bits[k]
+        i = (b >> (52 - _BITS)) & (2**_BITS - 1)
+        out[k] = table[b >> 52] * table[_OF_MIDDLE + i]
+        bits[k] = (b & (2**52 - 1)) | (1023 << 52)
+        r = x[k] * table[_TO_MIDDLE + i] - 1.0
+        out[k] *= 1.0 + r * (c1 + r * (c2 + r * (c3 + r * (c4 + r * (c5 + r * c6)))))
+
+
 @njit(cache=True, inline="always")
 def _power(x: float, n: float) -> float:
     """x^n for positive x; the exponents of springs and balls without a logarithm."""
@@ -74,21 +110,46 @@ def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
 
 
 @njit(cache=True)
-def _laminae(b: float, c: float, K: float, n: float, xi: Floats, free: Floats, s: Floats) -> None:
-    """The same sums over laminae, `free` being what each has to approach first."""
-    s0 = s1 = s2 = s3 = s4 = 0.0
+def _laminae(
+    b: float,
+    c: float,
+    K: float,
+    n: float,
+    xi: Floats,
+    free: Floats,
+    table: Floats,
+    work: Floats,
+    s: Floats,
+) -> None:
+    """The same sums over laminae, `free` being what each has to approach first.
+
+    ``work`` is (3, 2 or more times the laminae): approaches twice, and powers.
+    """
+    z, spoilt, e = work[0], work[1], work[2]
+    bits = spoilt.view(np.int64)
+    count, first = 0, 0
     for k in range(len(xi)):
-        x = xi[k]
-        z = b + c * x - free[k]
-        if z > 0.0:
-            e = _power(z, n - 1.0)
-            q = e * z
+        here = b + c * xi[k] - free[k]
+        if here > 0.0:
+            if count == 0:
+                first = k
+            z[k] = spoilt[k] = here
+            count = k + 1
+        else:
+            z[k], spoilt[k] = 0.0, 1.0
+    count -= first
+    powers(spoilt[first:], bits[first:], count, table, e)
+    s0 = s1 = s2 = s3 = s4 = 0.0
+    for k in range(count):
+        x, here, power = xi[first + k], z[first + k], e[k]
+        if here > 0.0:
+            q = power * here
             s0 += q
             s1 += q * x
-            s2 += e
-            e *= x
-            s3 += e
-            s4 += e * x
+            s2 += power
+            power *= x
+            s3 += power
+            s4 += power * x
     K /= len(xi)
     s[0], s[1] = K * s0, K * s1
     K *= n
@@ -97,7 +158,16 @@ def _laminae(b: float, c: float, K: float, n: float, xi: Floats, free: Floats, s
 
 @njit(cache=True)
 def _element(
-    d: Floats, xi: Floats, free: Floats, a: float, w: float, t: float, s: Floats, f: Floats
+    d: Floats,
+    xi: Floats,
+    free: Floats,
+    table: Floats,
+    a: float,
+    w: float,
+    t: float,
+    work: Floats,
+    s: Floats,
+    f: Floats,
 ) -> float:
     """One rolling element: f becomes its forces and tangent over (a, w, t); returns its load.
 
@@ -134,7 +204,7 @@ def _element(
     if d[KIND] == CLOSED:
         closed(b, c, d[STIFF], d[EXPONENT], d[LENGTH], s)
     else:
-        _laminae(b, c, d[STIFF], d[EXPONENT], xi, free, s)
+        _laminae(b, c, d[STIFF], d[EXPONENT], xi, free, table, work, s)
     Q = s[0]
     if Q <= 0.0:
         return 0.0
@@ -156,8 +226,10 @@ def _evaluate(
     lam: Ints,
     xi: Floats,
     free: Floats,
+    tables: Floats,
     F: Floats,
     K: Floats,
+    work: Floats,
     s: Floats,
     f: Floats,
 ) -> float:
@@ -174,7 +246,7 @@ def _evaluate(
             # e_r = (-cos, sin) of (y, z), and the tangent e_x x e_r = (-sin, -cos)
             w = si * uz - co * uy
             t = -(si * ty + co * tz)
-            Q = _element(d, x, g, a, w, t, s, f)
+            Q = _element(d, x, g, tables[r], a, w, t, work, s, f)
             if Q <= 0.0:
                 continue
             total += Q
@@ -270,25 +342,32 @@ def _newton(
     lam: Ints,
     xi: Floats,
     free: Floats,
+    tables: Floats,
     tolerance: float,
     damped: bool,
+    known: float,
+    F: Floats,
+    K: Floats,
+    work: Floats,
     u: Floats,
-) -> tuple[int, int, float]:
+) -> tuple[int, int, float, float]:
     """Minimise energy minus work over u = B w, from ``start``; u becomes the minimum.
 
-    Returns the steps, the evaluations, and the residual over what is allowed: at most 1 where it
-    has converged.
+    F and K are forces and tangent at the start where ``known``, the sum of all loads, is not
+    negative; at the end they are those of the minimum. Returns the steps, the evaluations, the
+    residual over what is allowed (at most 1 where it has converged), and the sum of all loads.
     """
     m = B.shape[1]
-    F, K = np.empty(5), np.empty((5, 5))
     s, f = np.zeros(5), np.zeros(9)
     g, d, A = np.empty(m), np.empty(m), np.empty((m, m))
     w, base, target = start.copy(), np.empty(m), np.empty(m)
     _projected(B, load, target)
     size = _norm(target)
-    evaluations, steps = 1, 0
+    evaluations, steps, total = 0, 0, known
     _expanded(B, w, u)
-    total = _evaluate(u, data, first, sines, cosines, lam, xi, free, F, K, s, f)
+    if known < 0.0:
+        total = _evaluate(u, data, first, sines, cosines, lam, xi, free, tables, F, K, work, s, f)
+        evaluations += 1
     while True:
         _projected(B, F, g)
         for i in range(m):
@@ -296,11 +375,8 @@ def _newton(
         norm = _norm(g)
         allowed = max(tolerance * size, 1e-14 * total)
         if norm <= allowed or steps == MAX_STEPS:
-            return (
-                steps,
-                evaluations,
-                norm / allowed if allowed > 0.0 else (0.0 if norm == 0.0 else 1e300),
-            )
+            over = norm / allowed if allowed > 0.0 else (0.0 if norm == 0.0 else np.inf)
+            return steps, evaluations, over, total
         # Newton's direction; what no contact carries yet is as soft as a thousandth of all contacts
         # and stiffens as the residual goes.
         mu = scale * (1e-3 * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
@@ -325,7 +401,9 @@ def _newton(
             for i in range(m):
                 w[i] = base[i] + step * d[i]
             _expanded(B, w, u)
-            total = _evaluate(u, data, first, sines, cosines, lam, xi, free, F, K, s, f)
+            total = _evaluate(
+                u, data, first, sines, cosines, lam, xi, free, tables, F, K, work, s, f
+            )
             evaluations += 1
             _projected(B, F, g)
             here = 0.0
@@ -363,6 +441,7 @@ def solve_cases(
     lam: Ints,
     xi: Floats,
     free: Floats,
+    tables: Floats,
     tolerance: float,
     warm: bool,
     damped: bool,
@@ -383,7 +462,7 @@ def solve_cases(
         (n, m) to start from where there is no case before.
     soft, scales : Floats
         (n or 1, m, m) stiffness by which singular tangents are held, and (n,) its factor.
-    data, first, sines, cosines, lam, xi, free : arrays
+    data, first, sines, cosines, lam, xi, free, tables : arrays
         The bearing, packed.
     tolerance : float
         Residual over load.
@@ -393,7 +472,8 @@ def solve_cases(
         (n, 5), (n,), (n,), (n,): filled.
     """
     m = bases.shape[2]
-    start = np.zeros(m)
+    start, F, K, work = np.zeros(m), np.empty(5), np.empty((5, 5)), np.empty((3, len(xi) + 1))
+    total = -1.0
     for i in range(len(loads)):
         B = bases[i if len(bases) > 1 else 0]
         near = False
@@ -412,7 +492,7 @@ def solve_cases(
                     along += B[k, j] * displacements[i - 1, k]
                     size += B[k, j] ** 2
                 start[j] = along / size
-        steps[i], evaluations[i], residuals[i] = _newton(
+        steps[i], evaluations[i], residuals[i], total = _newton(
             loads[i],
             B,
             start,
@@ -425,8 +505,13 @@ def solve_cases(
             lam,
             xi,
             free,
+            tables,
             tolerance,
             damped,
+            total if near else -1.0,
+            F,
+            K,
+            work,
             displacements[i],
         )
 
@@ -441,11 +526,12 @@ def forces_of(
     lam: Ints,
     xi: Floats,
     free: Floats,
+    tables: Floats,
     loads: Floats,
     tangents: Floats,
 ) -> None:
     """Loads (n, 5) and tangent stiffness (n, 5, 5) at given displacements (n, 5), filled."""
-    s, f = np.zeros(5), np.zeros(9)
+    work, s, f = np.empty((3, len(xi) + 1)), np.zeros(5), np.zeros(9)
     for i in range(len(displacements)):
         _evaluate(
             displacements[i],
@@ -456,8 +542,10 @@ def forces_of(
             lam,
             xi,
             free,
+            tables,
             loads[i],
             tangents[i],
+            work,
             s,
             f,
         )
@@ -473,12 +561,13 @@ def elements_of(
     lam: Ints,
     xi: Floats,
     free: Floats,
+    tables: Floats,
     loads: Floats,
     moments: Floats,
     angles: Floats,
 ) -> None:
     """Load, moment about its middle, and contact angle of each rolling element: (n, total)."""
-    s, f = np.zeros(5), np.zeros(9)
+    work, s, f = np.empty((3, len(xi) + 1)), np.zeros(5), np.zeros(9)
     for i in range(len(displacements)):
         a, uy, uz, ty, tz = displacements[i]
         for r in range(len(data)):
@@ -487,7 +576,7 @@ def elements_of(
             for j in range(first[r], first[r + 1]):
                 w = sines[j] * uz - cosines[j] * uy
                 t = -(sines[j] * ty + cosines[j] * tz)
-                Q = _element(d, x, g, a, w, t, s, f)
+                Q = _element(d, x, g, tables[r], a, w, t, work, s, f)
                 loads[i, j] = Q
                 moments[i, j] = s[1] if Q > 0.0 and d[KIND] != BALLS else 0.0
                 angles[i, j] = np.arctan2(d[SIN], d[COS])

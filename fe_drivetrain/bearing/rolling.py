@@ -52,6 +52,7 @@ class Packed(NamedTuple):
     lam: Ints
     xi: Floats
     free: Floats
+    tables: Floats
 
 
 @dataclass(frozen=True)
@@ -323,6 +324,7 @@ def packed(bearing: Bearing) -> Packed:
         np.cumsum([0, *(len(x) for x in xi)]),
         np.concatenate(xi),
         np.concatenate(free),
+        np.stack([kernels.power_table(row.law.exponent - 1.0) for row in bearing.rows]),
     )
 
 
