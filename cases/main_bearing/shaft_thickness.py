@@ -154,7 +154,9 @@ def run(run: Run, page: Page) -> None:
                     label, wall, lambda f, this, ref: 1e9 * f["motion hub"][2, 2]
                 ),
             }
-            if wall != walls[0]:  # which is the reference itself
+            # The first wall is the reference itself. How far the beam's K_R is from that of a bored
+            # seat is known of the project's scene; of others the table shows it.
+            if wall != walls[0] and not (page.subject and label == "DTRB"):
                 within, why = TOLERANCE[label]
                 page.equals(
                     f"{name}: mean change of the radial reaction, FE against beam",

@@ -20,7 +20,7 @@ from fe_drivetrain.response import (
     unit_load_response,
     without_gearbox,
 )
-from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
+from fe_drivetrain.scene import Scene, change_scene, coarser_scene, library_scene, read_scene
 from fe_drivetrain.solve import METHODS
 from fe_drivetrain.suite import Page, Run
 
@@ -80,7 +80,7 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
             f"that bearing made {after.interface}, not of the scene as it was given."
         )
     if run.quick and coarsen:
-        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*QUICK)})
+        scene = coarser_scene(scene, *QUICK)
     return scene
 
 
@@ -98,7 +98,8 @@ def given_scene(run: Run, kind: str) -> Scene:
     if len(scene.bearing_units) != 1:
         raise InputError(
             f"scene {scene.title!r} has {len(scene.bearing_units)} bearing units: the "
-            "main-bearing cases compare with closed forms for one; give a scene with one"
+            "main-bearing cases compare with closed forms for one; give a scene with one, or run "
+            "fe-drivetrain study, which takes any number"
         )
     return scene
 

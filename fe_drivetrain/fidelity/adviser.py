@@ -153,10 +153,15 @@ class Advice:
         """The answer."""
         share = f"{100 * self.tolerance:g} %"
         if self.chosen is None:
+            band = (
+                "has no band of its mesh, for its walls are too thin for one "
+                f"{max(COARSER):g} times coarser"
+                if np.isnan(self.top.estimate)
+                else f"has a band of {100 * self.top.estimate:.2g} %"
+            )
             return (
                 f"{self.quantity.name}: no level is known to be within {share}; the finest, "
-                f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %: "
-                "make its mesh finer"
+                f"{self.top.model.title}, {band}: make its mesh finer"
             )
         result = self.results[self.chosen]
         if self.chosen == len(self.results) - 1:
