@@ -29,8 +29,9 @@ from fe_drivetrain.report.pictures import (
     picture_of_deformation,
     picture_of_model,
 )
+from fe_drivetrain.response.cached import cached_response
 from fe_drivetrain.response.model import Model
-from fe_drivetrain.response.unit_loads import Response, unit_load_response
+from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -74,8 +75,10 @@ def studied(run: Run, page: Page, scene: Scene, own: StudyLoads | None) -> None:
     model = checked_model(run, scene)
     loads = surrogate_loads(run) if own is None else own
     page.seed = None if loads.own else 1
-    with run.step("assembly of solids"):
-        response = unit_load_response(model)
+    with run.step("assembly of solids") as step:
+        response = cached_response(model)
+        if response.kept:
+            step.name += ", from the cache"
     with run.step("levels 1 and 2"):
         levels = levels_of(scene, response, run.report)
     hub = np.concatenate([history.loads for history in loads.histories])

@@ -12,11 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.made_by import source_hash
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
 from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.response.cached import solved_by, solved_content
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
@@ -111,7 +114,7 @@ class UnitBounds(NamedTuple):
     mesh: float
 
 
-def unit_bounds(scene: Scene, name: str) -> UnitBounds:
+def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBounds:
     """Stiffness of a bearing unit between its two bounds, and the band of its mesh.
 
     Parameters
@@ -120,15 +123,31 @@ def unit_bounds(scene: Scene, name: str) -> UnitBounds:
         The scene.
     name : str
         Of the bearing.
+    cache : Cache or None
+        Where they may come from, the same to the last bit; the user's if not given.
 
     Returns
     -------
     UnitBounds
         See there.
     """
+    used = user_cache() if cache is None else cache
+    content = {
+        "bounds of": name,
+        "scene": solved_content(scene),
+        "sizes": scene.mesh.model_dump(mode="json"),
+        "made by": solved_by(),
+        "code": source_hash({"fe_drivetrain.fidelity": {"bearing_units.py"}}),
+    }
+    kept = used.load("solutions", content)
+    if kept is not None and set(kept) == {"soft", "stiff", "mesh"}:
+        return UnitBounds(kept["soft"], kept["stiff"], float(kept["mesh"]))
     stiff = _solved_unit(scene, name, "rigid")
-    soft = unit_stiffness(scene, name, "averaged")
-    return UnitBounds(soft, stiff.stiffness, _mesh_band(scene, stiff))
+    soft = np.ascontiguousarray(unit_stiffness(scene, name, "averaged"))
+    found = UnitBounds(soft, np.ascontiguousarray(stiff.stiffness), _mesh_band(scene, stiff))
+    arrays = {"soft": found.soft, "stiff": found.stiff, "mesh": np.array(found.mesh)}
+    used.keep("solutions", content, arrays)
+    return found
 
 
 class _SolvedUnit(NamedTuple):

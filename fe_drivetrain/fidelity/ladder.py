@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
@@ -25,8 +26,8 @@ from fe_drivetrain.fidelity.shafts import (
     ringed_shaft,
 )
 from fe_drivetrain.geometry import unit_solids
+from fe_drivetrain.response.cached import cached_response
 from fe_drivetrain.response.model import LOADS, build_model, mesh_scene
-from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.condensation import Condensed, supported
@@ -205,10 +206,19 @@ def shaft_level(
     return LevelModel(level, title, tuple(neglects), cost, reactions, body.names, motions)
 
 
-def assembly_level(scene: Scene) -> LevelModel:
-    """Level 4: shaft, bearings and housings as solids; stiffness at the hub."""
+def assembly_level(scene: Scene, cache: Cache | None = None) -> LevelModel:
+    """Level 4: shaft, bearings and housings as solids; stiffness at the hub.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    cache : Cache or None
+        Where its solution may come from; the user's if not given. The time of one that was kept is
+        that of reading it.
+    """
     start = time.perf_counter()
-    response = unit_load_response(build_model(scene, mesh_scene(scene)))
+    response = cached_response(build_model(scene, mesh_scene(scene)), cache=cache)
     names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
     reactions = {name: response.reactions[name] for name in names}
     cost = Cost(time.perf_counter() - start, response.diagnostics.n_unknowns)

@@ -14,12 +14,12 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.fidelity.bearing_units import unit_bounds
 from fe_drivetrain.fidelity.ladder import (
     TITLES,
     Cost,
     LevelModel,
     assembly_level,
-    housing_springs,
     shaft_level,
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft, reference_points
@@ -80,7 +80,11 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
     """
     models = {"beam, rigid housings": shaft_level(scene, 1)}
     report("bearing units, two bounds")
-    stiff, soft = (housing_springs(scene, coupling)[0] for coupling in ("rigid", "averaged"))
+    bounds = {
+        unit.bearing.name: unit_bounds(scene, unit.bearing.name) for unit in scene.bearing_units
+    }
+    stiff = {name: found.stiff for name, found in bounds.items()}
+    soft = {name: found.soft for name, found in bounds.items()}
     for level, word in ((1, "beam"), (2, "meridian")):
         report(f"level {level}, housings as springs")
         body = condensed_shaft(scene, level)
