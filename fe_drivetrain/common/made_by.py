@@ -13,6 +13,9 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from typing import Any
 
+#: Which choose kernels by the processor. MKL is loaded by a solver, in the course of a process.
+_CHOOSE = ("openblas", "blis")
+
 
 def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
     """SHA-256 of the sources of packages.
@@ -65,12 +68,13 @@ def arithmetic() -> dict[str, Any]:
         Read again each time: threads may be limited in the course of a process.
     """
     import numba
+    import scipy.linalg  # noqa: F401 - loads its BLAS, which else comes with the first solution
     from threadpoolctl import threadpool_info  # type: ignore[import-untyped]
 
     libraries = [
         [str(found.get(key)) for key in ("internal_api", "version", "num_threads", "architecture")]
         for found in threadpool_info()
-        if found.get("user_api") == "blas"
+        if found.get("internal_api") in _CHOOSE
     ]
     return {
         "machine": machine(),

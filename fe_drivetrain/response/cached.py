@@ -85,8 +85,9 @@ def solved_content(scene: Scene) -> dict[str, Any]:
     dict
         Plain data.
     """
-    left_out = {"title": True, "uncertainty": True, "mesh": True, "gearbox": {"weight"}}
-    return scene.model_dump(mode="json", exclude=left_out)
+    content = scene.model_dump(mode="json", exclude={"title", "uncertainty", "mesh"})
+    del content["gearbox"]["weight"]
+    return content
 
 
 def solved_by() -> dict[str, Any]:
@@ -109,7 +110,7 @@ def _mesh_hash(mesh: Mesh) -> str:
     found.update(json.dumps(names, ensure_ascii=True).encode())
     for array in (mesh.points, mesh.cells, mesh.part, *mesh.faces.values()):
         found.update(f"{array.dtype.str}{array.shape}".encode())
-        found.update(np.ascontiguousarray(array))
+        found.update(array.tobytes())
     return found.hexdigest()
 
 
@@ -137,13 +138,15 @@ def _groups(response: Response) -> dict[str, Mapping[str, NDArray[Any]]]:
 
 
 def _from_arrays(arrays: Arrays) -> Response:
-    groups = {
-        what: {str(n): arrays[f"{what} {k}"] for k, n in enumerate(arrays[f"{what} names"])}
-        for what in ("reactions", "positions", "motions", "strain_energy")
-    }
+    def group(what: str) -> dict[str, NDArray[Any]]:
+        return {str(n): arrays[f"{what} {k}"] for k, n in enumerate(arrays[f"{what} names"])}
+
     equilibrium, superposition = arrays["checks"].tolist()
     return Response(
-        **groups,
+        reactions=group("reactions"),
+        positions=group("positions"),
+        motions=group("motions"),
+        strain_energy=group("strain_energy"),
         displacements=arrays["displacements"],
         equilibrium_error=equilibrium,
         superposition_error=superposition,
