@@ -12,7 +12,7 @@ from conftest import coarse_scene
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.made_by import arithmetic, source_hash
 from fe_drivetrain.fidelity import bearing_units
-from fe_drivetrain.fidelity.bearing_units import unit_bounds
+from fe_drivetrain.fidelity.bearing_units import unit_bounds, unit_stiffness
 from fe_drivetrain.response import cached
 from fe_drivetrain.response.cached import cached_response, solved_content
 from fe_drivetrain.response.model import Model
@@ -158,8 +158,11 @@ def test_bounds_of_a_bearing_unit_are_kept_to_the_last_bit(
     scene = coarse_scene("bonded", **{"mesh.elements_per_turn": 8, "mesh.housing": 0.2})
     cache = Cache(tmp_path)
     first = unit_bounds(scene, "main_bearing", cache)
+    soft = unit_stiffness(scene, "main_bearing", cache=cache)
     monkeypatch.setattr(bearing_units, "_solved_unit", None)  # would fail if it were called
     again = unit_bounds(scene, "main_bearing", cache)
+    assert unit_stiffness(scene, "main_bearing", cache=cache).tobytes() == soft.tobytes()
+    assert soft.tobytes() == first.soft.tobytes()
     assert first.mesh == again.mesh
     assert first.soft.tobytes() == again.soft.tobytes()
     assert first.stiff.tobytes() == again.stiff.tobytes()

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cache as once
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import Any
 
 #: Which choose kernels by the processor. MKL is loaded by a solver, in the course of a process.
@@ -37,6 +38,25 @@ def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
             if file.name.endswith(".py") and (names is None or file.name in names):
                 code.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
     return code.hexdigest()
+
+
+@once
+def program_hash() -> str:
+    """SHA-256 of all sources and tables of this program, cases and geometry included."""
+    code = hashlib.sha256()
+    for package in ("fe_drivetrain", "fe_drivetrain.geometry", "fe_drivetrain.cases"):
+        for name, file in sorted(_sources(files(package), package)):
+            code.update(name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return code.hexdigest()
+
+
+def _sources(folder: Traversable, name: str) -> Iterator[tuple[str, Traversable]]:
+    for entry in folder.iterdir():
+        inner = f"{name}/{entry.name}"
+        if entry.is_dir():
+            yield from _sources(entry, inner)
+        elif entry.name.endswith((".py", ".yaml")):
+            yield inner, entry
 
 
 def versions(packages: Sequence[str]) -> dict[str, str | None]:

@@ -6,8 +6,8 @@ Joint, housing and bedplate are springs in series.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -42,6 +42,7 @@ def unit_stiffness(
     coupling: Coupling = "averaged",
     method: str = "auto",
     ring: bool = True,
+    cache: Cache | None = None,
 ) -> Floats:
     """Stiffness of a bearing and its housing, solved without the shaft.
 
@@ -64,12 +65,21 @@ def unit_stiffness(
     ring : bool
         Whether such a ring gives; else it is rigid, or part of a solid shaft, and the face is that
         of the housing, or of the rollers.
+    cache : Cache or None
+        Where it may come from, the same to the last bit; the user's if not given.
 
     Returns
     -------
     (6, 6) at the bearing's centre, of joint, housing and bedplate in series [N/m, N, N m/rad].
     """
-    return _solved_unit(scene, name, coupling, method, ring).stiffness
+    content = {"stiffness of": name, "coupling": coupling, "method": method, "ring": ring}
+    (found,) = _kept(
+        scene,
+        content,
+        cache,
+        lambda: (_solved_unit(scene, name, coupling, method, ring).stiffness,),
+    )
+    return found
 
 
 def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
@@ -131,23 +141,36 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
     UnitBounds
         See there.
     """
+
+    def solved() -> tuple[Floats, ...]:
+        stiff = _solved_unit(scene, name, "rigid")
+        soft = _solved_unit(scene, name, "averaged").stiffness
+        return soft, stiff.stiffness, np.array(_mesh_band(scene, stiff))
+
+    soft, stiff, mesh = _kept(scene, {"bounds of": name}, cache, solved)
+    return UnitBounds(soft, stiff, float(mesh))
+
+
+def _kept(
+    scene: Scene,
+    content: Mapping[str, Any],
+    cache: Cache | None,
+    solve: Callable[[], tuple[Floats, ...]],
+) -> tuple[Floats, ...]:
+    """What was solved of a scene's bearing unit before, or is now."""
     used = user_cache() if cache is None else cache
-    content = {
-        "bounds of": name,
+    whole = {
+        **content,
         "scene": solved_content(scene),
         "sizes": scene.mesh.model_dump(mode="json"),
         "made by": solved_by(),
         "code": source_hash({"fe_drivetrain.fidelity": {"bearing_units.py"}}),
     }
-    kept = used.load("solutions", content)
-    if kept is not None and set(kept) == {"soft", "stiff", "mesh"}:
-        return UnitBounds(kept["soft"], kept["stiff"], float(kept["mesh"]))
-    stiff = _solved_unit(scene, name, "rigid")
-    soft = np.ascontiguousarray(unit_stiffness(scene, name, "averaged"))
-    found = UnitBounds(soft, np.ascontiguousarray(stiff.stiffness), _mesh_band(scene, stiff))
-    arrays = {"soft": found.soft, "stiff": found.stiff, "mesh": np.array(found.mesh)}
-    used.keep("solutions", content, arrays)
-    return found
+    arrays = used.load("solutions", whole)
+    if arrays is None:
+        arrays = {f"{k}": np.array(a, order="C") for k, a in enumerate(solve())}
+        used.keep("solutions", whole, arrays)
+    return tuple(arrays.values())
 
 
 class _SolvedUnit(NamedTuple):

@@ -226,7 +226,10 @@ def assembly_level(scene: Scene, cache: Cache | None = None) -> LevelModel:
 
 
 def housing_springs(
-    scene: Scene, coupling: Coupling = "averaged", level: int = 2
+    scene: Scene,
+    coupling: Coupling = "averaged",
+    level: int = 2,
+    cache: Cache | None = None,
 ) -> tuple[dict[str, Floats], float]:
     """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
 
@@ -236,10 +239,14 @@ def housing_springs(
         See `bearing_units.unit_stiffness`.
     level : int
         Of the shaft that they are for: a solid one (3) has all rings itself.
+    cache : Cache or None
+        Where they may come from; the user's if not given.
     """
     start = time.perf_counter()
     found = {
-        unit.bearing.name: unit_stiffness(scene, unit.bearing.name, coupling, ring=level < 3)
+        unit.bearing.name: unit_stiffness(
+            scene, unit.bearing.name, coupling, ring=level < 3, cache=cache
+        )
         for unit in scene.bearing_units
     }
     return found, time.perf_counter() - start
