@@ -14,8 +14,6 @@ from fe_drivetrain.common.cache import Cache, user_cache
 EVERY = 2.0
 """Seconds between two times that results are written: so much is lost at most."""
 
-_KIND = "solutions"
-
 
 def evaluated_rows(
     rows: Floats,
@@ -46,7 +44,7 @@ def evaluated_rows(
     """
     used = Cache(None) if content is None else user_cache() if cache is None else cache
     whole = {**(content or {}), "rows": rows.tolist()}
-    kept = used.load(_KIND, whole) or {}
+    kept = used.load("solutions", whole) or {}
     names = [str(name) for name in kept.get("names", ())]
     values = [row.tolist() for row in kept.get("values", ())]
     written, last = len(values), time.monotonic()
@@ -55,7 +53,7 @@ def evaluated_rows(
         nonlocal written, last
         if len(values) > written:
             arrays = {"names": np.array(names, dtype=np.str_), "values": np.array(values)}
-            used.keep(_KIND, whole, arrays)
+            used.keep("solutions", whole, arrays)
             written, last = len(values), time.monotonic()
 
     try:
