@@ -60,7 +60,7 @@ def reversals(signal: ArrayLike) -> Floats:
     turns = np.diff(values[:-1]) * np.diff(values[1:]) < 0.0 if len(values) > 2 else np.array([])
     kept = np.ones(len(values), dtype=bool)
     kept[1:-1] = turns.astype(bool)
-    return values[kept]
+    return np.asarray(values[kept])
 
 
 def rainflow_cycles(signal: ArrayLike) -> Cycles:

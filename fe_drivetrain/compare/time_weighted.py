@@ -25,7 +25,7 @@ def sample_weights(counts: Sequence[int], steps: Sequence[float]) -> Floats:
         Their sum is 1.
     """
     seconds = np.repeat(np.asarray(steps, dtype=float), counts)
-    return seconds / seconds.sum()
+    return np.asarray(seconds / seconds.sum())
 
 
 def weighted_statistics(samples: Floats, weights: Floats) -> Floats:
