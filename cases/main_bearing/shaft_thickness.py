@@ -94,7 +94,7 @@ def run(run: Run, page: Page) -> None:
             if name != solid
         }
         coarser = {name: bands.start(jobs, scenes[name], name) for name in extremes}
-        solved_solid, tilt, _ = measuring.result()
+        solved_solid, tilt = measuring.result()
         solutions = {
             name: solved_solid if name == solid else solving[name].result() for name in scenes
         }
