@@ -1,6 +1,7 @@
 """Main-bearing cases on a user's scene: the page is about that scene, and says what is not."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,8 +9,14 @@ import yaml
 from conftest import COARSE, coarse_scene
 
 from fe_drivetrain.cases.main_bearing import study
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import CORES_VARIABLE
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity
+from fe_drivetrain.geometry.fits import check_parts
+from fe_drivetrain.geometry.walls import check_sizes
 from fe_drivetrain.report.results import Results, read_results
+from fe_drivetrain.scene.reading import change_scene, library_text
+from fe_drivetrain.scene.scene import coarser_scene
 from fe_drivetrain.suite.case import all_cases
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
@@ -101,3 +108,34 @@ def test_no_bearing_is_exchanged_in_silence(tmp_path, kind, interface):
     assert kept == (page.notes == [])
     assert kept == ((interface == "bonded") == (kind == "bonded"))
     assert page.subject == ""
+
+
+def test_a_quick_look_at_a_thin_wall_is_as_coarse_as_the_wall_allows():
+    sections = [{"length": 2.0, "outer_diameter": 0.5, "inner_diameter": 0.46}]
+    changes = {"shaft.sections": sections, "mesh.shaft": 0.05, "mesh.elements_per_turn": 8}
+    scene = change_scene(coarse_scene("bonded"), changes)
+    quick = coarser_scene(scene, 2.0, 8)
+    assert quick.mesh.shaft == pytest.approx(3 * 0.02)  # three times the wall, not 0.1
+    assert quick.mesh.bearing_edge == 2.0 * scene.mesh.bearing_edge
+    (unit,) = scene.bearing_units
+    parts = scene.shaft, [unit.bearing], {unit.bearing.name: unit.housing}
+    bores = check_parts(*parts)
+    check_sizes(*parts, bores, quick.mesh)
+    with pytest.raises(InputError, match="thinnest wall"):
+        check_sizes(*parts, bores, scene.mesh.scaled(2.0, 8))
+
+
+def test_several_bearings_are_sent_to_the_study(tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text(library_text("two_bearings"))
+    run = Run({"scene": str(file)}, False, tmp_path)
+    with pytest.raises(InputError, match=r"2 bearing units.*fe-drivetrain study"):
+        study.given_scene(run, "bonded")
+
+
+def test_advice_without_a_band_says_why():
+    model = SimpleNamespace(level=4, title="assembly of solids")
+    result = LevelResult(model, np.ones(1), 1.0, float("nan"))
+    sentence = Advice(Quantity("main_bearing.My"), 0.05, [result], None).sentence()
+    assert "walls are too thin" in sentence
+    assert "nan" not in sentence

@@ -94,7 +94,7 @@ def run(run: Run, page: Page) -> None:
             if name != solid
         }
         coarser = {name: bands.start(jobs, scenes[name], name) for name in extremes}
-        solved_solid, tilt, _ = measuring.result()
+        solved_solid, tilt = measuring.result()
         solutions = {
             name: solved_solid if name == solid else solving[name].result() for name in scenes
         }
@@ -154,7 +154,9 @@ def run(run: Run, page: Page) -> None:
                     label, wall, lambda f, this, ref: 1e9 * f["motion hub"][2, 2]
                 ),
             }
-            if wall != walls[0]:  # which is the reference itself
+            # The first wall is the reference itself. How far the beam's K_R is from that of a bored
+            # seat is known of the project's scene; of others the table shows it.
+            if wall != walls[0] and not (page.subject and label == "DTRB"):
                 within, why = TOLERANCE[label]
                 page.equals(
                     f"{name}: mean change of the radial reaction, FE against beam",

@@ -9,6 +9,7 @@ from .records import column as column
 from .records import grouped as grouped
 from .result_folders import run_case as run_case
 from .result_folders import run_into as run_into
+from .resuming import finished_cases as finished_cases
 from .run import Jobs as Jobs
 from .run import Run as Run
 from .run import RunJob as RunJob
