@@ -1,4 +1,4 @@
-"""Records of a sweep: dicts with the same keys, units in the keys; columns, groups, series of meshes."""
+"""Records of a sweep: dicts with the same keys, units in the keys; columns, groups, mesh series."""
 
 from __future__ import annotations
 
