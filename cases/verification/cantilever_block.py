@@ -97,7 +97,7 @@ def cantilever(nodes: int, n: int) -> float:
 
 
 @case(
-    "Block in shear, bending and as a cantilever: known energies",
+    "Block in shear, bending and as a cantilever: strain energies in closed form",
     source="Saint-Venant's bending; Timoshenko and Goodier 1970, Theory of Elasticity, art 21",
 )
 def run(run: Run, page: Page) -> None:

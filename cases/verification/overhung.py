@@ -1,4 +1,4 @@
-"""An overhung shaft on two supports, as a rotor's: closed forms, the frame, and the solid."""
+"""Overhung shaft on two supports, as of a rotor: closed forms, frame and solid."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What the cases of published main shafts share: the shaft by finite elements, and checks."""
+"""Main shaft by finite elements, and checks, shared by the cases of published turbines."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

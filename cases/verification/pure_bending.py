@@ -1,4 +1,4 @@
-"""Pure bending of a shaft: the exact solution in three dimensions, anticlastic curvature too."""
+"""Pure bending of a shaft: the exact three-dimensional solution, with anticlastic curvature."""
 
 from typing import Any
 

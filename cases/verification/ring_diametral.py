@@ -1,4 +1,4 @@
-"""Ring between two opposite loads: exact series, curved beam and thin ring."""
+"""Ring under two diametrically opposite loads: exact series, curved beam and thin ring."""
 
 from collections.abc import Callable
 
@@ -98,7 +98,7 @@ def target(title: str, value: float, name: str, quick: bool) -> Target:
 
 
 @case(
-    "Ring between two opposite loads",
+    "Ring under two diametrically opposite loads",
     source="Fourier series of Michell's stress functions (Timoshenko and Goodier 1970, art 43); "
     "thin ring: Timoshenko, Strength of Materials, part II, 1956",
 )

@@ -94,7 +94,7 @@ def target(key: str, value: float, name: str) -> Target:
 
 
 @case(
-    "Ring under pressure that varies round it",
+    "Ring under circumferentially varying pressure",
     source="Michell 1899, Proc. London Math. Soc. 31, 100-124; Timoshenko and Goodier 1970, art 43",
 )
 def run(run: Run, page: Page) -> None:

@@ -1,4 +1,4 @@
-"""Sag of an overhung shaft under its own weight, to the order that a beam can predict."""
+"""Sag of an overhung shaft under its own weight: solid against beams with shear."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A shaft on two simple supports: closed forms, the frame, and the solid."""
+"""Shaft on two simple supports: closed forms, frame and solid."""
 
 import numpy as np
 

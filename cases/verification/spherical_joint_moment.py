@@ -1,4 +1,4 @@
-"""What a spherical joint of a main bearing carries: forces through its centre, and nothing else."""
+"""Spherical joint of a main bearing: forces through its centre, and no moment about it."""
 
 import numpy as np
 
