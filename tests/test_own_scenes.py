@@ -8,13 +8,14 @@ import pytest
 import yaml
 from conftest import COARSE, coarse_scene
 
-from fe_drivetrain.cases.main_bearing import study
+from fe_drivetrain.cases.main_bearing import loads, study
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity
 from fe_drivetrain.geometry.fits import check_parts
 from fe_drivetrain.geometry.walls import check_sizes
-from fe_drivetrain.report.results import Results, read_results
+from fe_drivetrain.hub_loads.surrogate import Condition
+from fe_drivetrain.report.results import Chart, Results, Text, read_results
 from fe_drivetrain.scene.reading import change_scene, library_text
 from fe_drivetrain.scene.scene import coarser_scene
 from fe_drivetrain.suite.case import all_cases
@@ -42,8 +43,8 @@ def pages(tmp_path_factory) -> dict[str, Results]:
     scene = coarse_scene("spherical", title="Turbine of mine").model_dump(mode="json")
     (folder / "mine.yaml").write_text(yaml.safe_dump(scene))
     time = 0.05 * np.arange(40)
-    loads = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
-    table = np.column_stack([time, loads])
+    forces = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
+    table = np.column_stack([time, forces])
     header = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
     np.savetxt(folder / "loads.csv", table, delimiter=",", header=header, comments="")
     settings = {"scene": str(folder / "mine.yaml"), "loads": str(folder / "loads.csv")}
@@ -139,3 +140,21 @@ def test_advice_without_a_band_says_why():
     sentence = Advice(Quantity("main_bearing.My"), 0.05, [result], None).sentence()
     assert "walls are too thin" in sentence
     assert "nan" not in sentence
+
+
+def test_errors_of_round_off_are_a_sentence_and_not_a_chart(rng):
+    conditions = [Condition(wind, "medium", 0.2, seed) for wind in (8.0, 16.0) for seed in (1, 2)]
+    fe = {"bonded": 1e5 * rng.normal(size=(4, 50, 6))}
+    noise = rng.normal(size=(4, 50, 6))
+    pairs = {
+        "exact against FE": ("bonded", fe["bonded"] + 1e-7 * noise),
+        "near against FE": ("bonded", fe["bonded"] + 1.0 * noise),
+    }
+    page = Page()
+    loads.rmse_charts(page, conditions, fe, pairs)
+    (section,) = page.sections
+    texts = [item.text for item in section.items if isinstance(item, Text)]
+    charts = [item.caption for item in section.items if isinstance(item, Chart)]
+    assert ["exact" in text and "round-off" in text for text in texts] == [True]
+    assert len(charts) == 2
+    assert all("near" in caption for caption in charts)

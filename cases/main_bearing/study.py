@@ -84,17 +84,21 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
     return scene
 
 
-def given_scene(run: Run, kind: str) -> Scene:
-    """The user's scene, or the library's of a kind, with the user's changes; see `scene_of`."""
+def any_scene(run: Run, kind: str) -> Scene:
+    """The user's scene, or the library's of a kind, with the user's changes."""
     changes = {
         key: value
         for key, value in run.settings.items()
         if key.partition(".")[0] in Scene.model_fields
     }
     if "scene" in run.settings:
-        scene = read_scene(str(run.settings["scene"]), changes)
-    else:
-        scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
+        return read_scene(str(run.settings["scene"]), changes)
+    return change_scene(library_scene(f"main_bearing_{kind}"), changes)
+
+
+def given_scene(run: Run, kind: str) -> Scene:
+    """`any_scene`, refused where it has not exactly one bearing unit; see `scene_of`."""
+    scene = any_scene(run, kind)
     if len(scene.bearing_units) != 1:
         raise InputError(
             f"scene {scene.title!r} has {len(scene.bearing_units)} bearing units: the "

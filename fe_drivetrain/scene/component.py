@@ -175,10 +175,10 @@ def component_hash(component: Component) -> str:
 
 
 def check_component_standing(component: Component) -> None:
-    """Refuse a component that can move as a rigid body on its supports, before it is solved there.
+    """Refuse a component that can move as a rigid body on its supports.
 
-    Its free body, and its stiffness as far as the supports hold it, need no such check: two bushings
-    side by side are a hinge, which a shaft in the ring holds.
+    To be called before it is solved there. Its free body, and what its loaded points feel of it,
+    need no such check: two bushings side by side are a hinge, which a shaft in the ring holds.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """Whether a body stands: as a rigid one on its supports, it is no mechanism.
 
-The body of a scene is its shaft, on bearings and gearbox; that of a component is all of it. Housings stand on the ground, or on a bedplate that holds every motion, so the shaft with its
+The body of a scene is its shaft, on bearings and gearbox; that of a component is all of it.
+Housings stand on the ground, or on a bedplate that holds every motion, so the shaft with its
 bearings is all that can move. Whatever its level, a model of the scene moves without strain where
 this body does.
 """
