@@ -33,6 +33,10 @@ _PLANES = (("horizontal", "Fy", 1), ("vertical", "Fz", 2))
 _STAND_IN = "They stand in for the thesis's Bladed histories, which are not public."
 
 
+class UnequalHistoriesError(InputError):
+    """The user's histories cannot be stacked: they have different numbers of samples."""
+
+
 @dataclass(frozen=True, eq=False)
 class HubLoads:
     """Histories stacked for one matrix product.
@@ -73,7 +77,7 @@ def own_hub_loads(run: Run, scene: Scene) -> HubLoads | None:
     ``--set skip=SECONDS`` leaves out the beginning of each; the scene says which point of the shaft
     they are about.
     """
-    skip = _skip(run)
+    skip = skip_of(run)
     if "loads" not in run.settings:
         if skip:
             raise InputError(
@@ -85,7 +89,8 @@ def own_hub_loads(run: Run, scene: Scene) -> HubLoads | None:
         return _read(str(run.settings["loads"]), skip, scene)
 
 
-def _skip(run: Run) -> float:
+def skip_of(run: Run) -> float:
+    """What the user leaves out at the beginning of each history [s]."""
     skip = run.settings.get("skip", 0.0)
     if isinstance(skip, bool) or not isinstance(skip, int | float) or not 0.0 <= skip < np.inf:
         raise InputError(
@@ -141,7 +146,7 @@ def _read(pattern: str, skip: float, scene: Scene) -> HubLoads:
     first = histories[0]
     for history in histories:
         if len(history) != len(first):
-            raise InputError(
+            raise UnequalHistoriesError(
                 f"hub loads: {history.name} has {len(history)} samples and {first.name} has "
                 f"{len(first)}{f' without the first {skip:g} s' if skip else ''}: cut the "
                 "histories to one number of samples"

@@ -207,7 +207,8 @@ def element_integrals(
 
 @cache
 def _gauss(points: int) -> tuple[Floats, Floats]:
-    return np.polynomial.legendre.leggauss(points)
+    abscissa, weight = np.polynomial.legendre.leggauss(points)
+    return abscissa, weight
 
 
 def gauss_points(begin: float, end: float, points: int) -> tuple[Floats, Floats]:
