@@ -50,6 +50,7 @@ from fe_drivetrain.bearing.rolling import (
     three_degrees,
     turn,
 )
+from fe_drivetrain.bearing.tables import reduced_table
 from fe_drivetrain.common.errors import InputError
 
 ALPHA = np.radians(38.0)
@@ -561,3 +562,20 @@ def test_powers_from_a_table_are_those_of_the_library(exponent: float) -> None:
     spoilt, found = x.copy(), np.empty_like(x)
     kernels.powers(spoilt, spoilt.view(np.int64), len(x), kernels.power_table(exponent), found)
     assert_allclose(found, x**exponent, rtol=2e-15)
+
+
+def test_a_table_of_reduced_loads_interpolates_equilibrium() -> None:
+    short = size(laminae=0)
+    table = reduced_table(short, (13, 9, 24))
+    at_node = 3e5 * np.array([[0, 0, -1, 0, 0], [1, 0, 0, 0, 0], [0, 0, 0, -0.3937, 0]])
+    found = solved(short, *at_node)
+    u, peaks = table(at_node)
+    scale = np.array([1, 1, 1, 0.4, 0.4])
+    assert_allclose(u * scale, found.displacements * scale, rtol=1e-6, atol=1e-11)
+    assert_allclose(peaks.max(axis=1), found.rollers.max(axis=1), rtol=1e-6)
+    between = table(LOADS)[1].max(axis=1)
+    assert_allclose(between, solved(short, *LOADS).rollers.max(axis=1), rtol=0.1)
+    with pytest.raises(InputError, match="does not scale"):
+        reduced_table(size(clearance=1e-5))
+    with pytest.raises(InputError, match="nodes"):
+        reduced_table(short, (1, 2, 3))

@@ -48,3 +48,5 @@ from .rolling import forces as forces
 from .rolling import roller_loads as roller_loads
 from .rolling import three_degrees as three_degrees
 from .rolling import turn as turn
+from .tables import ReducedTable as ReducedTable
+from .tables import reduced_table as reduced_table

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from fe_drivetrain.bearing.geometry import Bearing, RollerRow
+from fe_drivetrain.bearing.geometry import Bearing, RollerRow, Row
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
@@ -139,6 +139,6 @@ def superposed_peak(bearing: Bearing, load: Floats) -> Floats:
     return peaks
 
 
-def effective_centre(row: RollerRow) -> float:
+def effective_centre(row: Row) -> float:
     """x at which the contact normals of a row meet the axis: its pressure centre [m]."""
     return row.place - row.radius * tan(row.angle)

@@ -141,7 +141,7 @@ def equilibrium(
     is brought below 0.6 of what it was. Preloaded bearings under small loads stop at the round-off
     of their internal forces.
     """
-    F = _checked(bearing, loads)
+    F = checked_loads(bearing, loads)
     B, carried = _free_motions(bearing)
     _refuse_mechanism(bearing, F, B, carried)
     return _solved(bearing, F, B[None], tolerance, start, phases, warm, damped)
@@ -170,7 +170,7 @@ def three_degrees(
     found : Equilibrium
         Minimum of the same energy, over three motions.
     """
-    F = _checked(bearing, loads)
+    F = checked_loads(bearing, loads)
     radial, moment = F[:, 1:3], F[:, 3:5]
     force_size = np.hypot(*radial.T)
     moment_size = np.hypot(*moment.T)
@@ -501,7 +501,10 @@ def _run(
             tolerance,
             warm,
             damped,
-            *(whole[cases] for whole in found),
+            found.displacements[cases],
+            found.steps[cases],
+            found.evaluations[cases],
+            found.residuals[cases],
         )
 
     in_threads(solve, n, kernels.CHUNK)
@@ -562,7 +565,26 @@ def _five(bearing: Bearing, values: ArrayLike, what: str, names: tuple[str, ...]
     return found
 
 
-def _checked(bearing: Bearing, loads: ArrayLike) -> Floats:
+def checked_loads(bearing: Bearing, loads: ArrayLike) -> Floats:
+    """Loads as (n, 5) finite numbers.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        For messages.
+    loads : array_like
+        (n, 5) or (5,) [N, N m].
+
+    Returns
+    -------
+    loads : Floats
+        (n, 5).
+
+    Raises
+    ------
+    InputError
+        Another shape, or a value that is no number.
+    """
     return _five(bearing, loads, "loads", COMPONENTS)
 
 
