@@ -24,7 +24,7 @@ FLOORS = (
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"fidelity", "peers", "report", "validation"},
+    {"coupled", "fidelity", "peers", "report", "validation"},
     {"export", "suite", "uncertainty"},
     {"commands"},
     {"cases"},
