@@ -36,6 +36,10 @@ from fe_drivetrain.coupled.springs import (
     tilt_springs,
     tilting_stiffness,
 )
+from fe_drivetrain.fidelity.ladder import shaft_level
+from fe_drivetrain.fidelity.shafts import beam_shaft
+from fe_drivetrain.scene.joint_springs import as_numbers
+from fe_drivetrain.scene.reading import library_scene
 
 PARAMETERS = MainBearingBeam(shaft_diameter=0.635, yaw_stiffness=145e6)
 GEARBOX = (
@@ -278,6 +282,37 @@ def test_two_bearings_that_carry_moments_share_them_by_stiffness() -> None:
     for name in bearings:
         expected = solve(beam, 0.0, HUB).reaction(name)[:, FIVE]
         assert_allclose(found.of(name), expected, rtol=0, atol=1e-8 * np.abs(HUB).max())
+
+
+def test_a_scene_s_shaft_on_linear_bearings_is_its_level_1() -> None:
+    scene = library_scene("two_bearings")
+    names = [unit.bearing.name for unit in scene.bearing_units]
+    bearings = {name: preloaded(2e9) for name in names}
+    K = np.zeros((6, 6))
+    K[np.ix_(FIVE, FIVE)] = contact_stiffness(bearings[names[0]])
+    level = shaft_level(scene, 1, dict.fromkeys(names, K))
+    gearbox = {"gearbox": as_numbers(scene.gearbox.stiffness)}
+    body = linear_body(beam_shaft(scene), names, gearbox)
+    found = coupled_equilibrium(body, bearings, factors_of(HUB, 1e5))
+    expected = level.reactions(found.factors)
+    for name in names:
+        assert_allclose(
+            found.of(name), expected[name][:, FIVE], rtol=0, atol=1e-7 * np.abs(HUB).max()
+        )
+    torque = found.reactions()["gearbox"][:, 3]
+    assert_allclose(torque, expected["gearbox"][:, 3], rtol=1e-8)
+
+
+def test_the_rear_bearing_of_a_scene_may_float() -> None:
+    scene = library_scene("two_bearings")
+    front, rear = (unit.bearing.name for unit in scene.bearing_units)
+    gearbox = as_numbers(scene.gearbox.stiffness)
+    body = linear_body(beam_shaft(scene), [front, rear], {"gearbox": gearbox})
+    found = coupled_equilibrium(body, {front: BEARING_S, rear: CARB}, factors_of(HUB, 1e5, 9.81))
+    assert found.converged.all()
+    assert np.abs(found.of(rear)[:, 0]).max() == 0.0
+    axial = found.reactions()["gearbox"][:, 0]
+    assert_allclose(found.of(front)[:, 0] + axial, HUB[:, 0], rtol=1e-7)
 
 
 def test_mechanisms_are_refused_in_one_sentence() -> None:

@@ -200,7 +200,9 @@ def stiffness_loop(
     translations : array_like
         (3,) springs against u_x, u_y, u_z [N/m]: rigid in the thesis.
     kind : str
-        See `tilting_stiffness`; "tangent" in the thesis.
+        See `tilting_stiffness`; "tangent" in the thesis. A secant may be negative, for axial and
+        radial displacements make a moment without tilt: no spring has that, and the load case is
+        flagged.
 
     Returns
     -------
@@ -231,7 +233,8 @@ def stiffness_loop(
             settled = bool((np.abs(found - now) <= change * np.abs(now)).all())
             loads[case], displacements[case], stiffness[case] = f, u, now
             rounds[case], converged[case] = turn + 1, settled
-            now = found
-            if settled:
+            lost = bool(((found < 0.0) & (now == 0.0)).any())
+            now = np.maximum(found, 0.0)
+            if settled or lost:
                 break
     return StiffnessLoop(loads, displacements, stiffness, rounds, converged)
