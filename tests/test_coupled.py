@@ -29,6 +29,7 @@ from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import FIVE, LinearBody, factors_of, in_housings, linear_body
 from fe_drivetrain.coupled.newton import contact_stiffness, coupled_equilibrium
+from fe_drivetrain.coupled.of_scene import scene_body
 from fe_drivetrain.coupled.scenarios import best_fit, displacement_scenarios, tilt_curve
 from fe_drivetrain.coupled.springs import (
     on_springs,
@@ -37,8 +38,6 @@ from fe_drivetrain.coupled.springs import (
     tilting_stiffness,
 )
 from fe_drivetrain.fidelity.ladder import shaft_level
-from fe_drivetrain.fidelity.shafts import beam_shaft
-from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.reading import library_scene
 
 PARAMETERS = MainBearingBeam(shaft_diameter=0.635, yaw_stiffness=145e6)
@@ -291,8 +290,7 @@ def test_a_scene_s_shaft_on_linear_bearings_is_its_level_1() -> None:
     K = np.zeros((6, 6))
     K[np.ix_(FIVE, FIVE)] = contact_stiffness(bearings[names[0]])
     level = shaft_level(scene, 1, dict.fromkeys(names, K))
-    gearbox = {"gearbox": as_numbers(scene.gearbox.stiffness)}
-    body = linear_body(beam_shaft(scene), names, gearbox)
+    body = scene_body(scene, 1)
     found = coupled_equilibrium(body, bearings, factors_of(HUB, 1e5))
     expected = level.reactions(found.factors)
     for name in names:
@@ -306,8 +304,8 @@ def test_a_scene_s_shaft_on_linear_bearings_is_its_level_1() -> None:
 def test_the_rear_bearing_of_a_scene_may_float() -> None:
     scene = library_scene("two_bearings")
     front, rear = (unit.bearing.name for unit in scene.bearing_units)
-    gearbox = as_numbers(scene.gearbox.stiffness)
-    body = linear_body(beam_shaft(scene), [front, rear], {"gearbox": gearbox})
+    housing = np.diag([2e10, 2e10, 2e10, 1e10, 1e9, 1e9])
+    body = scene_body(scene, 1, {front: housing, rear: housing})
     found = coupled_equilibrium(body, {front: BEARING_S, rear: CARB}, factors_of(HUB, 1e5, 9.81))
     assert found.converged.all()
     assert np.abs(found.of(rear)[:, 0]).max() == 0.0

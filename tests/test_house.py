@@ -24,8 +24,8 @@ FLOORS = (
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"coupled", "fidelity", "peers", "report", "validation"},
-    {"export", "suite", "uncertainty"},
+    {"fidelity", "peers", "report", "validation"},
+    {"coupled", "export", "suite", "uncertainty"},
     {"commands"},
     {"cases"},
 )
