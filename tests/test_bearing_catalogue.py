@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import QuickRun
 from numpy.testing import assert_allclose
 
 from fe_drivetrain.bearing.catalogue import catalogue_bearing, read_catalogue
@@ -93,3 +94,10 @@ def test_mistakes_in_a_file_are_named(tmp_path: Path, old: str, new: str, words:
 def test_an_unknown_name_lists_those_that_are_there() -> None:
     with pytest.raises(InputError, match="bearing_s"):
         catalogue_bearing("skf")
+
+
+@pytest.mark.quick("performance/bearing_equilibrium")
+def test_every_step_of_the_speed_case_converges(quick_run: QuickRun) -> None:
+    results = quick_run("performance/bearing_equilibrium")
+    assert all(verdict.passed for verdict in results.verdicts)
+    assert len(results.verdicts) >= 2

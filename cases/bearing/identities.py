@@ -70,7 +70,7 @@ def run(run: Run, page: Page) -> None:
         basis="self-consistency",
     )
     with run.step("three degrees"):
-        rows = [reduced(angle) for angle in np.arange(0, 91, 30 if run.quick else 5)]
+        rows = [reduced(float(angle)) for angle in range(0, 91, 30 if run.quick else 5)]
     page.vanishes(
         "force and moment in one plane: side force left by three degrees",
         rows[0]["side force left [kN]"],

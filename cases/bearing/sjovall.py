@@ -113,7 +113,7 @@ def run(run: Run, page: Page) -> None:
         measure="rotation",
     )
     with run.step("clearance"):
-        swept = [clearance(um) for um in (np.arange(0, 201, 50 if run.quick else 10))]
+        swept = [clearance(float(um)) for um in range(0, 201, 50 if run.quick else 10)]
     page.answer(
         f"Discrete rollers carry Sjovall's peak, {rows[0]['peak factor']:.4f} F / (Z cos(alpha)) "
         "of a row with exponent 1.1, to 1e-5.",

@@ -349,7 +349,7 @@ def in_threads(work: Callable[[slice], None], n: int, size: int) -> None:
 
 def turn(vectors: Floats, phases: Floats) -> Floats:
     """Loads or displacements (n, 5) turned about the axis by angles (n,) [rad], as psi grows."""
-    return np.einsum("nij,nj->ni", _rotations(phases), vectors)
+    return np.asarray(np.einsum("nij,nj->ni", _rotations(phases), vectors))
 
 
 def _rotations(phases: Floats) -> Floats:
@@ -545,7 +545,7 @@ def _continued(
 def _mean_diagonal(soft: Floats) -> Floats:
     """(n, m, m): the identity times the mean diagonal."""
     m = soft.shape[1]
-    return np.trace(soft, axis1=1, axis2=2)[:, None, None] / m * np.eye(m)
+    return np.asarray(np.trace(soft, axis1=1, axis2=2)[:, None, None] / m * np.eye(m))
 
 
 def _five(bearing: Bearing, values: ArrayLike, what: str, names: tuple[str, ...]) -> Floats:

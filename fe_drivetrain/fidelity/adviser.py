@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.convergence import grid_convergence
@@ -27,6 +28,9 @@ from fe_drivetrain.fidelity.ladder import (
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft
 from fe_drivetrain.scene.scene import Scene
+
+#: Nothing is taken from the cache: times are part of the answer.
+UNCACHED = Cache(None)
 
 #: Factors on mesh sizes of the two coarser assemblies that give the top level its band.
 COARSER = (1.8, 1.35)
@@ -101,6 +105,8 @@ class LevelResult:
         Of the quantity.
     seconds : float
         Wall time of all that its value needs; what its estimate takes comes on top.
+    waited : float
+        Wall time from the beginning to its estimate: what a user waits for this answer.
     estimate : float
         Error expected before any more expensive model is run, relative: 0 where statics decides;
         half the range of its two bounds and the change from beam to meridian where housings are
@@ -113,6 +119,7 @@ class LevelResult:
     values: Floats
     seconds: float
     estimate: float
+    waited: float = 0.0
     error: float = float("nan")
 
 
@@ -153,23 +160,29 @@ class Advice:
         """The answer."""
         share = f"{100 * self.tolerance:g} %"
         if self.chosen is None:
+            band = (
+                "has no band of its mesh, for its walls are too thin for one "
+                f"{max(COARSER):g} times coarser"
+                if np.isnan(self.top.estimate)
+                else f"has a band of {100 * self.top.estimate:.2g} %"
+            )
             return (
                 f"{self.quantity.name}: no level is known to be within {share}; the finest, "
-                f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %: "
-                "make its mesh finer"
+                f"{self.top.model.title}, {band}: make its mesh finer"
             )
         result = self.results[self.chosen]
         if self.chosen == len(self.results) - 1:
             return (
                 f"{self.quantity.name} within {share} needs level {result.model.level}, "
-                f"{result.model.title}: {_expected(result)}, {result.seconds:.2g} s"
+                f"{result.model.title}: {_expected(result)}, found in {result.waited:.2g} s"
             )
         ratio = self.top.seconds / result.seconds
         faster = f"{ratio:.3g} times faster" if ratio > 1 else f"{1 / ratio:.3g} times slower"
         return (
             f"{self.quantity.name} within {share}: level {result.model.level}, "
             f"{result.model.title}, is enough: {100 * result.error:.2g} % from level "
-            f"{self.top.model.level}, {self.top.model.title} ({_expected(self.top)}), and {faster}"
+            f"{self.top.model.level}, {self.top.model.title} ({_expected(self.top)}), and {faster} "
+            f"by itself; found in {self.top.waited:.2g} s"
         )
 
 
@@ -208,9 +221,11 @@ def advise(
         )
     length = scene.shaft.length
     results: list[LevelResult] = []
+    start = time.perf_counter()
 
     def add(model: LevelModel, seconds: float, estimate: float) -> bool:
-        results.append(LevelResult(model, quantity.of(model, length), seconds, estimate))
+        waited = time.perf_counter() - start
+        results.append(LevelResult(model, quantity.of(model, length), seconds, estimate, waited))
         return estimate <= tolerance and not to_the_top
 
     report("level 0: statics")
@@ -244,9 +259,9 @@ def _run_on_springs(
     """
     length = scene.shaft.length
     report("housings, faces in shape")
-    stiff, seconds = housing_springs(scene, coupling="rigid")
+    stiff, seconds = housing_springs(scene, coupling="rigid", cache=UNCACHED)
     report("housings, faces on average")
-    soft = housing_springs(scene, coupling="averaged")[0]
+    soft = housing_springs(scene, coupling="averaged", cache=UNCACHED)[0]
     previous = None
     for level in (1, 2, 3) if to_the_top else (1, 2):
         report(f"level {level}: {TITLES[level]}, housings as springs")
@@ -257,7 +272,7 @@ def _run_on_springs(
         if level == 3 and any(unit.ring_on_housing for unit in scene.bearing_units):
             report("housings under rings that belong to the solid shaft")
             (hard, seconds), (yielding, _) = (
-                housing_springs(scene, c, level) for c in ("rigid", "averaged")
+                housing_springs(scene, c, level, UNCACHED) for c in ("rigid", "averaged")
             )
             bounds = hard, yielding
         model, bound = (shaft_level(scene, level, springs, body) for springs in bounds)
@@ -279,19 +294,19 @@ def _assembly(
     """The assembly, its time alone, and the band of its mesh from two coarser ones."""
     length = scene.shaft.length
     sizes, series = [], []
-    for factor in COARSER:
-        report(f"level 4: assembly of solids, sizes times {factor:g}")
+    for number, factor in enumerate(COARSER, 1):
+        report(f"level 4: assembly of solids ({number} of {len(COARSER) + 1})")
         turn = max(8, round(scene.mesh.elements_per_turn / factor))
         mesh = scene.mesh.scaled(factor, turn)
         try:
-            coarse = assembly_level(scene.model_copy(update={"mesh": mesh}))
+            coarse = assembly_level(scene.model_copy(update={"mesh": mesh}), UNCACHED)
         except InputError:  # too coarse for a wall
             continue
         sizes.append(factor)
         series.append(quantity.of(coarse, length))
-    report("level 4: assembly of solids")
+    report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
     start = time.perf_counter()
-    model = assembly_level(scene)
+    model = assembly_level(scene, UNCACHED)
     seconds = time.perf_counter() - start
     values = quantity.of(model, length)
     if len(series) < len(COARSER):
@@ -317,10 +332,7 @@ def _judged(
             f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
             "ask for another, or give another load"
         )
-    judged = [
-        LevelResult(r.model, r.values, r.seconds, r.estimate, _difference(r.values, top.values))
-        for r in results
-    ]
+    judged = [replace(result, error=_difference(result.values, top.values)) for result in results]
     chosen = None
     for number, result in enumerate(judged):
         # the uncertainty of the top counts against all levels below it
