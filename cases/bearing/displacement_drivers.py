@@ -85,8 +85,7 @@ def run(run: Run, page: Page) -> None:
         "moment's direction against the radial force decides, not its size. Back to back both the "
         "row that carries thrust and the sense of the rows' arms change, and the finding stays. A "
         "correlation with the moment's size is one with its direction in disguise: within either "
-        "sign of the displacement the moment has mostly one direction. The surrogate's thrust "
-        "varies with the wind speed alone; its correlation is that of thrust with moment."
+        "sign of the displacement the moment has mostly one direction."
     )
 
 
