@@ -338,6 +338,8 @@ def test_bad_input_is_refused() -> None:
         factors_of([[0.0] * 6, [0.0, 0.0, np.nan, 0.0, 0.0, 0.0]])
     with pytest.raises(InputError, match="give one for each of these"):
         coupled_equilibrium(BODY, {"front": BEARING_S}, FACTORS)
+    with pytest.raises(InputError, match="'rear' is unknown"):
+        coupled_equilibrium(BODY, {"bearing": BEARING_S}, FACTORS).of("rear")
     with pytest.raises(InputError, match="must have a finite 6x6 stiffness"):
         in_housings(BODY, {"bearing": np.diag([1e9, 1e9, 1e9, 1e9, 0.0, 1e9])})
     with pytest.raises(InputError, match="0 or more"):
@@ -350,6 +352,11 @@ def test_loads_in_a_clearance_converge() -> None:
     found = coupled_equilibrium(BODY, {"bearing": bearing}, factors)
     assert found.converged.all()
     assert (found.residuals <= 1e-8).all()
+    # forces of a newton, followed down from larger ones
+    small = coupled_equilibrium(BODY, {"bearing": bearing}, 1e-6 * FACTORS)
+    assert small.converged.all()
+    assert small.iterations.max() > 20
+    assert (small.residuals <= 1e-6).all()
 
 
 def test_scenarios_have_the_tangent_of_their_moments() -> None:

@@ -62,7 +62,8 @@ class CoupledEquilibrium:
     residuals : Floats
         (n,) what is left of the balance over the load, moments over the largest pitch radius.
     converged : Bools
-        (n,).
+        (n,) whether that is within the tolerance, or within 1e-13 of the forces inside the body and
+        its bearings, which small loads on a preload or in a clearance do not exceed.
     iterations : Ints
         (n,).
     """
@@ -78,12 +79,19 @@ class CoupledEquilibrium:
 
     def of(self, name: str) -> Floats:
         """Loads (n, 5) on one bearing [N, N m]."""
-        return np.asarray(self.forces[:, self.body.bearings.index(name)])
+        return np.asarray(self.forces[:, self._index(name)])
 
     def rollers(self, name: str) -> Floats:
         """Load of each rolling element of one bearing, (n, total) [N]."""
-        i = self.body.bearings.index(name)
+        i = self._index(name)
         return roller_loads(self.bearings[i], self.deflections[:, i])
+
+    def _index(self, name: str) -> int:
+        if name not in self.body.bearings:
+            raise InputError(
+                f"bearing {name!r} is unknown: name one of {', '.join(self.body.bearings)}"
+            )
+        return self.body.bearings.index(name)
 
     def reactions(self) -> dict[str, Floats]:
         """What the body puts on its linear supports, (n, 6) by name [N, N m]."""
