@@ -301,11 +301,12 @@ def test_a_scene_s_shaft_on_linear_bearings_is_its_level_1() -> None:
     assert_allclose(torque, expected["gearbox"][:, 3], rtol=1e-8)
 
 
-def test_the_rear_bearing_of_a_scene_may_float() -> None:
+@pytest.mark.parametrize("level", [1, 2])
+def test_the_rear_bearing_of_a_scene_may_float(level: int) -> None:
     scene = library_scene("two_bearings")
     front, rear = (unit.bearing.name for unit in scene.bearing_units)
     housing = np.diag([2e10, 2e10, 2e10, 1e10, 1e9, 1e9])
-    body = scene_body(scene, 1, {front: housing, rear: housing})
+    body = scene_body(scene, level, {front: housing, rear: housing})
     found = coupled_equilibrium(body, {front: BEARING_S, rear: CARB}, factors_of(HUB, 1e5, 9.81))
     assert found.converged.all()
     assert np.abs(found.of(rear)[:, 0]).max() == 0.0
