@@ -25,7 +25,7 @@ FLOORS = (
     {"solve"},
     {"beam", "response"},
     {"fidelity", "peers", "report", "validation"},
-    {"export", "suite", "uncertainty"},
+    {"coupled", "export", "suite", "uncertainty"},
     {"commands"},
     {"cases"},
 )

@@ -6,6 +6,7 @@ from .closed_forms import pinned_model as pinned_model
 from .closed_forms import pinned_reaction as pinned_reaction
 from .closed_forms import torsional_spring_model as torsional_spring_model
 from .closed_forms import torsional_spring_reaction as torsional_spring_reaction
+from .condensed import condensed_beam as condensed_beam
 from .frame import rectangle as rectangle
 from .frame import round_section as round_section
 from .of_scene import beam_of_scene as beam_of_scene

@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain.beam.beam import Beam, Support
+from fe_drivetrain.beam.condensed import condensed_beam
 from fe_drivetrain.beam.of_scene import beam_of_scene
-from fe_drivetrain.beam.shaft import shaft_stiffness, unit_load_response
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
 from fe_drivetrain.mesh.cached import cached_mesh
@@ -83,21 +80,7 @@ def beam_shaft(scene: Scene, shear: bool = True, rings: bool = True) -> Condense
     nothing = {unit.bearing.name: np.zeros(6) for unit in scene.bearing_units}
     if rings:
         scene = scene.model_copy(update={"shaft": ringed_shaft(scene)[0]})
-    bare = replace(beam_of_scene(scene, nothing, shear), supports=())
-    order = np.argsort(positions[:, 0])
-    stations = positions[order, 0]
-    n = len(names)
-    K = np.zeros((6 * n, 6 * n))
-    for (i, j), (a, b) in zip(pairwise(order), pairwise(stations.tolist()), strict=True):
-        rows = np.r_[6 * i : 6 * i + 6, 6 * j : 6 * j + 6]
-        K[np.ix_(rows, rows)] += shaft_stiffness(bare, a, b)
-    # clamped at every point, its weight is carried by these alone
-    clamps = [
-        Support(name, x, np.full(6, np.inf)) for name, x in zip(names, positions[:, 0], strict=True)
-    ]
-    clamped = Beam(bare.sections, clamps, bare.start, bare.material, bare.shear)
-    gravity = unit_load_response(clamped, bare.start).gravity_reaction.reshape(6 * n, 3)
-    return Condensed(names, positions, K, gravity)
+    return condensed_beam(beam_of_scene(scene, nothing, shear), names, positions[:, 0])
 
 
 def shaft_meridian(

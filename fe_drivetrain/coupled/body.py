@@ -1,0 +1,315 @@
+"""A linear body as its bearings feel it: stiffness and loads at the bearings' centres.
+
+The body is a shaft of any level, condensed to its reference points and on its linear supports. Five
+motions of each bearing's centre are kept, (u_x, u_y, u_z, theta_y, theta_z): a bearing turns freely
+about the axis. With q all of them, f the loads that the body puts on the bearings and p the factors
+of the loads, ``K q + f = L p``. K may be singular: where only the bearings hold the body, its
+compliance does not exist.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import least_eigenvalue, scaled_solve
+from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.response.model import LOADS
+from fe_drivetrain.solve.condensation import Condensed, on_supports
+
+#: Of the six motions of a point, those that a bearing may resist.
+FIVE = np.array([0, 1, 2, 4, 5])
+
+# Of a stiffness with a unit diagonal: below it nothing holds the torque.
+_FREE = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class LinearBody:
+    """A condensed body at its bearings.
+
+    Attributes
+    ----------
+    bearings : tuple of str
+        Names of the k bearings.
+    stiffness : Floats
+        (5 k, 5 k) of the body on its linear supports, over the bearings' deflections
+        [N/m, N, N m/rad].
+    loads : Floats
+        (5 k, 10) what a unit of each load of `response.LOADS` puts on clamped bearings [N, N m].
+    body : Condensed
+        The free body.
+    supports : Mapping
+        (6, 6) of the points on linear supports, inf on the diagonal for rigid.
+    motions_of_loads, motions_of_bearings : Floats
+        (6 n, 10) and (6 n, 5 k) motions of all points of the body for unit loads with the bearings'
+        centres held, and for unit motions of these.
+    housings : Floats
+        (5 k, 5 k) compliance between the bearings' outer rings and the ground.
+    """
+
+    bearings: tuple[str, ...]
+    stiffness: Floats
+    loads: Floats
+    body: Condensed
+    supports: Mapping[str, Floats]
+    motions_of_loads: Floats
+    motions_of_bearings: Floats
+    housings: Floats
+
+    def forces(self, factors: Floats, deflections: Floats) -> Floats:
+        """Loads (n, k, 5) on the bearings, from the body's side.
+
+        Parameters
+        ----------
+        factors, deflections : Floats
+            (n, 10) of the loads, and (n, k, 5) of the bearings [m, rad].
+
+        Returns
+        -------
+        forces : Floats
+            (n, k, 5) [N, N m].
+        """
+        f = factors @ self.loads.T - deflections.reshape(len(factors), -1) @ self.stiffness
+        return f.reshape(deflections.shape)
+
+    def motions(self, factors: Floats, forces: Floats, deflections: Floats) -> Floats:
+        """Motions (n, points, 6) of all points of the body.
+
+        Parameters
+        ----------
+        factors, forces, deflections : Floats
+            (n, 10) of the loads, and (n, k, 5) of the bearings.
+
+        Returns
+        -------
+        motions : Floats
+            (n, points, 6) [m, rad].
+        """
+        n = len(factors)
+        q = deflections.reshape(n, -1) + forces.reshape(n, -1) @ self.housings
+        found = factors @ self.motions_of_loads.T + q @ self.motions_of_bearings.T
+        return found.reshape(n, -1, 6)
+
+    def reactions(self, factors: Floats, forces: Floats, deflections: Floats) -> dict[str, Floats]:
+        """What the body puts on its linear supports, (n, 6) by name [N, N m].
+
+        Parameters
+        ----------
+        factors, forces, deflections : Floats
+            (n, 10) of the loads, and (n, k, 5) of the bearings.
+
+        Returns
+        -------
+        reactions : dict
+            At the supports' own points.
+        """
+        u = self.motions(factors, forces, deflections).reshape(len(factors), -1)
+        carried = factors @ applied(self.body).T - u @ self.body.stiffness
+        return {name: carried[:, self.body.rows(name)] for name in self.supports}
+
+    def imbalance(self, factors: Floats, forces: Floats, deflections: Floats) -> Floats:
+        """Sum (n, 6) of all loads and reactions about the hub; zero but for round-off.
+
+        Parameters
+        ----------
+        factors, forces, deflections : Floats
+            (n, 10) of the loads, and (n, k, 5) of the bearings.
+
+        Returns
+        -------
+        sums : Floats
+            (n, 6) [N, N m].
+        """
+        body = self.body
+        about = body.positions[body.names.index("hub")]
+        T = {
+            name: wrench_transport(place - about)
+            for name, place in zip(body.names, body.positions, strict=True)
+        }
+        whole = applied(body).reshape(len(body.names), 6, -1)
+        total = np.asarray(
+            factors @ sum(T[name] @ part for name, part in zip(body.names, whole, strict=True)).T
+        )
+        for name, reaction in self.reactions(factors, forces, deflections).items():
+            total -= reaction @ T[name].T
+        for name, force in zip(self.bearings, np.moveaxis(forces, 1, 0), strict=True):
+            total -= force @ T[name][:, FIVE].T
+        return total
+
+
+def linear_body(
+    body: Condensed, bearings: Sequence[str], supports: Mapping[str, ArrayLike]
+) -> LinearBody:
+    """A condensed body at its bearings, in housings that do not give.
+
+    Parameters
+    ----------
+    body : Condensed
+        A shaft of any level; its points "hub" and "gearbox" are those of the loads.
+    bearings : Sequence[str]
+        Points where bearings hold it.
+    supports : Mapping
+        (6,) or (6, 6) linear stiffness to ground of other points by name; inf is rigid.
+
+    Returns
+    -------
+    found : LinearBody
+        What the bearings feel.
+
+    Raises
+    ------
+    InputError
+        A point is unknown, or nothing but bearings holds the torque.
+    """
+    for name in (*bearings, "hub", "gearbox"):
+        if name not in body.names:
+            raise InputError(
+                f"point {name!r} is unknown: the body has {', '.join(body.names)}; name one of them"
+            )
+    springs = {name: np.asarray(k, dtype=float) for name, k in supports.items()}
+    springs = {name: np.diag(k) if k.ndim == 1 else k for name, k in springs.items()}
+    K, left = on_supports(body.names, body.stiffness, springs)
+    kept = np.concatenate([6 * body.names.index(name) + FIVE for name in bearings])
+    at = np.searchsorted(left, kept)
+    if not np.isin(kept, left).all():
+        raise InputError("a bearing's point stands on a rigid support besides: leave one out")
+    others = np.setdiff1d(np.arange(len(left)), at)
+    inner = K[np.ix_(others, others)]
+    if least_eigenvalue(inner) < _FREE:
+        raise InputError(
+            "the shaft turns freely about its axis: bearings hold no torque, so give the gearbox "
+            "a stiffness against rotation about x"
+        )
+    F = applied(body)
+    inside = scaled_solve(inner, np.hstack([K[np.ix_(others, at)], F[left[others]]]))
+    k = len(kept)
+    reduced = K[np.ix_(at, at)] - K[np.ix_(at, others)] @ inside[:, :k]
+    of_loads = np.zeros((len(body.stiffness), F.shape[1]))
+    of_bearings = np.zeros((len(body.stiffness), k))
+    of_loads[left[others]] = inside[:, k:]
+    of_bearings[left[others]] = -inside[:, :k]
+    of_bearings[kept] = np.eye(k)
+    return LinearBody(
+        tuple(bearings),
+        0.5 * (reduced + reduced.T),
+        F[kept] - K[np.ix_(at, others)] @ inside[:, k:],
+        body,
+        springs,
+        of_loads,
+        of_bearings,
+        np.zeros((k, k)),
+    )
+
+
+def in_housings(body: LinearBody, housings: Mapping[str, ArrayLike]) -> LinearBody:
+    """The body with the stiffness of housings in series with its bearings.
+
+    With C their compliance, a deflection d of a bearing is its shaft's motion less C f, so that K
+    becomes ``K (I + C K)^-1`` and the loads ``(I + K C)^-1 L``: compliances add.
+
+    Parameters
+    ----------
+    body : LinearBody
+        In rigid housings.
+    housings : Mapping
+        (6, 6) stiffness between outer ring and ground of some bearings by name [N/m, N, N m/rad];
+        rigid where not given.
+
+    Returns
+    -------
+    found : LinearBody
+        The same body over the bearings' own deflections.
+
+    Raises
+    ------
+    InputError
+        A bearing is unknown, or a housing has no stiffness against some motion.
+    """
+    C = np.zeros_like(body.housings)
+    for name, stiffness in housings.items():
+        if name not in body.bearings:
+            raise InputError(
+                f"housing of {name!r}: there is no such bearing; name one of "
+                f"{', '.join(body.bearings)}"
+            )
+        k = np.asarray(stiffness, dtype=float)
+        if k.shape != (6, 6) or not np.isfinite(k).all() or not least_eigenvalue(k) > _FREE:
+            raise InputError(
+                f"the housing of {name!r} must have a finite 6x6 stiffness that resists every "
+                "motion: take it with the bearing bonded, without the joint that the rollers are"
+            )
+        rows = 5 * body.bearings.index(name) + np.arange(5)
+        C[np.ix_(rows, rows)] = scaled_solve(0.5 * (k + k.T), np.eye(6))[np.ix_(FIVE, FIVE)]
+    K = body.stiffness
+    whole = np.eye(len(K)) + K @ C
+    series = np.linalg.solve(whole, K)
+    return replace(
+        body,
+        stiffness=0.5 * (series + series.T),
+        loads=np.linalg.solve(whole, body.loads),
+        housings=body.housings + C,
+    )
+
+
+def applied(body: Condensed) -> Floats:
+    """(6 n, 10) forces and moments at the points of a body, of the unit loads of `response.LOADS`.
+
+    Parameters
+    ----------
+    body : Condensed
+        With the points "hub" and "gearbox".
+
+    Returns
+    -------
+    loads : Floats
+        (6 n, 10) [N, N m].
+    """
+    F = np.zeros((len(body.stiffness), len(LOADS)))
+    F[body.rows("hub"), :6] = np.eye(6)
+    F[:, 6:9] = body.gravity
+    F[6 * body.names.index("gearbox") + 2, 9] = -1.0
+    return F
+
+
+def factors_of(hub_loads: ArrayLike, gearbox_weight: float = 0.0, gravity: float = 0.0) -> Floats:
+    """Factors of the loads of `response.LOADS`.
+
+    Parameters
+    ----------
+    hub_loads : array_like
+        (n, 6) or (6,): Fx, Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub.
+    gearbox_weight, gravity : float
+        [N] and [m/s^2], both along -z.
+
+    Returns
+    -------
+    factors : Floats
+        (n, 10).
+
+    Raises
+    ------
+    InputError
+        The loads have another shape, or one is no number.
+    """
+    hub = np.atleast_2d(np.asarray(hub_loads, dtype=float))
+    if hub.ndim != 2 or hub.shape[1] != 6:
+        raise InputError(
+            f"hub loads have the shape {np.shape(hub_loads)}: give (n, 6), the columns being "
+            "Fx, Fy, Fz, Mx, My, Mz"
+        )
+    if not np.isfinite(hub).all():
+        case, column = np.argwhere(~np.isfinite(hub))[0]
+        raise InputError(
+            f"{LOADS[column]} of load case {case} is {hub[case, column]}: give finite numbers"
+        )
+    factors = np.zeros((len(hub), len(LOADS)))
+    factors[:, :6] = hub
+    factors[:, 8] = -gravity
+    factors[:, 9] = gearbox_weight
+    return factors

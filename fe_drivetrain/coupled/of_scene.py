@@ -1,0 +1,38 @@
+"""The shaft of a scene at any level, for bearings other than the scene's own joints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.coupled.body import LinearBody, in_housings, linear_body
+from fe_drivetrain.fidelity.shafts import condensed_shaft
+from fe_drivetrain.scene.joint_springs import as_numbers
+from fe_drivetrain.scene.scene import Scene
+
+
+def scene_body(
+    scene: Scene, level: int, housings: Mapping[str, Floats] | None = None
+) -> LinearBody:
+    """A scene's shaft on its gearbox, its bearings taken out to be replaced by rolling ones.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; the joints of its bearings are not used.
+    level : int
+        Of the shaft: 1 beam, 2 meridian, 3 solid. With the housings solved as solids the last is
+        the assembly of level 4, but for what the faces at the rollers do to each other's shape.
+    housings : Mapping, optional
+        (6, 6) stiffness of housings by bearing [N/m, N, N m/rad], as of
+        `fidelity.unit_stiffness` with the bearing bonded; rigid where not given.
+
+    Returns
+    -------
+    body : LinearBody
+        The shaft, its weight, and the gearbox's springs.
+    """
+    names = [unit.bearing.name for unit in scene.bearing_units]
+    gearbox = as_numbers(scene.gearbox.stiffness)
+    supports = {"gearbox": gearbox} if gearbox.any() else {}
+    return in_housings(linear_body(condensed_shaft(scene, level), names, supports), housings or {})
