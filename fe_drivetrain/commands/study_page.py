@@ -15,7 +15,6 @@ from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.compare.statistics import rmse
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.fidelity.over_loads import (
-    COARSER,
     Levels,
     imbalance,
     levels_of,
@@ -23,6 +22,7 @@ from fe_drivetrain.fidelity.over_loads import (
     relative_errors,
 )
 from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
+from fe_drivetrain.fidelity.shaft_bands import COARSER
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import (
     NoPictureError,

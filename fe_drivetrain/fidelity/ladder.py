@@ -25,8 +25,8 @@ from fe_drivetrain.fidelity.shafts import (
     ringed_shaft,
 )
 from fe_drivetrain.geometry import unit_solids
-from fe_drivetrain.response.model import LOADS, build_model, mesh_scene
-from fe_drivetrain.response.unit_loads import unit_load_response
+from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.condensation import Condensed, supported
@@ -207,11 +207,22 @@ def shaft_level(
 
 def assembly_level(scene: Scene) -> LevelModel:
     """Level 4: shaft, bearings and housings as solids; stiffness at the hub."""
+    return solved_assembly(scene)[0]
+
+
+def solved_assembly(scene: Scene) -> tuple[LevelModel, Model, Response]:
+    """Level 4, the model that was solved, and its response."""
     start = time.perf_counter()
-    response = unit_load_response(build_model(scene, mesh_scene(scene)))
+    model = build_model(scene, mesh_scene(scene))
+    response = unit_load_response(model)
+    return level_of_response(scene, response, time.perf_counter() - start), model, response
+
+
+def level_of_response(scene: Scene, response: Response, seconds: float) -> LevelModel:
+    """Level 4 of a scene that was solved, and the wall time that took [s]."""
     names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
     reactions = {name: response.reactions[name] for name in names}
-    cost = Cost(time.perf_counter() - start, response.diagnostics.n_unknowns)
+    cost = Cost(seconds, response.diagnostics.n_unknowns)
     return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
 
 

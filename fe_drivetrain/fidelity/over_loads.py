@@ -15,19 +15,16 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.ladder import (
-    TITLES,
-    Cost,
     LevelModel,
     assembly_level,
     housing_springs,
+    level_of_response,
     shaft_level,
 )
+from fe_drivetrain.fidelity.shaft_bands import COARSER
 from fe_drivetrain.fidelity.shafts import condensed_shaft, reference_points
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
-
-COARSER = 1.35
-"""Factor on the mesh sizes of the second assembly, which shows what the mesh does."""
 
 ROUND_OFF = 1e-6
 """Share of a reaction below which its force or moment is the noise of a mesh, and left out."""
@@ -92,16 +89,10 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
         models["assembly, coarser mesh"] = assembly_level(scene.model_copy(update={"mesh": mesh}))
     except InputError:  # too coarse for a wall
         pass
-    models["assembly"] = _assembly(scene, response)
-    return Levels(stiff, soft, models)
-
-
-def _assembly(scene: Scene, response: Response) -> LevelModel:
-    names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
     found = response.diagnostics
-    cost = Cost(found.setup_seconds + found.solve_seconds, found.n_unknowns)
-    reactions = {name: response.reactions[name] for name in names}
-    return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
+    seconds = found.setup_seconds + found.solve_seconds
+    models["assembly"] = level_of_response(scene, response, seconds)
+    return Levels(stiff, soft, models)
 
 
 def reaction_history(

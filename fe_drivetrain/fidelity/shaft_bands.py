@@ -87,10 +87,8 @@ def banded_solid(scene: Scene, at: Sequence[str] | None = None) -> tuple[Condens
     solid = shaft_solid(scene)
     body = _kept(solid.body, at)
     band = RECOVERY_SAFETY * _recovered_error(scene, solid, body.names)
-    turn = max(6, round(scene.mesh.elements_per_turn / COARSER))
-    sizes = scene.mesh.scaled(COARSER, turn)
     try:
-        coarse = shaft_solid(scene.model_copy(update={"mesh": sizes}))
+        coarse = shaft_solid(scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)}))
     except InputError:  # too coarse for a wall: what is recovered is the band
         return body, band
     ratio = mean_size(coarse.mesh) / mean_size(solid.mesh)
