@@ -186,8 +186,8 @@ def run(run: Run, page: Page) -> None:
         "interface, on the ground or on a bedplate that gives; all follow from the seed. Scenes of "
         f"more than {MOST_CELLS:,} elements are left out. The reference is half way from "
         f"a mesh of sizes times {FINER[1]:g}, or finer, to the limit at first order, and half of "
-        "that way is added to the error where a band is judged. Of a reaction, error and band are of the norm "
-        "over the hub's loads."
+        "that way is added to the error where a band is judged. Of a reaction, error and band are "
+        "of the norm over the hub's loads."
     )
     page.data("coverage", found)
     page.data("figures", rows)
