@@ -16,6 +16,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.compare.convergence import DOUBTFUL, Behaviour, grid_convergence
+from fe_drivetrain.fidelity.shaft_bands import APART
 from fe_drivetrain.response.influence_fields import reaction_influences
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
@@ -36,8 +37,6 @@ _SHOWN: dict[Behaviour, str] = {
 }
 _TWO = "of coarser meshes there is only one, which shows no order of convergence"
 _NONE = "coarser meshes cannot be made, or are not coarser: there is no series of meshes"
-#: Meshes whose mean sizes are nearer than this say nothing of each other.
-_APART = 1.05
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def assembly_band(
     own = SAFETY * float(np.linalg.norm(recovered)) / size
     kept = [len(sizes) - 1]
     for number in range(len(sizes) - 2, -1, -1):  # what folded over was meshed again, finer
-        if sizes[number] > _APART * sizes[kept[0]]:
+        if sizes[number] > APART * sizes[kept[0]]:
             kept.insert(0, number)
     h, table = np.array(sizes)[kept], np.array(values)[kept]
     if len(kept) == 1:
