@@ -13,6 +13,7 @@ from .part import LENGTH_TOLERANCE, Assumption, Part
 from .planet_carrier import PlanetCarrier
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
+from .walls import within_walls
 
 __all__ = [
     "LENGTH_TOLERANCE",
@@ -37,4 +38,5 @@ __all__ = [
     "refuse_millimetres",
     "size_name",
     "unit_solids",
+    "within_walls",
 ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 
@@ -11,11 +10,12 @@ import gmsh
 from fe_drivetrain.common.errors import InputError
 
 from .bearing import Bearing
-from .element_sizes import SIZE_PER_WALL, MeshSizes, apply_sizes, size_name
+from .element_sizes import MeshSizes, apply_sizes
 from .faces import CAD_TOLERANCE, at_radius, boundary, in_plane, middle, shared
 from .fits import check_parts
 from .housing import Housing
 from .shaft import Shaft
+from .walls import check_sizes
 
 
 def build(
@@ -51,7 +51,7 @@ def build(
         The parts do not fit together.
     """
     bores = check_parts(shaft, bearings, housings, bonded)
-    _check_sizes(shaft, bearings, housings, bores, sizes)
+    check_sizes(shaft, bearings, housings, bores, sizes)
 
     solids: dict[str, int] = {}
     washers: list[tuple[str, int]] = []
@@ -133,40 +133,6 @@ def _name_faces(
             name_faces(f"{owner}.base", bases[owner])
         else:
             name_faces(f"{owner}.base", in_plane(faces[owner], 2, -housings[name].centre_height))
-
-
-def _check_sizes(
-    shaft: Shaft | None,
-    bearings: Sequence[Bearing],
-    housings: Mapping[str, Housing],
-    bores: Mapping[str, float],
-    sizes: MeshSizes,
-) -> None:
-    """Refuse elements so large that no sound element can fill the wall."""
-    walls: list[tuple[str, float]] = []
-    if shaft is not None:
-        wall = min(min(p.outer_diameter, p.end_diameter) - p.inner_diameter for p in shaft.pieces)
-        walls.append(("shaft", wall / 2))
-    for bearing in bearings:
-        ring = bearing.edge_radius - bores[bearing.name] / 2
-        walls.append((bearing.name, ring))
-        if bearing.name in housings:
-            owner = f"{bearing.name}.housing"
-            housing = housings[bearing.name]
-            floor = housing.centre_height - bearing.raceway_diameter / 2
-            walls.append((owner, min(housing.wall, floor)))
-    for part, wall in walls:
-        kind = size_name(part)
-        size = getattr(sizes, kind)
-        if part == "shaft" and shaft is not None:
-            widest = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
-            size = min(size, math.pi * widest / sizes.elements_per_turn)
-        if size > SIZE_PER_WALL * wall:
-            raise InputError(
-                f"part {part!r}: mesh size {kind!r} is {size:g} m but must be at most "
-                f"{SIZE_PER_WALL * wall:.3g} m, {SIZE_PER_WALL:g} times its thinnest wall of "
-                f"{wall:.3g} m: reduce the size or thicken the wall"
-            )
 
 
 def _volumes(names: Sequence[str], pieces: Sequence[Sequence[tuple[int, int]]]) -> dict[str, int]:

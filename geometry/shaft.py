@@ -19,6 +19,9 @@ FINEST = 1e-5
 part, and too near to that of the CAD kernel, which fails at 1e-7."""
 
 
+_NAMED = 3  # cylindrical lengths that a message names, those nearest to a bearing
+
+
 class Segment(NamedTuple):
     """One piece of a meridian, in (x, radius); an arc where `centre` is given."""
 
@@ -247,7 +250,9 @@ class Shaft(Part):
                 and high <= segment.end[0] + LENGTH_TOLERANCE
             ):
                 return 2 * segment.start[1]
-        allowed = ", ".join(f"{s.start[0]:g} to {s.end[0]:g}" for s in free) or "none"
+        nearest = sorted(free, key=lambda s: max(s.start[0] - x, x - s.end[0]))[:_NAMED]
+        nearest.sort(key=lambda s: s.start[0])
+        allowed = ", ".join(f"{s.start[0]:g} to {s.end[0]:g}" for s in nearest) or "none"
         raise InputError(
             f"bearing {name!r}: its seat on the shaft is x = {low:g} to {high:g} m but must lie on "
             f"one cylindrical length clear of steps, tapers and fillets ({allowed} m): move the "

@@ -80,8 +80,11 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
 
 @pytest.fixture(scope="session", autouse=True)
 def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """A cache for the tests alone, and one process; tests of either set their own."""
-    with pytest.MonkeyPatch.context() as patch:
+    """A cache for the tests alone, and one process with one thread; tests of these set their own.
+
+    The cases take the other core meanwhile: two threads would wait for each other in every loop.
+    """
+    with pytest.MonkeyPatch.context() as patch, threads.held_to_one_thread():
         patch.setenv(cache.CACHE_VARIABLE, str(tmp_path_factory.mktemp("cache")))
         patch.setenv(threads.CORES_VARIABLE, "1")
         yield
@@ -135,6 +138,7 @@ def quick_cases(
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,
+            preexec_fn=lambda: os.nice(5),  # these tests are the longer way
         ) as process,
     ):
         yield folder, process

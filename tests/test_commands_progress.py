@@ -5,8 +5,10 @@ import sys
 
 import pytest
 
+from fe_drivetrain.commands import progress
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import OVERALL
 
 
 def ended(lines: list[str]) -> list[str]:
@@ -37,6 +39,24 @@ def test_a_step_that_counts_is_one_step(capsys: pytest.CaptureFixture[str]) -> N
     assert ended(lines) == ["part", "loads", "last"]
     assert [line for line in lines if line.endswith("...")] == ["part ...", "loads ...", "last ..."]
     assert len(lines) == 6
+
+
+def test_a_step_that_counts_says_how_long_the_rest_takes(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = iter([0.0, 40.0, 80.0, 120.0, 120.0])
+    monkeypatch.setattr(progress.time, "perf_counter", lambda: next(clock))
+    with show_steps() as report:
+        for count in (10, 11, 12, 13):  # what was done before it began is not its pace
+            report(f"cases ({count} of 100)", OVERALL)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [
+        "cases ...",
+        "cases (11 of 100), about 59 min left",  # 40 s a case
+        "cases (12 of 100), about 59 min left",
+        "cases (13 of 100), about 58 min left",
+        "cases ... 120.0 s",
+    ]
 
 
 def test_steps_of_parallel_processes_end_each_in_its_lane(

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from tiny_case import Result
@@ -76,6 +77,25 @@ def test_ctrl_c_exits_130_and_keeps_the_earlier_results(
     assert "stopped" in err
     assert (tmp_path / "reports/group/tiny/results.json").read_bytes() == before
     assert os.listdir(tmp_path / "reports/group") == ["tiny"]
+
+
+def test_verdicts_of_an_earlier_run_do_not_outlive_a_stopped_one(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    def stop(run: Run, page: Page) -> None:
+        raise KeyboardInterrupt
+
+    verdicts = tmp_path / "verdicts.xml"
+    assert invoke("run", "tiny", "--junit", "verdicts.xml")[0] == 0
+    assert 'name="ratio"' in verdicts.read_text()
+    assert invoke("run", "tiny", "--junit", "verdicts.xml", work=stop)[0] == 130
+    (test,) = ElementTree.parse(verdicts).iter("testcase")
+    error = test.find("error")
+    assert error is not None
+    assert "not run" in error.attrib["message"]
+    assert invoke("run", "tiny", "--junit", "verdicts.xml")[0] == 0
+    assert invoke("run", "tinny", "--junit", "verdicts.xml")[0] == 2
+    assert not verdicts.exists()
 
 
 @pytest.mark.parametrize(("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

@@ -8,7 +8,7 @@ from fe_drivetrain.beam.frame import rectangle
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.export.from_component import component_superelement
-from fe_drivetrain.fidelity import component_frames
+from fe_drivetrain.fidelity import component_frames, component_levels
 from fe_drivetrain.fidelity.component_frames import housing_frame
 from fe_drivetrain.fidelity.component_levels import (
     frame_level,
@@ -187,6 +187,32 @@ def test_a_hinge_of_two_bushings_is_refused_but_has_a_stiffness(solid: SolidComp
     turn[4], turn[0] = 1.0, -z
     size = np.sqrt(np.abs(K.diagonal()))
     assert np.abs((K / np.outer(size, size)) @ (size * turn)).max() < 1e-7 * size[4]
+
+
+@pytest.mark.parametrize(
+    ("springs", "says"),
+    [
+        ([2e6, 4e7, 4e7, 0.0, 0.0, 0.0], r"housing can turn freely about y through \(0, 0, -0.1\)"),
+        ([0.0, 4e7, 4e7, 2e4, 3e5, 3e5], "housing can move freely along x"),
+        ([2e6, 4e7, 0.0, 0.0, 3e5, 3e5], "move freely along z"),
+        ([2e6, 4e7, 4e7, 2e4, 1e-5, 3e5], "but for round-off: housing can nearly turn about y"),
+    ],
+)
+def test_every_level_refuses_a_mechanism_before_it_is_meshed(
+    springs: list[float], says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    component = coarse(
+        "gearbox_housing", **{"bushings.stiffness": springs, "gearbox_housing.arm_z": -0.1}
+    )
+    monkeypatch.setattr(component_levels, "solid_component", None)
+    for level in (rigid_level, frame_level, solid_level):
+        with pytest.raises(InputError, match=says):
+            level(component)
+
+
+def test_a_spring_of_nothing_is_refused_as_it_is_read() -> None:
+    with pytest.raises(InputError, match=r"1e-300 must be 0, a number from 1e-06"):
+        coarse("gearbox_housing", **{"bushings.stiffness": [2e6, 4e7, 4e7, 2e4, 1e-300, 3e5]})
 
 
 def test_stiff_bushings_show_the_housing_alone(

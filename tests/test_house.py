@@ -19,7 +19,7 @@ LIBRARY = sorted(GRAPH.keys() - {"geometry", "cases"})
 FLOORS = (
     {"common"},
     {"geometry", "compare"},
-    {"mesh", "scene", "torsion", "hub_loads"},
+    {"bearing", "mesh", "scene", "torsion", "hub_loads"},
     {"operator", "revolution"},
     {"interfaces"},
     {"solve"},

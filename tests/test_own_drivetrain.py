@@ -19,7 +19,9 @@ from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.reading import parse_mapping
+from fe_drivetrain.compare.cycles import damage_equivalent_load, rainflow_cycles
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
+from fe_drivetrain.export.formats.summary import read_summary
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance, relative_errors
@@ -272,12 +274,14 @@ TWO_BEARINGS = [
 ]
 
 
-def write_loads(path: Path, seed: int, start: float = 0.0) -> Floats:
+def write_loads(
+    path: Path, seed: int, start: float = 0.0, count: int = 40, step: float = 0.1
+) -> Floats:
     """A short history of hub loads with weight and thrust; its loads [kN, kN m]."""
     generator = np.random.default_rng(seed)
-    time = start + 0.1 * np.arange(40)
+    time = start + step * np.arange(count)
     mean = np.array([200.0, 5.0, -370.0, 900.0, 300.0, -50.0])
-    loads = mean + np.abs(mean) * 0.3 * generator.standard_normal((40, 6))
+    loads = mean + np.abs(mean) * 0.3 * generator.standard_normal((count, 6))
     header = "time [s],Fx [kN],Fy [kN],Fz [kN],Mx [kN m],My [kN m],Mz [kN m]"
     np.savetxt(path, np.column_stack([time, loads]), "%.6f", ",", header=header, comments="")
     return loads
@@ -285,14 +289,15 @@ def write_loads(path: Path, seed: int, start: float = 0.0) -> Floats:
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Floats]]:
-    """The result folder of a study of two bearings over two files, and their loads."""
+    """The result folder of a study of two bearings over two unlike files, and their loads."""
     folder = tmp_path_factory.mktemp("study")
     (folder / "loads").mkdir()
     loads = {
-        name: write_loads(folder / "loads" / f"{name}.csv", seed, start)
-        for name, seed, start in (("calm", 1, 0.0), ("storm", 2, 60.0))
+        "calm": write_loads(folder / "loads" / "calm.csv", 1),
+        "storm": write_loads(folder / "loads" / "storm.csv", 2, start=60.0, count=101, step=0.05),
     }
     words = ["study", "two_bearings", "--loads", str(folder / "loads"), *TWO_BEARINGS]
+    words += ["--slope", "4", "--slope", "8"]
     with pytest.raises(SystemExit) as end:
         main([*words, "--out", str(folder / "out")])
     assert end.value.code == 0
@@ -342,8 +347,12 @@ def test_statistics_of_a_study_are_those_of_its_histories(
     folder, _ = study
     found = {name: table_of(folder / f"reactions_{name}.csv") for name in ("calm", "storm")}
     columns = found["calm"][0]
-    both = np.vstack([values for _, values, _ in found.values()])
-    sample = both[:, columns.index("rear Fz [N]")] / 1e3
+    parts = [values[:, columns.index("rear Fz [N]")] / 1e3 for _, values, _ in found.values()]
+    sample = np.concatenate(parts)
+    # 40 steps of 0.1 s, and 101 of 0.05 s
+    weights = np.repeat([0.1, 0.05], [40, 101])
+    mean = np.average(sample, weights=weights)
+    deviation = np.sqrt(np.average((sample - mean) ** 2, weights=weights))
     (row,) = [
         row
         for row in tables(folder)["Reactions of the assembly over all load steps"]
@@ -351,10 +360,50 @@ def test_statistics_of_a_study_are_those_of_its_histories(
     ]
     assert row["least"] == pytest.approx(sample.min(), rel=1e-6)
     assert row["largest"] == pytest.approx(sample.max(), rel=1e-6)
-    assert row["mean"] == pytest.approx(sample.mean(), rel=1e-6)
-    assert row["standard deviation"] == pytest.approx(sample.std(), rel=1e-6)
+    assert row["mean"] == pytest.approx(mean, rel=1e-6)
+    assert row["standard deviation"] == pytest.approx(deviation, rel=1e-6)
+    cycles = [rainflow_cycles(part) for part in parts]
+    for slope in (4.0, 8.0):
+        equivalent = damage_equivalent_load(cycles, 39 * 0.1 + 100 * 0.05, slope)
+        assert row[f"DEL, m = {slope:g}"] == pytest.approx(equivalent, rel=1e-5)
+    assert 0.0 < float(str(row["± mesh"])) < 0.5 * sample.std()
     text = (folder / "reaction_statistics.csv").read_text("utf-8")
     assert text.count("\nstorm,rear,Fz,N,") == text.count("\nall,rear,Fz,N,") == 1
+    assert "# channels of storm = " in text
+    times = {row["history"]: row for row in tables(folder)["Histories"]}
+    assert times["storm"]["from [s]"] == 60.0
+    assert times["storm"]["step [s]"] == pytest.approx(0.05)
+
+
+def test_a_study_says_which_level_each_reaction_needs(
+    study: tuple[Path, dict[str, Floats]],
+) -> None:
+    (caption,) = [c for c in tables(study[0]) if c.startswith("The cheapest level")]
+    rows = {str(row["reaction"]): row for row in tables(study[0])[caption]}
+    shares = {
+        str(row["reaction"]): row
+        for found in tables(study[0]).values()
+        for row in found
+        if "beam, soft housings" in row and "rms of FE" not in row
+    }
+    assert rows.keys() == shares.keys()
+    for reaction, row in rows.items():
+        level = str(row["level that it needs"])
+        assert level[0] in "124n"
+        bounds = [shares[reaction][f"beam, {bound} housings"] for bound in ("stiff", "soft")]
+        within = max(float(str(b)) for b in bounds) + float(str(row["± mesh of the assembly [%]"]))
+        if level.startswith("1 beam, housings"):
+            assert within <= 5.0
+        if level.startswith(("2", "4")):
+            assert within > 5.0
+
+
+def test_a_study_exports_what_other_programs_read(study: tuple[Path, dict[str, Floats]]) -> None:
+    folder, _ = study
+    assert set(read_summary(folder / "summary.json").bearing_units) == {"front", "rear"}
+    assert (folder / "mesh.vtu").stat().st_size > 0
+    for row in tables(folder)["Files of this study"]:
+        assert list(folder.glob(str(row["file"]))), row
 
 
 def test_bounds_of_a_study_hold_each_other_and_are_exported(

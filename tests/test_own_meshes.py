@@ -9,12 +9,15 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import fixed
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.mesh.facets import face_weights, volume_weights
+from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.operator import incompatible, incompressible
 from fe_drivetrain.operator.elasticity import assemble, sparsity
 from fe_drivetrain.operator.elements import check_elements
 from fe_drivetrain.operator.loads import body_loads, traction_loads
 from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.operator.stress import nodal_stresses
+from fe_drivetrain.scene.materials import MATERIALS
+from fe_drivetrain.solve.coupled_solid import coupled_solid
 from fe_drivetrain.solve.solid import solve_solid
 
 LAME = (1.2e11, 8e10)
@@ -33,6 +36,11 @@ def solved(points, cells):
 ENTRIES: dict[str, Callable[[np.ndarray, np.ndarray], object]] = {
     "solve_solid": solved,
     "check_elements": check_elements,
+    "coupled_solid": lambda points, cells: coupled_solid(
+        Mesh(points, cells, np.zeros(len(cells), np.int64), ("body",), {}, {}),
+        {"body": MATERIALS["steel"]},
+        [],
+    ),
 }
 #: Those that sum over cells and do not mind how they are turned, beside them.
 NUMBERED = ENTRIES | {

@@ -1,15 +1,23 @@
 """Main-bearing cases on a user's scene: the page is about that scene, and says what is not."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import yaml
 from conftest import COARSE, coarse_scene
 
-from fe_drivetrain.cases.main_bearing import study
+from fe_drivetrain.cases.main_bearing import loads, study
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import CORES_VARIABLE
-from fe_drivetrain.report.results import Results, read_results
+from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity
+from fe_drivetrain.geometry.fits import check_parts
+from fe_drivetrain.geometry.walls import check_sizes
+from fe_drivetrain.hub_loads.surrogate import Condition
+from fe_drivetrain.report.results import Chart, Results, Text, read_results
+from fe_drivetrain.scene.reading import change_scene, library_text
+from fe_drivetrain.scene.scene import coarser_scene
 from fe_drivetrain.suite.case import all_cases
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
@@ -35,8 +43,8 @@ def pages(tmp_path_factory) -> dict[str, Results]:
     scene = coarse_scene("spherical", title="Turbine of mine").model_dump(mode="json")
     (folder / "mine.yaml").write_text(yaml.safe_dump(scene))
     time = 0.05 * np.arange(40)
-    loads = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
-    table = np.column_stack([time, loads])
+    forces = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
+    table = np.column_stack([time, forces])
     header = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
     np.savetxt(folder / "loads.csv", table, delimiter=",", header=header, comments="")
     settings = {"scene": str(folder / "mine.yaml"), "loads": str(folder / "loads.csv")}
@@ -101,3 +109,52 @@ def test_no_bearing_is_exchanged_in_silence(tmp_path, kind, interface):
     assert kept == (page.notes == [])
     assert kept == ((interface == "bonded") == (kind == "bonded"))
     assert page.subject == ""
+
+
+def test_a_quick_look_at_a_thin_wall_is_as_coarse_as_the_wall_allows():
+    sections = [{"length": 2.0, "outer_diameter": 0.5, "inner_diameter": 0.46}]
+    changes = {"shaft.sections": sections, "mesh.shaft": 0.05, "mesh.elements_per_turn": 8}
+    scene = change_scene(coarse_scene("bonded"), changes)
+    quick = coarser_scene(scene, 2.0, 8)
+    assert quick.mesh.shaft == pytest.approx(3 * 0.02)  # three times the wall, not 0.1
+    assert quick.mesh.bearing_edge == 2.0 * scene.mesh.bearing_edge
+    (unit,) = scene.bearing_units
+    parts = scene.shaft, [unit.bearing], {unit.bearing.name: unit.housing}
+    bores = check_parts(*parts)
+    check_sizes(*parts, bores, quick.mesh)
+    with pytest.raises(InputError, match="thinnest wall"):
+        check_sizes(*parts, bores, scene.mesh.scaled(2.0, 8))
+
+
+def test_several_bearings_are_sent_to_the_study(tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text(library_text("two_bearings"))
+    run = Run({"scene": str(file)}, False, tmp_path)
+    with pytest.raises(InputError, match=r"2 bearing units.*fe-drivetrain study"):
+        study.given_scene(run, "bonded")
+
+
+def test_advice_without_a_band_says_why():
+    model = SimpleNamespace(level=4, title="assembly of solids")
+    result = LevelResult(model, np.ones(1), 1.0, float("nan"))
+    sentence = Advice(Quantity("main_bearing.My"), 0.05, [result], None).sentence()
+    assert "walls are too thin" in sentence
+    assert "nan" not in sentence
+
+
+def test_errors_of_round_off_are_a_sentence_and_not_a_chart(rng):
+    conditions = [Condition(wind, "medium", 0.2, seed) for wind in (8.0, 16.0) for seed in (1, 2)]
+    fe = {"bonded": 1e5 * rng.normal(size=(4, 50, 6))}
+    noise = rng.normal(size=(4, 50, 6))
+    pairs = {
+        "exact against FE": ("bonded", fe["bonded"] + 1e-7 * noise),
+        "near against FE": ("bonded", fe["bonded"] + 1.0 * noise),
+    }
+    page = Page()
+    loads.rmse_charts(page, conditions, fe, pairs)
+    (section,) = page.sections
+    texts = [item.text for item in section.items if isinstance(item, Text)]
+    charts = [item.caption for item in section.items if isinstance(item, Chart)]
+    assert ["exact" in text and "round-off" in text for text in texts] == [True]
+    assert len(charts) == 2
+    assert all("near" in caption for caption in charts)

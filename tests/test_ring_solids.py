@@ -7,11 +7,13 @@ from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import held_nodes
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.operator.loads import pressure, traction_loads
+from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.solve.solid import solve_solid
 from fe_drivetrain.validation.bar_sections import (
     round_bar,
     section_motion,
     section_stresses,
+    solve_bar,
 )
 from fe_drivetrain.validation.plane_rings import (
     Lame,
@@ -112,6 +114,16 @@ def test_stress_of_a_section_in_bending_is_exact_up_to_lateral_contraction():
     u = np.column_stack([1e-3 * x * z, 0.0 * x, -0.5e-3 * x**2]).ravel()
     s = section_stresses(bar.points, bar.cells, bar.root, u, (0.0, 0.5 * E))
     np.testing.assert_allclose(s[:, 0], 1e-3 * E * z[bar.root], atol=1e-12)
+
+
+def test_a_pulled_bar_stretches_from_its_root_and_is_free_of_its_clamp_there():
+    steel = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=0.0)
+    found = solve_bar(round_bar(0.2, 3.0, 12, 4), steel, np.array([1e8, 0.0, 0.0]))
+    motion = found.end_motion(3.0, 0.0, 0.0)
+    assert motion[0] == pytest.approx(3.0 * 1e8 / 200e9, rel=1e-3)
+    np.testing.assert_allclose(motion[1:] / motion[0], 0.0, atol=1e-6)
+    s = found.stresses_at(found.bar.root)
+    np.testing.assert_allclose(s[:, 0], 1e8, rtol=2e-2)
 
 
 @pytest.mark.parametrize("n", [1, 3])

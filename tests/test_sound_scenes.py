@@ -175,3 +175,11 @@ def test_levels_answer_what_is_sound():
     statics, beam = statics_level(scene), shaft_level(scene, 1)
     row = statics.reaction_matrices["main_bearing"][2]
     np.testing.assert_allclose(row, beam.reaction_matrices["main_bearing"][2], atol=1e-12)
+
+
+def test_of_a_thousand_sections_the_ones_beside_the_bearing_are_named():
+    sections = [Section(length=0.01, outer_diameter=0.4 + 0.01 * (k % 2)) for k in range(1000)]
+    shaft = Shaft(front=-5.0, sections=sections)
+    with pytest.raises(InputError, match=r"\(-0\.01 to .* to 0\.02 m\): move") as refused:
+        shaft.seat_diameter(0.003, 0.2, "b")
+    assert str(refused.value).count(" to ") == 4  # the seat and three sections

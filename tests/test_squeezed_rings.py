@@ -37,3 +37,15 @@ def test_a_thin_ring_opens_across_as_an_inextensible_one() -> None:
     found = squeezed(60.0).series()
     expected = (2.0 / np.pi - 0.5) / (np.pi / 4.0 - 2.0 / np.pi)
     assert -found[ACROSS] / found[ALONG] == pytest.approx(expected, rel=4.0 / 60.0**2)
+
+
+@pytest.mark.parametrize("ratio", [2.0, 20.0])
+def test_elements_of_a_quarter_grow_away_from_the_load(ratio: float) -> None:
+    coarse, fine = (squeezed(ratio).boundaries(level) for level in (1, 3))
+    assert fine[::3] == pytest.approx(coarse, abs=1e-14)
+    assert coarse[0] == 0.0
+    assert coarse[1] == pytest.approx(0.5 / ratio)
+    assert coarse[-1] == 0.5 * np.pi
+    lengths = np.diff(coarse)
+    assert lengths.min() > 0.0
+    assert lengths.max() <= 1.5 / ratio * (1.0 + 1e-12)

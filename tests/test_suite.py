@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,12 +17,14 @@ from tiny_case import check_one
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.progress import OVERALL
 from fe_drivetrain.common.threads import CORES_VARIABLE, cores
 from fe_drivetrain.report.junit import write_junit
 from fe_drivetrain.report.page import write_index
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.resuming import finished_cases
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.suite import run_cases
 
@@ -165,7 +168,7 @@ def test_steps_are_told_with_the_name_of_their_case(tmp_path: Path, number_of_co
     run_cases(
         [a_case("a/one", count), a_case("a/two", count)],
         tmp_path,
-        report=lambda step, lane=0: told.append(step),
+        report=lambda step, lane=0: told.append(step) if lane != OVERALL else None,
     )
     assert {f"a/{name}: {step}" for name in ("one", "two") for step in ("count", "report")} == {
         step for step in told if step
@@ -193,6 +196,44 @@ def test_results_that_cannot_be_read_are_listed_as_such(tmp_path: Path) -> None:
 def read_the_index(run: Run, page: Page) -> None:
     page.answer((run.folder.parents[1] / "index.html").read_text())
     count(run, page)
+
+
+def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
+    def with_files(name: str, work: Callable[[Run, Page], None]) -> Case:
+        return replace(a_case(name, work), settings=("k", "scene"))
+
+    cases = [with_files(f"a/{name}", off) for name in ("one", "two", "three")]
+    assert finished_cases(cases, tmp_path, {"k": 1}) == []
+    run_cases(cases[:2], tmp_path, {"k": 1})
+    first = (tmp_path / "a/one/results.json").read_bytes()
+    kept = finished_cases(cases, tmp_path, {"k": 1})
+    assert kept == ["a/one", "a/two"]
+    # another mode, other settings, or files of the user's that may have changed: run again
+    assert finished_cases(cases, tmp_path, {"k": 1}, quick=True) == []
+    assert finished_cases(cases, tmp_path, {"k": 2}) == []
+    run_cases(cases[:1], tmp_path / "own", {"scene": "mine.yaml"})
+    assert finished_cases(cases[:1], tmp_path / "own", {"scene": "mine.yaml"}) == []
+    steps: list[str] = []
+    problems = run_cases(cases, tmp_path, {"k": 1}, False, lambda s, lane=0: steps.append(s), kept)
+    assert problems == {}
+    assert not any("a/one" in step for step in steps)
+    assert (tmp_path / "a/one/results.json").read_bytes() == first
+    assert "3 of 3 cases pass" in (tmp_path / "index.html").read_text()
+    # results of another program, or that cannot be read, are made again
+    (tmp_path / "a/one/results.json").write_bytes(first.replace(b'"code": "', b'"code": "0'))
+    (tmp_path / "a/two/results.json").write_bytes(first[:200])
+    assert finished_cases(cases, tmp_path, {"k": 1}) == ["a/three"]
+
+
+def test_how_many_cases_are_done_is_counted(tmp_path: Path, number_of_cores: str) -> None:
+    counts: list[str] = []
+
+    def report(step: str, lane: int = 0) -> None:
+        if lane == OVERALL:
+            counts.append(step)
+
+    run_cases([a_case(f"a/{k}", off) for k in range(3)], tmp_path, report=report)
+    assert counts == [f"cases ({k} of 3)" for k in range(4)]
 
 
 def test_what_a_kill_would_leave_looks_incomplete(tmp_path: Path) -> None:

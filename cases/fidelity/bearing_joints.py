@@ -155,10 +155,10 @@ def run(run: Run, page: Page) -> None:
 def _swept(run: Run, scene: Scene) -> Sweep:
     powers = np.array([4.0, 6.0, 11.0, 13.0]) if run.quick else np.arange(4.0, 14.0)
     solids = []
-    for power in powers:
-        run.report(f"tilt stiffness 1e{power:g} N m/rad")
-        with run.step("sweep"):
-            solids.append(solved(tilting(scene, float(10.0**power))))
+    with run.step("sweep of the tilt stiffness"):
+        for number, power in enumerate(powers.tolist(), 1):
+            run.report(f"sweep of the tilt stiffness ({number} of {len(powers)})")
+            solids.append(solved(tilting(scene, 10.0**power)))
     with run.step("condensed"):
         housing, shaft = housing_alone(scene), meridian_shaft(scene)
         fine = 10.0 ** np.linspace(powers[0], powers[-1], 61)
@@ -283,7 +283,7 @@ def _show_sweep(page: Page, limits: Limits, sweep: Sweep, rollers: Rollers, low:
                 "joint": name,
                 "tilting moment at the bearing for 1 N m at the hub [N m]": one.tilt_moment,
                 "hub tilt for 1 N m at the hub [rad]": one.hub_motions[4, 4],
-                "time [s]": one.seconds,
+                "set-up and solve [s]": one.seconds,
             }
             for name, one in joints.items()
         ],

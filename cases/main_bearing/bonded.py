@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, closed_forms, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, shown, study
+from fe_drivetrain.cases.main_bearing import bands, general, shown, study
 from fe_drivetrain.common import (
     FORCES,
     Floats,
@@ -89,6 +89,10 @@ OF_THESIS = "in the thesis, whose gearbox has three translational springs only, 
 )
 def run(run: Run, page: Page) -> None:
     """Solve the bonded scene, and compare its reactions with three beams."""
+    other = general.general_scene(run, page, "bonded", exchange=True)
+    if other is not None:
+        general.unit_load_page(run, page, other)
+        return
     scene = study.scene_of(run, page, "bonded")
     pinned_beam = main_bearing_beam(scene)  # refuses before the work what it cannot stand for
     with run.side_by_side(4) as jobs:

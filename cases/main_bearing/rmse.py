@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, loads, reactions, shown, study
+from fe_drivetrain.cases.main_bearing import bands, general, loads, reactions, shown, study
 from fe_drivetrain.cases.main_bearing.comparison import (
     MEAN_ERROR,
     PUBLISHED,
@@ -19,9 +19,11 @@ from fe_drivetrain.cases.main_bearing.comparison import (
     of_one_mesh,
 )
 from fe_drivetrain.cases.main_bearing.study import Solved, Tilt
-from fe_drivetrain.common import Floats
+from fe_drivetrain.commands import own_loads, studied
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.response import bearing_unit_stiffness
+from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run
 
 OF_THESIS = (
@@ -136,6 +138,25 @@ def result_section(
     )
 
 
+def over_loads(run: Run, page: Page, scene: Scene) -> None:
+    """The general study: every level against FE over the loads, each history with its own time.
+
+    Raises
+    ------
+    InputError
+        A setting is of the comparison with closed forms alone.
+    """
+    for key in ("self_weight", "solver"):
+        if key in run.settings:
+            raise InputError(
+                f"{key} is a setting of the comparison with closed forms, which do not apply to "
+                f"scene {scene.title!r}: leave it out"
+            )
+    skip = loads.skip_of(run)
+    own = own_loads(str(run.settings["loads"]), skip) if "loads" in run.settings else None
+    studied(run, page, scene, own)
+
+
 @case(
     "Main-bearing study: beam models against FE over hub-load histories",
     source="Stirling 2023, PhD thesis, chapter 3 (Figures 3.6 to 3.15, Table 3.1, Eq 3.1-3.19)",
@@ -144,11 +165,25 @@ def result_section(
 )
 def run(run: Run, page: Page) -> None:
     """Make or read the hub loads, solve both scenes, compare over all histories."""
+    other = general.general_scene(run, page, "bonded")
+    if other is not None:
+        over_loads(run, page, study.any_scene(run, "bonded"))
+        return
+    try:
+        given = loads.own_hub_loads(run)  # before the work: a fault in a file is reported at once
+    except loads.UnequalHistoriesError:
+        scene = study.any_scene(run, "bonded")
+        page.subject = scene.title
+        page.note(
+            "On the general beam, over all load steps by the time that each stands for: the "
+            "histories differ in length, and the closed forms are compared history by history."
+        )
+        over_loads(run, page, scene)
+        return
     spherical_scene = study.scene_of(run, page, "spherical")
     bonded_scene = study.scene_of(run, page, "bonded")
     pinned_beam = main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
     self_weight = reactions.has_self_weight(run)
-    given = loads.own_hub_loads(run)  # before the work: a fault in a file is reported at once
     with run.side_by_side(7) as jobs:
         solving = jobs.start(
             study.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import secants, shown, study
+from fe_drivetrain.cases.main_bearing import general, secants, shown, study
 from fe_drivetrain.cases.main_bearing.secants import FULL, LEAN, OF_FORM, QUANTITIES, SINGLE
 from fe_drivetrain.common import (
     FORCES,
@@ -140,6 +140,10 @@ def secant_traces(key: str, unit: Reacted) -> list[Any]:
 )
 def run(run: Run, page: Page) -> None:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
+    other = general.general_scene(run, page, "bonded", uniform=False)
+    if other is not None:
+        general.secant_page(run, page, other, *secants.hub_loads(run, EVERY))
+        return
     bonded = study.scene_of(run, page, "bonded", coarsen=False)
     spherical = study.scene_of(run, page, "spherical", coarsen=False)
     hub, what = secants.hub_loads(run, EVERY)

@@ -15,12 +15,12 @@ from fe_drivetrain.response import (
     Response,
     bearing_unit_stiffness,
     build_model,
+    cached_response,
     mesh_scene,
     tilt_stiffness,
-    unit_load_response,
     without_gearbox,
 )
-from fe_drivetrain.scene import Scene, change_scene, library_scene, read_scene
+from fe_drivetrain.scene import Scene, change_scene, coarser_scene, library_scene, read_scene
 from fe_drivetrain.solve import METHODS
 from fe_drivetrain.suite import Page, Run
 
@@ -80,25 +80,30 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
             f"that bearing made {after.interface}, not of the scene as it was given."
         )
     if run.quick and coarsen:
-        scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*QUICK)})
+        scene = coarser_scene(scene, *QUICK)
     return scene
 
 
-def given_scene(run: Run, kind: str) -> Scene:
-    """The user's scene, or the library's of a kind, with the user's changes; see `scene_of`."""
+def any_scene(run: Run, kind: str) -> Scene:
+    """The user's scene, or the library's of a kind, with the user's changes."""
     changes = {
         key: value
         for key, value in run.settings.items()
         if key.partition(".")[0] in Scene.model_fields
     }
     if "scene" in run.settings:
-        scene = read_scene(str(run.settings["scene"]), changes)
-    else:
-        scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
+        return read_scene(str(run.settings["scene"]), changes)
+    return change_scene(library_scene(f"main_bearing_{kind}"), changes)
+
+
+def given_scene(run: Run, kind: str) -> Scene:
+    """`any_scene`, refused where it has not exactly one bearing unit; see `scene_of`."""
+    scene = any_scene(run, kind)
     if len(scene.bearing_units) != 1:
         raise InputError(
             f"scene {scene.title!r} has {len(scene.bearing_units)} bearing units: the "
-            "main-bearing cases compare with closed forms for one; give a scene with one"
+            "main-bearing cases compare with closed forms for one; give a scene with one, or run "
+            "fe-drivetrain study, which takes any number"
         )
     return scene
 
@@ -147,7 +152,7 @@ def mesh_of(run: Run, scene: Scene, label: str) -> Meshed:
 
 
 def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None) -> Solved:
-    """Mesh, assemble and solve a scene, timing each step.
+    """Mesh, assemble and solve a scene, or take its solution from the cache, timing each step.
 
     The operators of the parts, by far the largest of what comes out, are not kept: what is solved
     side by side travels between processes.
@@ -162,8 +167,10 @@ def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None
         model = build_model(scene, mesh)
     for warning in model.warnings:
         run.report(f"warning: {label}: {warning}")
-    with run.step(f"solve 10 unit loads ({label})"):
-        response = unit_load_response(model, solver(run))
+    with run.step(f"solve 10 unit loads ({label})") as step:
+        response = cached_response(model, solver(run))
+        if response.kept:
+            step.name += ", from the cache"
     run.report(f"{label}: {response.diagnostics.method}, {response.diagnostics.reason}")
     return Solved(scene, replace(model, part_stiffness={}), response, mesh_quality)
 
@@ -219,13 +226,11 @@ def solve_tilt(run: Run, scene: Scene, label: str, meshed: Meshed) -> Tilt:
     return Tilt(by_plane, bearing_unit_stiffness(free.response, free.bearing), free)
 
 
-def solve_level(run: Run, scene: Scene, label: str) -> tuple[Solved, Tilt, float]:
-    """A scene solved with and without its gearbox, and the time that the first took [s]."""
+def solve_level(run: Run, scene: Scene, label: str) -> tuple[Solved, Tilt]:
+    """A scene solved with and without its gearbox."""
     meshed = mesh_of(run, scene, label)
-    before = sum(run.times.values())
     solved = solve_scene(run, scene, label, meshed)
-    seconds = sum(run.times.values()) - before
-    return solved, solve_tilt(run, scene, f"{label}, without gearbox", meshed), seconds
+    return solved, solve_tilt(run, scene, f"{label}, without gearbox", meshed)
 
 
 def spread(values: dict[str, float]) -> float:

@@ -26,10 +26,10 @@ from fe_drivetrain.common import Floats, Ints, run_python
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.mesh import element_kind, generate, is_straight
-from fe_drivetrain.operator import assemble, sparsity
+from fe_drivetrain.operator import assemble, kernels, sparsity
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import factorise, reduce
-from fe_drivetrain.suite import Page, Run, column
+from fe_drivetrain.suite import Page, Record, Run, column
 
 #: Mesh size of the hollow shaft of about 110 000 unknowns [m], and a small one.
 SIZE, QUICK_SIZE = 0.0515, 0.2
@@ -58,6 +58,9 @@ hierarchy = multigrid.build(system)
 multigrid.conjugate_gradients(system.K, np.ones((30, 2)), hierarchy.precondition, 1e-3)
 print(imported - start, assembled - imported, time.perf_counter() - assembled)
 """
+
+#: Columns that the stiffness is multiplied with at once.
+COLUMNS = (1, 4, 6, 8, 10, 12, 16, 24)
 
 _Made = TypeVar("_Made")
 
@@ -91,6 +94,8 @@ def run(run: Run, page: Page) -> None:
         F = np.zeros((n, 1))
         F[3 * mesh.face_nodes("shaft.front") + 2] = 1.0
         solved, solution = best(lambda: factorise(system).solve(F), 3)
+    with run.step("products"):
+        products = [product_time(ours, count) for count in COLUMNS]
     rows = []
     with run.step("other elements"):
         for n_nodes, cuts in CUTS.items():
@@ -156,6 +161,11 @@ def run(run: Run, page: Page) -> None:
         "points a direction",
         rows,
     )
+    page.table(
+        "Stiffness of the shaft times several columns at once, shortest of ten: part of a vector "
+        "takes longer than a whole one, so that the solver fills blocks up",
+        products,
+    )
     page.text(
         f"Compiling takes {in_words(first)} the first time that it is used on a machine, and is "
         f"kept on disk: {in_words(later)} from then on, of which most is loading. Both beside the "
@@ -171,6 +181,7 @@ def run(run: Run, page: Page) -> None:
         "straight_share": straight,
         "compile_seconds": first,
         "load_seconds": later,
+        "products": products,
     }.items():
         page.data(name, value)
 
@@ -183,6 +194,18 @@ def best(work: Callable[[], _Made], repetitions: int) -> tuple[float, _Made]:
         result = work()
         seconds.append(time.perf_counter() - start)
     return min(seconds), result
+
+
+def product_time(K: Any, columns: int) -> Record:
+    """Time of a product with so many columns; K as of `assemble`."""
+    X = np.random.default_rng(0).standard_normal((K.shape[0], columns))
+    zero, out = np.zeros_like(X), np.empty_like(X)
+    seconds, _ = best(lambda: kernels.residual(K.indptr, K.indices, K.data, X, zero, out), 10)
+    return {
+        "columns": columns,
+        "time [ms]": 1e3 * seconds,
+        "time a column [ms]": 1e3 * seconds / columns,
+    }
 
 
 def in_words(seconds: float | None) -> str:

@@ -42,7 +42,7 @@ def record(kind: str, solved: rigid_ended_shafts.Solved, exact: float, marks: in
 
 
 @case(
-    "Adaptive against uniform meshes: bending stiffness of a shaft with a sharp step",
+    "Adaptive and uniform refinement: bending stiffness of a shaft with a sharp step",
     source="Doerfler 1996, SIAM J. Numer. Anal. 33, 1106-1124; Zienkiewicz and Zhu 1992, Int. J. "
     "Numer. Meth. Eng. 33, 1331-1364; reference from the shaft's meridian",
 )

@@ -1,4 +1,4 @@
-"""Tension of a uniform shaft against EA / L, and what held ends add."""
+"""Tension of a uniform shaft against EA / L, and the effect of clamped ends."""
 
 from typing import NamedTuple
 
@@ -100,7 +100,7 @@ def held_solid(tube: Tube, refinement: int, layers: int) -> float:
 
 
 @case(
-    "Tension of a uniform shaft, and what held ends add",
+    "Tension of a uniform shaft, and the effect of clamped ends",
     source="Closed form E A / L with uniform stress",
 )
 def run(run: Run, page: Page) -> None:

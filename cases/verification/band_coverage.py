@@ -1,4 +1,4 @@
-"""How often the bands of condensed shafts hold: random shafts against much finer models."""
+"""Coverage of the bands of condensed shafts: random shafts against much finer models."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -89,7 +89,7 @@ def judged(run: Run, seed: int, with_solid: bool) -> list[Record]:
 
 
 @case(
-    "Coverage: how often the bands of a shaft's stiffness hold",
+    "Coverage of the uncertainty bands of a shaft's stiffness",
     source="meridians of higher order, finer and graded further; Babuska and Suri 1987, RAIRO "
     "Math. Model. Numer. Anal. 21, 199-238; Zienkiewicz and Zhu 1987, Int. J. Numer. Meth. Eng. "
     "24, 337-357",

@@ -6,13 +6,13 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import band_of, observed_order
-from fe_drivetrain.interfaces import held_dofs, held_nodes
+from fe_drivetrain.compare import observed_order
+from fe_drivetrain.interfaces import held_nodes
 from fe_drivetrain.mesh import FACES, Block, brick
-from fe_drivetrain.operator import traction_loads
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped
+from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block, supports
 from fe_drivetrain.validation.plane_rings import plane_strain
 from fe_drivetrain.validation.ring_solids import node_at
 
@@ -23,13 +23,8 @@ PLANE = plane_strain(E, NU)
 SHEAR, CURVATURE = 1e-3, 1e-3  # rad, 1/m
 FORCE = 1e6  # N/m, per width
 
-NAMES = {
-    4: "tetrahedra of 4 nodes",
-    10: "tetrahedra of 10 nodes",
-    8: "hexahedra of 8 nodes",
-    20: "hexahedra of 20 nodes",
-    27: "hexahedra of 27 nodes",
-}
+NAMES = {n: f"tetrahedra of {n} nodes" for n in (4, 10)}
+NAMES |= {n: f"hexahedra of {n} nodes" for n in (8, 20, 27)}
 SECOND_ORDER = (10, 20, 27)
 
 #: Elements through the height, by the nodes of an element; three times as many along the block.
@@ -43,6 +38,7 @@ EXACT = {
     * (LENGTH**3 / (6.0 * PLANE.E * HEIGHT**3 / 12.0) + 0.6 * LENGTH / (PLANE.G * HEIGHT)),
 }
 SOURCES = {"shear": "G gamma^2 V / 2", "bending": "E kappa^2 I L / 2 (Saint-Venant)"}
+FLEXURE = "Timoshenko and Goodier 1970, art 21: P^2 L^3/(6 E' I) + 3 P^2 L/(5 G A)"
 THROUGH, ENERGY, MISSED = (
     "elements through the height",
     "energy per width [J/m]",
@@ -91,43 +87,33 @@ def cantilever(nodes: int, n: int) -> float:
     """Strain energy per width under the exact tractions on both ends, in plane strain."""
     width = HEIGHT / n
     block = mesh(nodes, (3 * n, 1, n), width)
-    points, size = block.points, block.points.size
     top, bottom = (
-        node_at(points, [LENGTH, -0.5 * width, z]) for z in (0.5 * HEIGHT, -0.5 * HEIGHT)
+        node_at(block.points, [LENGTH, -0.5 * width, z]) for z in (0.5 * HEIGHT, -0.5 * HEIGHT)
     )
-    F = traction_loads(points, block.faces["x0"], stress)
-    F += traction_loads(points, block.faces["x1"], stress)
-    held = [
-        held_nodes("plane strain", np.arange(len(points)), [1], size),
-        held_dofs("support", np.array([3 * top, 3 * bottom, 3 * bottom + 2]), size),
-    ]
-    static = solve_solid(points, block.cells, IRON.lame, held, F)
-    return float(static.energy[0]) / width
+    flat = held_nodes("plane strain", np.arange(len(block.points)), [1], block.points.size)
+    held = supports(block, (top, "x"), (bottom, "xz"))
+    F = face_loads(block, x0=stress, x1=stress)
+    return solve_block(block, IRON, F, flat, held).energy / width
 
 
 @case(
-    "Block in shear, bending and as a cantilever: known energies",
+    "Block in shear, bending and as a cantilever: strain energies in closed form",
     source="Saint-Venant's bending; Timoshenko and Goodier 1970, Theory of Elasticity, art 21",
 )
 def run(run: Run, page: Page) -> None:
     """Energy of three fields with every element."""
-    fields = {"shear": sheared, "bending": bent}
     displaced: list[Record] = []
+    for nodes, name in NAMES.items():
+        displaced.append({"element": name})
+        for field, moved in (("shear", sheared), ("bending", bent)):
+            energy = run.timed("shear and bending", under_displacement, nodes, moved)
+            displaced[-1][f"{field}, energy over the exact one"] = energy / EXACT[field]
     rows: list[Record] = []
     for nodes, name in NAMES.items():
-        with run.step("shear and bending"):
-            over = {
-                f"{field}, energy over the exact one": under_displacement(nodes, moved)
-                / EXACT[field]
-                for field, moved in fields.items()
-            }
-            displaced.append({"element": name, **over})
-    for nodes, name in NAMES.items():
-        with run.step(f"cantilever, {name}"):
-            for n in DIVISIONS[nodes]:
-                energy = cantilever(nodes, n)
-                share = max(1.0 - energy / EXACT["cantilever"], 1e-12)
-                rows.append({"element": name, THROUGH: n, ENERGY: energy, MISSED: share})
+        for n in DIVISIONS[nodes]:
+            energy = run.timed(f"cantilever, {name}", cantilever, nodes, n)
+            share = max(1.0 - energy / EXACT["cantilever"], 1e-12)
+            rows.append({"element": name, THROUGH: n, ENERGY: energy, MISSED: share})
 
     for (nodes, name), row in zip(NAMES.items(), displaced, strict=True):
         for field, source in SOURCES.items():
@@ -140,12 +126,11 @@ def run(run: Run, page: Page) -> None:
                     source=source,
                 )
     for nodes, name in NAMES.items():
-        series = [row for row in rows if row["element"] == name]
+        series = MeshSeries([row for row in rows if row["element"] == name], THROUGH)
         order = 4.0 if nodes in SECOND_ORDER else 2.0
-        sizes, energies = 1.0 / np.array(DIVISIONS[nodes]), column(series, ENERGY)
         page.equals(
             f"cantilever, {name}: order of the strain energy",
-            observed_order(sizes, energies),
+            observed_order(1.0 / np.array(DIVISIONS[nodes]), column(series.rows, ENERGY)),
             order,
             within=0.3,
             relative=False,
@@ -155,18 +140,11 @@ def run(run: Run, page: Page) -> None:
             measure="order",
         )
         if nodes in SECOND_ORDER:
-            page.equals(
-                f"cantilever, {name}: strain energy per width",
-                energies[-1],
-                EXACT["cantilever"],
-                within=1e-4,
-                why="the stress is quadratic, of strains that are linear in an element (1/8)^2 is "
-                "missed, and in energy the square of that, 2e-4, times a small factor",
-                source="Timoshenko and Goodier 1970, art 21: P^2 L^3/(6 E' I) + 3 P^2 L/(5 G A)",
-                unit="J/m",
-                measure="energy",
-                band=band_of(sizes, energies, order),
-            )
+            why = "the stress is quadratic, of strains that are linear in an element (1/8)^2 is "
+            why += "missed, and in energy the square of that, 2e-4, times a small factor"
+            title = f"cantilever, {name}: strain energy per width"
+            exact = EXACT["cantilever"]
+            page.finest(series, Target(ENERGY, exact, 1e-4, why, FLEXURE, title, order=order))
     page.vanishes(
         "cantilever: meshes whose energy is above the exact one",
         sum(energy > EXACT["cantilever"] * (1.0 + 1e-9) for energy in column(rows, ENERGY)),

@@ -1,4 +1,4 @@
-"""The condensed stiffness of a body between two rigid ends: symmetric, six zero modes, no less."""
+"""Condensed stiffness of a body between two rigid ends: symmetric, with exactly six zero modes."""
 
 import numpy as np
 

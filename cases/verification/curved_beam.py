@@ -6,20 +6,15 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import band_of
-from fe_drivetrain.interfaces import Constraint, held_dofs
-from fe_drivetrain.operator import nodal_stresses, traction_loads
-from fe_drivetrain.report import Measure, trace
+from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import Static, solve_solid
-from fe_drivetrain.suite import Page, Run, column
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.validation.loaded_blocks import edge_nodes, face_loads, solve_block, supports
 from fe_drivetrain.validation.plane_rings import CurvedBar, plane_strain
 from fe_drivetrain.validation.ring_solids import (
-    Polar,
     node_at,
     on_plane,
     plane_strain_hold,
-    polar_stresses,
     polar_traction,
     ring_sector,
 )
@@ -29,101 +24,74 @@ BAR = CurvedBar(INNER, OUTER)
 MOMENT = 1e5  # N, per width
 FORCE = 1e6  # N/m, per width
 E, NU = 200e9, 0.3
-LAME = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0).lame
+STEEL = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
 QUARTER = 0.5 * np.pi
 
-#: Elements through the height.
-DIVISIONS = (4, 8, 16)
-QUICK_DIVISIONS = (3, 6, 12)
-
-INSIDE = "bending: hoop stress inside [MPa]"
-OUTSIDE = "bending: hoop stress outside [MPa]"
+THROUGH = "elements through the height"
+TURNED = "bending: rotation of the ends [mrad]"
+INSIDE, OUTSIDE = "bending: hoop stress inside [MPa]", "bending: hoop stress outside [MPa]"
 PULLED = "force: hoop stress inside, t = 90 deg [MPa]"
-MEASURES: dict[str, Measure] = {"mrad": "rotation", "J/m": "energy", "MPa": "stress"}
+ENERGIES = [f"{load}: strain energy per width [J/m]" for load in ("bending", "force")]
 
 
-def bending(r: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
-    """Radial, hoop and shear stress under end moments."""
-    return (*BAR.bending(r, MOMENT), np.zeros_like(r))
+def bent_hoop(r: Floats) -> Floats:
+    """Hoop stress under end moments [MPa]."""
+    return BAR.bending(r, MOMENT)[1] / 1e6
 
 
-def end_force(r: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
-    """Radial, hoop and shear stress under an end force."""
-    return BAR.end_force(r, t, FORCE)
+def pulled_hoop(r: Floats) -> Floats:
+    """Hoop stress under an end force, at t = 90 degrees [MPa]."""
+    return BAR.end_force(r, np.array(QUARTER), FORCE)[1] / 1e6
 
 
 #: Hoop stresses that are judged: along the radius [MPa], and where.
-HOOP: dict[str, tuple[Callable[[Floats], Floats], float]] = {
-    INSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, INNER),
-    OUTSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, OUTER),
-    PULLED: (
-        lambda r: BAR.end_force(r, np.array(QUARTER), FORCE)[1] / 1e6,
-        INNER,
-    ),
+HOOP = {INSIDE: (bent_hoop, INNER), OUTSIDE: (bent_hoop, OUTER), PULLED: (pulled_hoop, INNER)}
+
+PLANE = plane_strain(E, NU)
+ROTATION = abs(BAR.bending_rotation(MOMENT, PLANE) * QUARTER)  # rad
+#: The closed forms, in the order of the page.
+EXACT = {
+    TURNED: 1e3 * ROTATION,
+    ENERGIES[0]: 0.5 * MOMENT * ROTATION,
+    INSIDE: float(bent_hoop(np.array(INNER))),
+    OUTSIDE: float(bent_hoop(np.array(OUTER))),
+    ENERGIES[1]: BAR.end_force_energy(FORCE, QUARTER, PLANE),
+    PULLED: float(pulled_hoop(np.array(INNER))),
 }
 
 
-def solve(n: int) -> tuple[dict[str, float], tuple[Floats, Floats, Floats]]:
-    """Both loads on one mesh; radius, hoop and radial stress [m, Pa] of one end in bending."""
+def solve(n: int) -> Record:
+    """Both loads on one mesh; radius, hoop and radial stress [m, MPa] of one end in bending."""
     width = (OUTER - INNER) / n
-    block = ring_sector(INNER, OUTER, width, QUARTER, (n, 2 * n, 1))
-    points, size = block.points, block.points.size
+    bar = ring_sector(INNER, OUTER, width, QUARTER, (n, 2 * n, 1))
     here, there = (
-        [node_at(points, [0.0, r * np.cos(t), r * np.sin(t)]) for r in (INNER, OUTER)]
+        [node_at(bar.points, [0.0, r * np.cos(t), r * np.sin(t)]) for r in (INNER, OUTER)]
         for t in (0.0, QUARTER)
     )
-    middle = node_at(points, [0.0, *(0.5 * (INNER + OUTER) * np.array([np.cos(QUARTER), 1.0]))])
-    flat = plane_strain_hold(block)
+    middle = node_at(bar.points, [0.0, *(0.5 * (INNER + OUTER) * np.array([np.cos(QUARTER), 1.0]))])
+    flat = plane_strain_hold(bar)
 
-    def answer(
-        loaded: tuple[str, ...],
-        stresses: Callable[[Floats, Floats], tuple[Floats, Floats, Floats]],
-        held: list[Constraint],
-    ) -> tuple[Static, Polar]:
-        traction = polar_traction(stresses)
-        F = np.zeros(size)
-        for face in loaded:
-            F += traction_loads(points, block.faces[face], traction)
-        static = solve_solid(points, block.cells, LAME, [flat, *held], F)
-        s = nodal_stresses(points, block.cells, static.u[:, 0], LAME)
-        return static, polar_stresses(s, points)
-
-    # In bending, sections stay plane: that at t = 0 is held on its plane.
-    symmetric = on_plane("symmetry", block.face_nodes("y0"), [0.0, 0.0, 1.0], size)
-    still = held_dofs("translation", np.array([3 * here[0] + 1]), size)
-    moment, bent = answer(("y1",), bending, [symmetric, still])
-    u = moment.u[:, 0].reshape(-1, 3)
-    # Under the force they warp: both ends carry the exact tractions, and three degrees of freedom
-    # at t = 90 degrees hold the bar without force.
-    three = np.array([3 * middle + 1, 3 * middle + 2, 3 * there[1] + 1])
-    force, pulled = answer(("y0", "y1"), end_force, [held_dofs("support", three, size)])
-    end = np.flatnonzero(
-        (np.abs(points[:, 0]) < 1e-12) & (np.abs(points[:, 1]) < 1e-9) & (points[:, 2] > 0.0)
-    )
-    end = end[np.argsort(points[end, 2])]
+    # in bending, sections stay plane: that at t = 0 is held on its plane
+    bending = polar_traction(lambda r, t: (*BAR.bending(r, MOMENT), np.zeros_like(r)))
+    plane = on_plane("symmetry", bar.face_nodes("y0"), [0.0, 0.0, 1.0], bar.points.size)
+    still = supports(bar, (here[0], "y"))
+    bent = solve_block(bar, STEEL, face_loads(bar, y1=bending), flat, plane, still)
+    # under the force they warp: both ends carry the exact tractions, and three degrees of freedom
+    # at t = 90 degrees hold the bar without force
+    pull = polar_traction(lambda r, t: BAR.end_force(r, t, FORCE))
+    F = face_loads(bar, y0=pull, y1=pull)
+    pulled = solve_block(bar, STEEL, F, flat, supports(bar, (middle, "yz"), (there[1], "y")))
+    end = edge_nodes(bar, "y1", "z0", along=2)
+    turned = abs(bent.u[there[1], 1] - bent.u[there[0], 1]) / (OUTER - INNER)
     return {
-        "bending: rotation of the ends [mrad]": 1e3
-        * float(abs(u[there[1], 1] - u[there[0], 1]) / (OUTER - INNER)),
-        "bending: strain energy per width [J/m]": float(moment.energy[0]) / width,
-        INSIDE: float(bent.hoop[there[0]]) / 1e6,
-        OUTSIDE: float(bent.hoop[there[1]]) / 1e6,
-        "force: strain energy per width [J/m]": float(force.energy[0]) / width,
-        PULLED: float(pulled.hoop[there[0]]) / 1e6,
-    }, (points[end, 2], bent.hoop[end], bent.radial[end])
-
-
-def exact_values() -> dict[str, float]:
-    """The closed forms, in the order of the page."""
-    plane = plane_strain(E, NU)
-    rotation = BAR.bending_rotation(MOMENT, plane) * QUARTER
-    hoop = {name: float(field(np.array(r))) for name, (field, r) in HOOP.items()}
-    return {
-        "bending: rotation of the ends [mrad]": 1e3 * abs(rotation),
-        "bending: strain energy per width [J/m]": 0.5 * MOMENT * abs(rotation),
-        INSIDE: hoop[INSIDE],
-        OUTSIDE: hoop[OUTSIDE],
-        "force: strain energy per width [J/m]": BAR.end_force_energy(FORCE, QUARTER, plane),
-        PULLED: hoop[PULLED],
+        THROUGH: n,
+        TURNED: 1e3 * float(turned),
+        ENERGIES[0]: bent.energy / width,
+        INSIDE: float(bent.polar.hoop[there[0]]) / 1e6,
+        OUTSIDE: float(bent.polar.hoop[there[1]]) / 1e6,
+        ENERGIES[1]: pulled.energy / width,
+        PULLED: float(pulled.polar.hoop[there[0]]) / 1e6,
+        "end": (bar.points[end, 2], bent.polar.hoop[end] / 1e6, bent.polar.radial[end] / 1e6),
     }
 
 
@@ -134,75 +102,56 @@ def missed(field: Callable[[Floats], Floats], r: float, h: float) -> float:
     return float(abs(around[0] - 2.0 * around[1] + around[2]) / step**2 * h**2 / 12.0)
 
 
+def target(key: str, within: float, h: float) -> Target:
+    """One quantity, and what a finest mesh of elements of size h may miss of it."""
+    source = "Golovin 1881; Timoshenko and Goodier 1970, art "
+    source += "29 and 31" if key.startswith("bending") else "33"
+    if key not in HOOP:
+        why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
+        return Target(key, EXACT[key], within, why + "only there", source)
+    miss = missed(*HOOP[key], h)
+    why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the Gauss "
+    why += "points misses at a surface; the element's own error is of that size"
+    return Target(key, EXACT[key], 4.0 * miss, why, source, relative=False)
+
+
 @case(
     "Thick curved bar in bending and under an end force",
     source="Golovin 1881; Timoshenko and Goodier 1970, Theory of Elasticity, art 29 and 33",
 )
 def run(run: Run, page: Page) -> None:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
-    divisions = QUICK_DIVISIONS if run.quick else DIVISIONS
-    found = []
-    for n in divisions:
-        values, profile = run.timed(f"{n} elements through the height", solve, n)
-        found.append(values)
-    last, exact = found[-1], exact_values()
-    h = (OUTER - INNER) / divisions[-1]
-    for key, reference in exact.items():
-        name, unit = key.rstrip("]").split(" [")
-        within = 1e-3 if run.quick else 1e-4
-        why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
-        why += "only there"
-        if key in HOOP:
-            miss = missed(*HOOP[key], h)
-            within = 4.0 * miss
-            why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the "
-            why += "Gauss points misses at a surface; the element's own error is of that size"
-        page.equals(
-            name,
-            last[key],
-            reference,
-            within=within,
-            relative=key not in HOOP,
-            why=why,
-            source="Golovin 1881; Timoshenko and Goodier 1970, art "
-            + ("29 and 31" if name.startswith("bending") else "33"),
-            unit=unit,
-            measure=MEASURES[unit],
-            band=band_of(1.0 / np.array(divisions), column(found, key)),
-        )
+    divisions = (3, 6, 12) if run.quick else (4, 8, 16)
+    rows = [run.timed(f"{n} {THROUGH}", solve, n) for n in divisions]
+    series, last = MeshSeries(rows, THROUGH), rows[-1]
     r = np.linspace(INNER, OUTER, 80)
     radial, hoop = BAR.bending(r, MOMENT)
+    winkler = BAR.winkler(r, MOMENT)
     straight = -12.0 * MOMENT * (r - 0.5 * (INNER + OUTER)) / (OUTER - INNER) ** 3
-    winkler = float(BAR.winkler(np.array(INNER), MOMENT)) / 1e6
+    errors = [100 * (of[0] / 1e6 / EXACT[INSIDE] - 1) for of in (winkler, straight)]
     page.answer(
         f"A bar with b/a = {OUTER / INNER:g} carries {last[INSIDE]:.3f} MPa inside (exact "
-        f"{exact[INSIDE]:.3f}); the error of Winkler's hook is "
-        f"{100 * (winkler / exact[INSIDE] - 1):+.1f} %, that of a straight beam "
-        f"{100 * (straight[0] / 1e6 / exact[INSIDE] - 1):+.0f} %."
+        f"{EXACT[INSIDE]:.3f}); the error of Winkler's hook is {errors[0]:+.1f} %, that of a "
+        f"straight beam {errors[1]:+.0f} %."
     )
     page.section("Stress across the height, in bending")
+    at, *of_nodes = last["end"]
     page.chart(
         "Hoop and radial stress under end moments",
         [
             trace("hoop, exact", r, hoop / 1e6),
-            trace("hoop, Winkler", r, BAR.winkler(r, MOMENT) / 1e6),
+            trace("hoop, Winkler", r, winkler / 1e6),
             trace("hoop, straight beam", r, straight / 1e6),
             trace("radial, exact", r, radial / 1e6),
-            trace("hoop, nodes", profile[0], profile[1] / 1e6, points=True),
-            trace("radial, nodes", profile[0], profile[2] / 1e6, points=True),
+            trace("hoop, nodes", at, of_nodes[0], points=True),
+            trace("radial, nodes", at, of_nodes[1], points=True),
         ],
         "radius [m]",
         "stress [MPa]",
     )
-    page.table(
-        "By mesh: elements through the height",
-        [[key, *column(found, key), exact[key]] for key in exact],
-        ["quantity", *map(str, divisions), "exact"],
-    )
+    within, h = 1e-3 if run.quick else 1e-4, (OUTER - INNER) / divisions[-1]
+    page.targets("By mesh", series, [target(key, within, h) for key in EXACT], "exact")
     page.text(
         "Plane strain, hexahedra of 27 nodes, a quarter circle. The ends carry the exact "
         "tractions, so no clamp disturbs the stress."
     )
-    page.data("divisions", divisions)
-    page.data("values", found)
-    page.data("exact", exact)

@@ -1,4 +1,4 @@
-"""Shafts of tabled drivetrains: what geometry their stiffness implies."""
+"""Shafts of published gear tables: the geometry that their stiffness implies."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ STRESS = "rated shear stress at 1 m [MPa]"
 
 
 @case(
-    "Shafts of tabled drivetrains: implied geometry",
+    "Shafts of published gear tables: geometry implied by their stiffness",
     source="Al-Hamadani 2018, Eq 4.4 and 4.5, Tables 4.1-4.3",
 )
 def run(run: Run, page: Page) -> None:

@@ -1,4 +1,4 @@
-"""Energy in equals energy stored, part by part and spring by spring, gravity included."""
+"""Work of the loads equals the stored energy, by part and by spring, gravity included."""
 
 import numpy as np
 

@@ -19,7 +19,7 @@ DEGREE = 6
 
 
 @case(
-    "Shoulder fillet in curved tetrahedra and in the meridian",
+    "Shoulder fillet: curved solid tetrahedra against the meridian model",
     source="Meridian in harmonics 0 and 1; itself against Peterson's charts in fillet_*",
 )
 def run(run: Run, page: Page) -> None:

@@ -1,4 +1,4 @@
-"""Results do not know where the frame's origin is, nor how its axes are turned."""
+"""Results do not depend on the origin and the orientation of the coordinate frame."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -37,7 +37,7 @@ def check(page: Page, body: str, frame: str, found: dict[str, float]) -> list[Re
 
 
 @case(
-    "Reactions and stiffness do not depend on the frame's origin and rotation",
+    "Reactions and stiffness do not depend on the frame's origin and orientation",
     source="exact: invariance under rigid motions of the frame",
 )
 def run(run: Run, page: Page) -> None:

@@ -31,7 +31,7 @@ IRREGULAR = {
 
 
 @case(
-    "Grid convergence index: series of known order, and a published worked set",
+    "Grid convergence index: series of known order, and a published worked example",
     source="Roache 1994, J. Fluids Eng. 116, 405-413; Celik et al. 2008, J. Fluids Eng. 130, "
     "078001; ASME V&V 20-2009",
 )

@@ -1,4 +1,4 @@
-"""Two and three supports, rigid or on springs: the frame, Macaulay's beam, and the solid."""
+"""Two and three supports, rigid or on springs: frame, Macaulay's beam and solid."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -84,7 +84,7 @@ def meshed_tip(C: solid_shafts.Compliance) -> dict[str, tuple[float, float]]:
 
 
 @case(
-    "A shaft as two rigid links and a spherical joint: where the split must sit",
+    "Shaft as two rigid links with a rotational spring: position of the joint",
     source="Park et al. 2021, Front. Energy Res. 8:604414, Eq 13-16 and Table 2",
 )
 def run(run: Run, page: Page) -> None:

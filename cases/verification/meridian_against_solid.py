@@ -53,7 +53,7 @@ def limit_of(values: list[float], quick: bool) -> tuple[float, float, str]:
 
 
 @case(
-    "Meridian in harmonics against solids: stiffness between rigid ends",
+    "Stiffness between rigid ends: Fourier harmonics in the meridian against solids",
     source="Solids of 27-node hexahedra, with fillets of tetrahedra; two bounds of torsion "
     "(Michell 1899); equilibrium",
 )

@@ -1,4 +1,4 @@
-"""How the cases of manufactured solutions judge and show observed orders."""
+"""Checks and charts of observed orders, shared by the cases of manufactured solutions."""
 
 from collections.abc import Sequence
 

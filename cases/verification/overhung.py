@@ -1,13 +1,13 @@
-"""An overhung shaft on two supports, as a rotor's: closed forms, the frame, and the solid."""
+"""Overhung shaft on two supports, as of a rotor: closed forms, frame and solid."""
 
 import numpy as np
 
 from fe_drivetrain.beam import Beam, BeamSection, Support, pinned_reaction, solve
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
-from fe_drivetrain.report import Measure, trace
+from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import (
     Spring,
@@ -35,10 +35,9 @@ BEAM = Beam(
     material=STEEL,
 )
 #: What is judged at the hub: name, component of a section's motion and of the frame's, unit.
-MOTIONS: tuple[tuple[Measure, int, int, str], ...] = (
-    ("deflection", 0, 2, "m"),
-    ("rotation", 1, 4, "rad"),
-)
+MOTIONS = (("deflection", 0, 2, "m"), ("rotation", 1, 4, "rad"))
+SHEARED = "closed form with shear"
+BRACKETS = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001)"
 
 
 def closed_forms() -> dict[str, tuple[float, float]]:
@@ -80,6 +79,8 @@ def run(run: Run, page: Page) -> None:
     meshed, turn = solids(run, refinements)
     section = 2 * 4 * parabola_shortfall(turn)
     local = solid_shafts.local_compliance(TUBE)
+    evenly = f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
+    evenly += f"{solid_shafts.LOCAL:.0%} of what one diameter shears"
     rows: list[Record] = []
     traces = []
     for name, (force, moment) in LOADS.items():
@@ -87,7 +88,8 @@ def run(run: Run, page: Page) -> None:
         frame = run.timed("frame", solve, BEAM, 0.0, hub, STATIONS)
         bearing, gearbox = (frame.reaction(s) for s in ("bearing", "gearbox"))
         load = [(0.0, force, -moment)]
-        even = macaulay(LENGTH, TUBE.EI, evenly_loaded_shear(TUBE), SUPPORTS, load, [0.0])
+        at_hub = macaulay(LENGTH, TUBE.EI, evenly_loaded_shear(TUBE), SUPPORTS, load, [0.0])
+        even = float(at_hub.deflection[0]), -float(at_hub.slope[0])
         # what each support's local yielding would do to the hub
         lever = np.array([OVERHANG / SPAN, 1 + OVERHANG / SPAN])
         slack = (
@@ -99,28 +101,13 @@ def run(run: Run, page: Page) -> None:
             by_frame = float(frame.displacements[0, component])
             by_mesh = [float(s.motions[0, which]) for s in meshed[name]]
             band = solid_shafts.mesh_band(refinements, by_mesh)
-            page.equals(
-                f"{part} of the hub by a {name}, frame",
-                by_frame,
-                value,
-                within=1e-10,
-                why="the frame's sections are exact: round-off",
-                source="closed form with shear",
-                unit=unit,
-                measure=part,
-            )
-            page.equals(
-                f"{part} of the hub by a {name}, solid",
-                by_mesh[-1],
-                float((even.deflection, -even.slope)[which][0]),
-                within=float(section + slack[which] / abs(value)),
-                why=f"{turn} parabolic arcs round a turn; and loads that enter evenly over a "
-                f"section, {solid_shafts.LOCAL:.0%} of what one diameter shears",
-                source="Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001)",
-                unit=unit,
-                measure=part,
-                band=band,
-            )
+            title = f"{part} of the hub by a {name}"
+            exact, even_value = "the frame's sections are exact: round-off", even[which]
+            within = float(section + slack[which] / abs(value))
+            frame_target = Target(f"{title}, frame [{unit}]", value, 1e-10, exact, SHEARED)
+            solid_target = Target(f"{title}, solid [{unit}]", even_value, within, evenly, BRACKETS)
+            page.meets(by_frame, frame_target)
+            page.meets(by_mesh[-1], solid_target, band)
             rows.append(
                 {
                     "quantity": f"{part} by a {name}",

@@ -1,4 +1,4 @@
-"""Patch test of the interfaces: a constant stress passes through every one of them, or why not."""
+"""Patch test of the interfaces: each transmits a constant stress, or the page states why not."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Pure bending of a shaft: the exact solution in three dimensions, anticlastic curvature too."""
+"""Pure bending of a shaft: the exact three-dimensional solution, with anticlastic curvature."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from fe_drivetrain.operator import nodal_stresses, traction_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import (
     Tube,
@@ -27,9 +27,12 @@ E, NU = STEEL.youngs_modulus, STEEL.poisson_ratio
 OUTER, BORES, LENGTH = 0.4, (0.0, 0.28), 0.8  # m
 CURVATURE = 1e-3  # 1/m
 
-SHAFT, STIFFNESS, EXACT = "shaft", "M L / theta [N m^2]", "E I [N m^2]"
-ERROR, BAND = "largest error of a node", "band of M L / theta"
-SAG, SIDEWAYS, STRESS = "mean deflection [m]", "sideways displacement [m]", "stress at the top [Pa]"
+SHAFT, REFINEMENT, EXACT = "shaft", "refinement", "E I [N m^2]"
+STIFFNESS = "bending stiffness M L / theta [N m^2]"
+SAG = "mean deflection of the far end [m]"
+SIDEWAYS = "sideways displacement of the skin at mid length, at 45 degrees [m]"
+ERROR = "largest difference from the exact displacements, over the largest"
+STRESS = "stress at the top of the skin at mid length [Pa]"
 
 
 def traction(positions: Floats, normals: Floats) -> Floats:
@@ -65,6 +68,7 @@ def bent(run: Run, tube: Tube, refinement: int) -> Record:
     s = nodal_stresses(points, mesh.cells, found.u[:, 0], STEEL.lame)
     return {
         SHAFT: name,
+        REFINEMENT: refinement,
         "unknowns": mesh.n_unknowns,
         STIFFNESS: float(moment * LENGTH / slope),
         EXACT: tube.EI,
@@ -87,12 +91,12 @@ def run(run: Run, page: Page) -> None:
     """Linear tractions on both ends, on three meshes each."""
     refinements = (1, 2, 3) if run.quick else (2, 3, 4)
     rows: list[Record] = []
-    finest = []
     for bore in BORES:
         tube = Tube(OUTER, bore, LENGTH, STEEL)
         series = [bent(run, tube, refinement) for refinement in refinements]
-        finest.append(check(page, series, refinements))
+        check(page, series)
         rows += series
+    finest = [row for row in rows if row[REFINEMENT] == refinements[-1]]
     solid, bored = (abs(row[STIFFNESS] / row[EXACT] - 1) for row in finest)
     worst = max(column(finest, ERROR))
     page.answer(
@@ -119,17 +123,10 @@ def run(run: Run, page: Page) -> None:
         "angle from the neutral axis [degrees]",
         "u_y [micrometres]",
     )
-    page.chart(
-        "Largest difference from the exact displacements, over the largest",
-        [
-            trace(name, column(of, "unknowns"), column(of, ERROR), marker={"size": 8})
-            for name, of in grouped(rows, SHAFT)
-        ],
-        "unknowns",
-        "relative error",
-        ("x", "y"),
+    shown = SHAFT, "unknowns", STIFFNESS, EXACT, ERROR
+    page.sweep(
+        "Error of the displacements", rows, "unknowns", ERROR, by=SHAFT, log="xy", table=shown
     )
-    page.table("Finest mesh", finest, (SHAFT, "unknowns", STIFFNESS, EXACT, ERROR, BAND))
     page.text(
         "The field is quadratic, so elements of 27 nodes with straight sides would hold it; curved "
         "ones do not quite, and converge on it."
@@ -137,53 +134,29 @@ def run(run: Run, page: Page) -> None:
     page.data("largest_error", worst)
 
 
-def check(page: Page, series: list[Record], refinements: tuple[int, ...]) -> Record:
-    """Stiffness, deflections, field and stress of one shaft; its finest mesh."""
-    before, best = series[-2:]
+def check(page: Page, rows: list[Record]) -> None:
+    """Stiffness, deflections, field and stress of one shaft."""
+    series, (before, best) = MeshSeries(rows, REFINEMENT), rows[-2:]
     name, turn = best[SHAFT], best["per turn"]
     shortfall = 4 * parabola_shortfall(turn)
-    bands = {
-        quantity: solid_shafts.mesh_band(refinements, column(series, quantity))
-        for quantity in (STIFFNESS, SAG, SIDEWAYS)
-    }
-    page.equals(
-        f"{name}: bending stiffness M L / theta",
-        best[STIFFNESS],
-        best[EXACT],
-        within=2 * shortfall,
-        why=f"{turn} parabolic arcs round a turn: I is {shortfall:.2g} too low by their formula; "
-        "twice that is allowed",
-        source="closed form E I",
-        unit="N m^2",
-        measure="stiffness",
-        band=bands[STIFFNESS],
-    )
-    page.equals(
-        f"{name}: mean deflection of the far end",
-        best[SAG],
-        CURVATURE * LENGTH**2 / 2,
-        within=2 * shortfall,
-        why="as for the stiffness; the section's error enters only where the elements cannot "
-        "follow the anticlastic field",
-        source="k L^2 / 2: the tractions belong to a curvature, whatever the section",
-        unit="m",
-        measure="deflection",
-        band=bands[SAG],
-    )
-    page.equals(
-        f"{name}: sideways displacement of the skin at mid length, at 45 degrees",
-        best[SIDEWAYS],
-        best["exact " + SIDEWAYS],
-        within=2 * shortfall + anticlastic_error(turn),
-        why="as for the stiffness; and at a single node parabolas round the turn miss sin 2t by "
-        "8 h^3 / (72 sqrt 3), h their arc",
-        source="nu k y z: Timoshenko and Goodier, article 102",
-        unit="m",
-        measure="deflection",
-        band=bands[SIDEWAYS],
-    )
+    arcs = f"{turn} parabolic arcs round a turn: I is {shortfall:.2g} too low by their formula; "
+    arcs += "twice that is allowed"
+    follow = "as for the stiffness; the section's error enters only where the elements cannot "
+    follow += "follow the anticlastic field"
+    skin = "as for the stiffness; and at a single node parabolas round the turn miss sin 2t by "
+    skin += "8 h^3 / (72 sqrt 3), h their arc"
+    curvature = "k L^2 / 2: the tractions belong to a curvature, whatever the section"
+    anticlastic = "nu k y z: Timoshenko and Goodier, article 102"
+    sag, wide = CURVATURE * LENGTH**2 / 2, 2 * shortfall + anticlastic_error(turn)
+    for target in (
+        Target(STIFFNESS, best[EXACT], 2 * shortfall, arcs, "closed form E I"),
+        Target(SAG, sag, 2 * shortfall, follow, curvature),
+        Target(SIDEWAYS, best["exact " + SIDEWAYS], wide, skin, anticlastic),
+    ):
+        title = f"{name}: {target.key.split(' [')[0]}"
+        page.finest(series, target._replace(name=title, order=4.0))
     page.vanishes(
-        f"{name}: largest difference from the exact displacements, over the largest",
+        f"{name}: {ERROR}",
         best[ERROR],
         within=2 * shortfall,
         why="as for the stiffness, at the worst node",
@@ -192,7 +165,7 @@ def check(page: Page, series: list[Record], refinements: tuple[int, ...]) -> Rec
         band=abs(best[ERROR] - before[ERROR]),
     )
     page.equals(
-        f"{name}: stress at the top of the skin at mid length",
+        f"{name}: {STRESS.split(' [')[0]}",
         best[STRESS],
         -E * CURVATURE * OUTER / 2,
         within=recovery_error(turn),
@@ -203,4 +176,3 @@ def check(page: Page, series: list[Record], refinements: tuple[int, ...]) -> Rec
         measure="stress",
         band=abs(best[STRESS] - before[STRESS]),
     )
-    return {**best, BAND: bands[STIFFNESS]}

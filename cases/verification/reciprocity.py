@@ -1,4 +1,4 @@
-"""Maxwell-Betti: a unit load does the same work on another's displacements as that on its own."""
+"""Maxwell-Betti reciprocity: the mutual work of any two unit loads is equal."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Rigid motions stress nothing: curved meshes of every element, and the main bearing's housing."""
+"""Rigid-body motions cause no stress: curved meshes of every element, and a bearing housing."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.response import Model, Response, build_model, mesh_scene, unit_load_response
+from fe_drivetrain.response import Model, Response, build_model, cached_response, mesh_scene
 from fe_drivetrain.scene import Scene, library_scene
 from fe_drivetrain.suite import Run
 
@@ -28,9 +28,12 @@ def meshed(run: Run, kind: str, factor: float | None = None) -> tuple[Scene, Mes
 def solved(run: Run, kind: str) -> tuple[Model, Response]:
     """One of the scenes with its response to unit loads."""
     scene, mesh = meshed(run, kind)
-    with run.step(f"assembly and solve ({kind})"):
+    with run.step(f"assembly and solve ({kind})") as step:
         model = build_model(scene, mesh)
-        return model, unit_load_response(model)
+        response = cached_response(model)
+        if response.kept:
+            step.name += ", from the cache"
+    return model, response
 
 
 def work(model: Model, response: Response) -> Floats:

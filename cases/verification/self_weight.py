@@ -1,4 +1,4 @@
-"""Sag of an overhung shaft under its own weight, to the order that a beam can predict."""
+"""Sag of an overhung shaft under its own weight: solid against beams with shear."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.suite import Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, parabola_shortfall
 
@@ -87,66 +87,27 @@ def run(run: Run, page: Page) -> None:
     turn = best["per turn"]
     section = 2 * 2 * parabola_shortfall(turn)
     local = abs(Q) * LENGTH * solid_shafts.local_compliance(TUBE)
-    arcs = (
-        f"{turn} parabolic arcs round a turn: weight over I is wrong by twice the radius's "
-        "shortfall, twice that is allowed"
-    )
+    arcs = f"{turn} parabolic arcs round a turn: weight over I is wrong by twice the radius's "
+    arcs += "shortfall, twice that is allowed"
+    evenly = f"{arcs}; and the root's reaction enters evenly, {solid_shafts.LOCAL:.0%} of what one "
+    evenly += "diameter shears"
+    area = f"{turn} parabolic arcs round a turn: twice the area's shortfall"
     exact = "the frame's sections are exact: round-off"
-    page.equals(
-        "sag of the tip, frame",
-        of_frame,
-        closed,
-        within=1e-10,
-        why=exact,
-        source="q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966",
-        unit="m",
-        measure="deflection",
-    )
-    page.equals(
-        "sag of the tip, solid",
-        of_solid,
-        even,
-        within=section + local / abs(closed),
-        why=f"{arcs}; and the root's reaction enters evenly, {solid_shafts.LOCAL:.0%} of what one "
-        "diameter shears",
-        source="q L^4 / 8EI + q L^2 / 2k'GA, k' of evenly loaded sections (Hutchinson 2001, as "
-        "quoted by Stephen 2001; derived again)",
-        unit="m",
-        measure="deflection",
-        band=bands["sag [m]"],
-    )
-    page.equals(
-        "rotation of the tip, solid",
-        turned,
-        ROTATION,
-        within=section,
-        why=arcs,
-        source="q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending",
-        unit="rad",
-        measure="rotation",
-        band=bands["rotation [rad]"],
-    )
-    page.equals(
-        "rotation of the tip, frame",
-        frame_turned,
-        ROTATION,
-        within=1e-10,
-        why=exact,
-        source="q L^3 / 6EI",
-        unit="rad",
-        measure="rotation",
-    )
-    page.equals(
-        "mass",
-        best["mass [kg]"],
-        STEEL.density * TUBE.area * LENGTH,
-        within=section,
-        why=f"{turn} parabolic arcs round a turn: twice the area's shortfall",
-        source="density times volume",
-        unit="kg",
-        measure="mass",
-        band=bands["mass [kg]"],
-    )
+    cowper = "q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966"
+    hutchinson = "q L^4 / 8EI + q L^2 / 2k'GA, k' of evenly loaded sections (Hutchinson 2001, as "
+    hutchinson += "quoted by Stephen 2001; derived again)"
+    reciprocal = "q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending"
+    weight, within = STEEL.density * TUBE.area * LENGTH, section + local / abs(closed)
+    page.meets(of_frame, Target("sag of the tip, frame [m]", closed, 1e-10, exact, cowper))
+    sag_target = Target("sag of the tip, solid [m]", even, within, evenly, hutchinson)
+    page.meets(of_solid, sag_target, bands["sag [m]"])
+    tip = "rotation of the tip"
+    rotation_target = Target(f"{tip}, solid [rad]", ROTATION, section, arcs, reciprocal)
+    page.meets(turned, rotation_target, bands["rotation [rad]"])
+    by_frame = Target(f"{tip}, frame [rad]", ROTATION, 1e-10, exact, "q L^3 / 6EI")
+    page.meets(frame_turned, by_frame)
+    mass_target = Target("mass [kg]", weight, section, area, "density times volume")
+    page.meets(best["mass [kg]"], mass_target, bands["mass [kg]"])
     over_cowper, over_even = of_solid / closed - 1, of_solid / even - 1
     page.answer(
         f"An overhang of {RATIO:g} diameters sags {-1e3 * of_solid:.4f} mm; by Timoshenko's beam "

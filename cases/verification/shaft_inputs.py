@@ -1,4 +1,4 @@
-"""Tables of what the cases of shafts start from."""
+"""Tables of inputs, shared by the cases of shafts."""
 
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page

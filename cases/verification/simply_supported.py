@@ -1,4 +1,4 @@
-"""A shaft on two simple supports: closed forms, the frame, and the solid."""
+"""Shaft on two simple supports: closed forms, frame and solid."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_row
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import (
     Spring,
@@ -174,29 +174,15 @@ def check(
     even = float(macaulay_deflection(name, evenly_loaded_shear(TUBE), LENGTH / 2)[0])
     by_mesh = [float(s.motions[MIDDLE, 0]) for s in solids]
     band = solid_shafts.mesh_band(refinements, by_mesh)
-    page.equals(
-        f"{name}: deflection at mid span, frame",
-        of_frame,
-        closed,
-        within=1e-10,
-        why="the frame's sections are exact: round-off",
-        source="closed form with shear",
-        unit="m",
-        measure="deflection",
-    )
-    page.equals(
-        f"{name}: deflection at mid span, solid",
-        by_mesh[-1],
-        even,
-        within=section + slack / abs(closed),
-        why=f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
-        f"{solid_shafts.LOCAL:.0%} of what one diameter shears",
-        source="Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, "
-        "as quoted by Stephen 2001; derived again)",
-        unit="m",
-        measure="deflection",
-        band=band,
-    )
+    title, within = f"{name}: deflection at mid span", section + slack / abs(closed)
+    exact = "the frame's sections are exact: round-off"
+    evenly = f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
+    evenly += f"{solid_shafts.LOCAL:.0%} of what one diameter shears"
+    brackets = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, as "
+    brackets += "quoted by Stephen 2001; derived again)"
+    sheared = "closed form with shear"
+    page.meets(of_frame, Target(f"{title}, frame [m]", closed, 1e-10, exact, sheared))
+    page.meets(by_mesh[-1], Target(f"{title}, solid [m]", even, within, evenly, brackets), band)
     reactions = [float(s.reactions[-1, 0]) for s in solids]
     of_mesh = name == OWN
     page.equals(

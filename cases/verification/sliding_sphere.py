@@ -1,4 +1,4 @@
-"""The spherical joint between two elastic shells, against the exact answer of each of its forms."""
+"""Spherical joint between two elastic shells, each of its forms against the exact solution."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What a spherical joint of a main bearing carries: forces through its centre, and nothing else."""
+"""Spherical joint of a main bearing: forces through its centre, and no moment about it."""
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from fe_drivetrain.response import (
     Model,
     Response,
     build_model,
+    cached_response,
     mesh_scene,
-    unit_load_response,
 )
 from fe_drivetrain.scene import Scene, change_scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run, column
@@ -87,7 +87,7 @@ def run(run: Run, page: Page) -> None:
         with run.step(f"ten unit loads ({form})"):
             model = build_model(scene, meshes[bonded])
             # a direct solver: nothing but round-off is to be seen
-            response = unit_load_response(model, "superlu")
+            response = cached_response(model, "superlu")
         joint = response.reactions[f"{scene.bearing_units[0].bearing.name}.outer"]
         moments[form] = np.linalg.norm(joint[3:], axis=0)
         if bonded:

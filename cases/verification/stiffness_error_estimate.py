@@ -1,4 +1,4 @@
-"""The error of a stiffness, estimated from one mesh, against the error that it has."""
+"""Error of a stiffness estimated from one mesh, against its true error."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Second-order tetrahedra with straight sides on round surfaces: the order that they lose."""
+"""Straight-sided second-order tetrahedra on curved surfaces: the loss of order."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A square bar cut by a plane tie of meshes that do not match: twisted, bent and loaded across."""
+"""Square bar cut by a plane tie of meshes that do not match: torsion, bending and shear."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -94,7 +94,7 @@ def solved(run: Run) -> Found:
 
 
 @case(
-    "A bar cut in two and tied: stiffness against mesh ratio",
+    "Tied bar with meshes that do not match: stiffness by mesh ratio",
     source="St Venant's torsion and bending of a square bar; the whole bar",
 )
 def run(run: Run, page: Page) -> None:

@@ -1,4 +1,4 @@
-"""Two rings, one in the other, meshed apart and tied on the cylinder between them."""
+"""Two concentric rings, meshed separately and tied on the cylinder between them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

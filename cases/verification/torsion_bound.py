@@ -1,4 +1,4 @@
-"""What the cases of torsion between two bounds from the meridian share."""
+"""Checks shared by the torsion cases with two bounds from the meridian."""
 
 from fe_drivetrain.suite import Page
 from fe_drivetrain.validation.torsion_meridian import Bounds

@@ -9,7 +9,7 @@ from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.suite import Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import michell_torque, parabola_shortfall
 from fe_drivetrain.validation.torsion_meridian import torsion_bounds
@@ -97,18 +97,12 @@ def run(run: Run, page: Page) -> None:
     before, best = meshes[-2:]
     shortfall = 4 * parabola_shortfall(best["per turn"])
     torques, rigid = column(meshes, "torque [N m]"), column(meshes, "rigid ends [N m/rad]")
-    page.equals(
-        "torque of Michell's displacements on the ends",
-        torques[-1],
-        TORQUE,
-        within=3 * shortfall,
-        why=f"{best['per turn']} parabolic arcs round a turn: J is {shortfall:.2g} too low, and "
-        "three times that is allowed, since the elements do not contain this field",
-        source="Michell 1899: 2 pi G (2 - 3 cos a + cos^3 a) for u_t = -r / R^3",
-        unit="N m",
-        measure="stiffness",
-        band=solid_shafts.mesh_band(refinements, torques),
-    )
+    arcs = f"{best['per turn']} parabolic arcs round a turn: J is {shortfall:.2g} too low, and "
+    arcs += "three times that is allowed, since the elements do not contain this field"
+    michell = "Michell 1899: 2 pi G (2 - 3 cos a + cos^3 a) for u_t = -r / R^3"
+    title = "torque of Michell's displacements on the ends [N m]"
+    target = Target(title, TORQUE, 3 * shortfall, arcs, michell, measure="stiffness")
+    page.meets(torques[-1], target, solid_shafts.mesh_band(refinements, torques))
     page.vanishes(
         "largest difference from Michell's displacements, relative to the largest",
         best["error"],
@@ -119,17 +113,10 @@ def run(run: Run, page: Page) -> None:
         band=abs(best["error"] - before["error"]),
     )
     by_rigid = solid_shafts.mesh_band(refinements, rigid)
-    page.equals(
-        "stiffness between rigid flat ends",
-        rigid[-1],
-        bounds.middle,
-        within=3 * shortfall + bounds.half_width / bounds.middle,
-        why="as for the torque, and the bounds' own width",
-        source=BOUNDS,
-        unit="N m/rad",
-        measure="stiffness",
-        band=by_rigid,
-    )
+    title, within = "stiffness between rigid flat ends [N m/rad]", 3 * shortfall
+    within += bounds.half_width / bounds.middle
+    why = "as for the torque, and the bounds' own width"
+    page.meets(rigid[-1], Target(title, bounds.middle, within, why, BOUNDS), by_rigid)
     simple = elementary(HALF_ANGLE)
     check_plane_sections(
         page, "excess of the upper bound over 1 / integral of dx / GJ", bounds, simple

@@ -1,4 +1,4 @@
-"""Torsion of a stepped shaft: the series sum of L / GJ, and what the step adds to it."""
+"""Torsion of a stepped shaft: the series sum of L / GJ, and the flexibility of the step."""
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
@@ -112,7 +112,7 @@ def over_ratio(run: Run, ratio: float) -> Record:
 
 
 @case(
-    "Torsion of a stepped shaft: the series sum and what the step adds",
+    "Torsion of a stepped shaft: series stiffness and flexibility of the step",
     source="Closed form: sum of L / GJ, a bound; exact stiffness between two bounds from the "
     "meridian (Michell 1899; Timoshenko and Goodier, article 119)",
 )

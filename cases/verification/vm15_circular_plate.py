@@ -5,13 +5,10 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.units import INCH, PSI
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import band_of
-from fe_drivetrain.interfaces import held_dofs
-from fe_drivetrain.operator import nodal_stresses, pressure, traction_loads
-from fe_drivetrain.report import trace
+from fe_drivetrain.operator import pressure
 from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
+from fe_drivetrain.validation.loaded_blocks import edge_nodes, face_loads, solve_block, supports
 from fe_drivetrain.validation.quarter_disc import quarter_disc
 from fe_drivetrain.validation.ring_solids import node_at
 
@@ -21,63 +18,49 @@ STEEL = Material(youngs_modulus=30e6 * PSI, poisson_ratio=0.3, density=0.0)
 NU = STEEL.poisson_ratio
 PRESSURES = {"clamped": 6.0 * PSI, "simply supported": 1.5 * PSI}
 
-#: The manual's targets: deflection of the middle, greatest stress.
+COUNT = "elements from the middle to the edge"
+DEFLECTION, STRESS = "deflection of the middle [mm]", "greatest stress [MPa]"
+#: The manual's targets: deflection of the middle [mm], greatest stress [MPa].
 TARGETS = {
-    "clamped": (0.08736 * INCH, 7200.0 * PSI),
-    "simply supported": (0.08904 * INCH, 2970.0 * PSI),
+    "clamped": (1e3 * (0.08736 * INCH), 7200.0 * PSI / 1e6),
+    "simply supported": (1e3 * (0.08904 * INCH), 2970.0 * PSI / 1e6),
 }
 MANUAL = "Ansys Mechanical APDL verification manual, VM15, target as in PyMAPDL's example"
-
-#: Half of the elements from the middle to the edge.
-DIVISIONS = (3, 6, 12)
-QUICK_DIVISIONS = (2, 4, 8)
-LAYERS = 2
-
-SUPPORT, HALF = "support", "half of the elements from middle to edge"
-DEFLECTION, STRESS = "deflection [m]", "greatest stress [Pa]"
+PLATES = "Timoshenko and Woinowsky-Krieger 1959, art 16, and Reissner's shear"
 
 
 def edge_shear(x: Floats, normal: Floats) -> Floats:
     """Of a pressure of 1: the parabola through the thickness that carries p r / 2 a length."""
     along = (x[:, 0] - MIDDLE) / MIDDLE
-    shear = -1.5 * (0.5 * RADIUS / THICKNESS) * (1.0 - along**2)
-    return np.column_stack([shear, np.zeros_like(shear), np.zeros_like(shear)])
+    return -1.5 * (0.5 * RADIUS / THICKNESS) * (1.0 - along**2)[:, None] * [1.0, 0.0, 0.0]
 
 
-def solve(n: int) -> tuple[list[Record], dict[str, Floats]]:
-    """Both plates on one mesh; by support radius and radial stress at the stretched face."""
-    block = quarter_disc(RADIUS, THICKNESS, n, LAYERS)
-    points, cells = block.points, block.cells
-    rim = block.face_nodes("rim")
-    pressed = traction_loads(points, block.faces["front"], pressure(1.0))
-    carried = traction_loads(points, block.faces["rim"], edge_shear)
+def solve(count: int) -> dict[str, Record]:
+    """Both plates on one mesh, two elements thick."""
+    disc = quarter_disc(RADIUS, THICKNESS, count // 2, 2)
+    pressed = face_loads(disc, front=pressure(1.0))
+    carried = face_loads(disc, rim=edge_shear)
     # the edge carries what presses, to round-off, so that the point which holds does not
     carried *= -pressed[::3].sum() / carried[::3].sum()
-    centre = node_at(points, [MIDDLE, 0.0, 0.0])
-    edge = node_at(points, [MIDDLE, RADIUS, 0.0])
-    symmetry = [3 * block.face_nodes("y") + 1, 3 * block.face_nodes("z") + 2, np.array([3 * edge])]
-    holds = {
+    edge = node_at(disc.points, [MIDDLE, RADIUS, 0.0])
+    held = {
         # no rotation of the edge, which is free to swell through its thickness
-        "clamped": np.unique(np.concatenate([*symmetry, 3 * rim + 1, 3 * rim + 2])),
-        "simply supported": np.unique(np.concatenate(symmetry)),
+        "clamped": supports(disc, (edge, "x"), y="y", z="z", rim="yz"),
+        "simply supported": supports(disc, (edge, "x"), y="y", z="z"),
     }
-    line = np.intersect1d(block.face_nodes("z"), block.face_nodes("rear"))
-    line = line[np.argsort(points[line, 1])]
-    rows, profiles = [], {}
-    for support, p in PRESSURES.items():
-        held = [held_dofs(support, holds[support], points.size)]
-        u = solve_solid(points, cells, STEEL.lame, held, p * (pressed + carried)).u[:, 0]
-        s = nodal_stresses(points, cells, u, STEEL.lame)[line, 1]
-        rows.append(
-            {
-                SUPPORT: support,
-                HALF: n,
-                DEFLECTION: float(u[3 * centre] - u[3 * edge]),
-                STRESS: float(np.abs(s).max()),
-            }
-        )
-        profiles[support] = np.array([points[line, 1], s])
-    return rows, profiles
+    line = edge_nodes(disc, "z", "rear", along=1)
+    found = {
+        name: solve_block(disc, STEEL, p * (pressed + carried), held[name])
+        for name, p in PRESSURES.items()
+    }
+    return {
+        name: {
+            COUNT: count,
+            DEFLECTION: 1e3 * float(of.u[of.node(MIDDLE, 0.0, 0.0), 0] - of.u[edge, 0]),
+            STRESS: float(np.abs(of.stress[line, 1]).max()) / 1e6,
+        }
+        for name, of in found.items()
+    }
 
 
 def thin_plate(support: str) -> tuple[float, float]:
@@ -91,11 +74,25 @@ def thin_plate(support: str) -> tuple[float, float]:
     return thin, p * RADIUS**2 / (4.0 * (5.0 / 6.0) * STEEL.shear_modulus * THICKNESS)
 
 
-def thin_stress(support: str, r: Floats) -> Floats:
-    """Radial stress of the stretched face of a thin plate [Pa]."""
-    edge = (1.0 + NU) if support == "clamped" else (3.0 + NU)
-    moment = PRESSURES[support] * (edge * RADIUS**2 - (3.0 + NU) * r**2) / 16.0
-    return np.asarray(6.0 / THICKNESS**2 * moment)
+def targets(support: str) -> list[Target]:
+    """What the manual and plate theory say of one plate."""
+    thin, shear = thin_plate(support)
+    deflection, stress = TARGETS[support]
+    no_shear = f"a thin plate has no shear, which is {100 * shear / thin:.2f} % here"
+    reissner = "what Reissner's plate leaves out is of the order of (t/r)^2 = 6e-4"
+    sunk = f"{support}: deflection of the middle"
+    if support == "clamped":
+        where, within = "edge", 0.03
+        why = "along a clamped edge plate theory is right to the order of t/r = 2.5 %"
+    else:
+        where, within = "middle", 5e-3
+        why = "away from the edge a plate's bending stress is right to (t/r)^2 = 6e-4; the rest "
+        why += "is for recovered stress"
+    return [
+        Target(DEFLECTION, deflection, 5e-3, no_shear, MANUAL, f"{sunk}, thin plate"),
+        Target(DEFLECTION, 1e3 * (thin + shear), 1e-3, reissner, PLATES, f"{sunk}, with shear"),
+        Target(STRESS, stress, within, why, MANUAL, f"{support}: greatest stress, at the {where}"),
+    ]
 
 
 @case(
@@ -105,107 +102,23 @@ def thin_stress(support: str, r: Floats) -> Floats:
 )
 def run(run: Run, page: Page) -> None:
     """Solve both plates as solids, their edges carried by the shear that plate theory has there."""
-    levels = QUICK_DIVISIONS if run.quick else DIVISIONS
-    rows: list[Record] = []
-    for n in levels:
-        found, profiles = run.timed(f"{2 * n} elements from the middle to the edge", solve, n)
-        rows += found
-    by_support = dict(grouped(rows, SUPPORT))
-    for support, series in by_support.items():
-        check(page, support, series)
-    sunk = {support: series[-1][DEFLECTION] / INCH for support, series in by_support.items()}
-    shear = {support: 100 * part / thin for support in sunk for thin, part in [thin_plate(support)]}
+    counts = (4, 8, 16) if run.quick else (6, 12, 24)
+    found = [run.timed(f"{n} {COUNT}", solve, n) for n in counts]
+    series = {name: MeshSeries(column(found, name), COUNT) for name in PRESSURES}
+    sunk = {name: 1e-3 * of.rows[-1][DEFLECTION] / INCH for name, of in series.items()}
+    parts = {name: 100 * shear / thin for name in sunk for thin, shear in [thin_plate(name)]}
     page.answer(
         f"The clamped plate sinks by {sunk['clamped']:.5f} in (thin plate 0.08736), the simply "
         f"supported one by {sunk['simply supported']:.5f} in (0.08904); shear accounts for "
-        f"{shear['clamped']:.2f} % and {shear['simply supported']:.2f} %."
+        f"{parts['clamped']:.2f} % and {parts['simply supported']:.2f} %."
     )
     page.section("Stress and deflection")
-    r = np.linspace(0.0, RADIUS, 80)
-    page.chart(
-        "Radial stress of the stretched face",
-        [trace(f"{support}, thin plate", r, thin_stress(support, r) / 1e6) for support in PRESSURES]
-        + [
-            trace(f"{support}, finest mesh", x, s / 1e6, points=True)
-            for support, (x, s) in profiles.items()
-        ],
-        "distance from the middle [m]",
-        "radial stress [MPa]",
-    )
-    page.table(
-        "By mesh, in the manual's units",
-        [
-            {
-                SUPPORT: support,
-                "quantity": quantity,
-                **{f"{2 * row[HALF]} elements": row[key] / unit for row in series},
-                "target": target / unit,
-            }
-            for support, series in by_support.items()
-            for key, quantity, unit, target in zip(
-                (DEFLECTION, STRESS),
-                ("deflection [in]", "greatest stress [psi]"),
-                (INCH, PSI),
-                TARGETS[support],
-                strict=True,
-            )
-        ],
-    )
+    for support, of in series.items():
+        page.targets(f"Plate with a {support} edge", of, targets(support))
     page.text(
         "A quarter of hexahedra of 27 nodes, two through the thickness. A plate's supports are not "
         "a solid's: the edge is carried by the parabolic shear stress that plate theory has there, "
         "and the clamped one is besides kept from moving radially and round, but not from "
         "swelling; so no edge is singular. The manual's second load, a point force, has no finite "
         "deflection in a solid, and is left out."
-    )
-    page.data("by mesh", rows)
-
-
-def check(page: Page, support: str, series: list[Record]) -> None:
-    """Deflection of the middle and greatest stress of one plate."""
-    sizes = 1.0 / np.array(column(series, HALF))
-    deflection, stress = TARGETS[support]
-    thin, shear = thin_plate(support)
-    sunk = column(series, DEFLECTION)
-    for name, reference, tolerance, source, reason in (
-        (
-            "thin plate",
-            deflection,
-            5e-3,
-            MANUAL,
-            f"a thin plate has no shear, which is {100 * shear / thin:.2f} % here",
-        ),
-        (
-            "with shear",
-            thin + shear,
-            1e-3,
-            "Timoshenko and Woinowsky-Krieger 1959, art 16, and Reissner's shear",
-            "what Reissner's plate leaves out is of the order of (t/r)^2 = 6e-4",
-        ),
-    ):
-        page.equals(
-            f"{support}: deflection of the middle, {name}",
-            1e3 * sunk[-1],
-            1e3 * reference,
-            within=tolerance,
-            why=reason,
-            source=source,
-            unit="mm",
-            measure="deflection",
-            band=1e3 * band_of(sizes, sunk),
-        )
-    clamped = support == "clamped"
-    page.equals(
-        f"{support}: greatest stress, at the {'edge' if clamped else 'middle'}",
-        series[-1][STRESS] / 1e6,
-        stress / 1e6,
-        within=0.03 if clamped else 5e-3,
-        why="along a clamped edge plate theory is right to the order of t/r = 2.5 %"
-        if clamped
-        else "away from the edge a plate's bending stress is right to (t/r)^2 = 6e-4; the rest is "
-        "for recovered stress",
-        source=MANUAL,
-        unit="MPa",
-        measure="stress",
-        band=band_of(sizes, column(series, STRESS)) / 1e6,
     )

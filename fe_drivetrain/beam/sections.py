@@ -8,6 +8,7 @@ shape functions, that integral is exact for a cone too, so one element does for 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -204,9 +205,14 @@ def element_integrals(
     return result
 
 
+@cache
+def _gauss(points: int) -> tuple[Floats, Floats]:
+    return np.polynomial.legendre.leggauss(points)
+
+
 def gauss_points(begin: float, end: float, points: int) -> tuple[Floats, Floats]:
     """Places (points,) of Gauss quadrature from `begin` to `end`, and their weights [m]."""
-    abscissa, weight = np.polynomial.legendre.leggauss(points)
+    abscissa, weight = _gauss(points)
     return begin + (end - begin) * (abscissa + 1.0) / 2.0, weight * (end - begin) / 2.0
 
 
@@ -250,7 +256,7 @@ def _integrate(
     carried = wrench_transport(along_x(end - s))
 
     # The weight to the right of s. Three points are exact: mass is at most a quadratic, times arm.
-    inner_abscissa, inner_weight = np.polynomial.legendre.leggauss(3)
+    inner_abscissa, inner_weight = _gauss(3)
     left = np.append(s, begin)[:, None]
     t = left + (end - left) * (inner_abscissa + 1.0) / 2.0
     _, mass = _properties(section, material, shear, t.ravel())

@@ -41,6 +41,7 @@ def ladder(advice: Advice) -> Section:
                 _percent(advice.step(number)),
                 _percent(result.estimate),
                 result.seconds,
+                result.waited,
                 advice.top.seconds / result.seconds,
                 "chosen" if number == advice.chosen else "",
                 "; ".join(model.neglects) or "nothing in this scene",
@@ -56,7 +57,8 @@ def ladder(advice: Advice) -> Section:
             "error relative to the last level [%]",
             "difference to the next level [%]",
             "estimated own error ± [%]",
-            "time [s]",
+            "time by itself [s]",
+            "found after [s]",
             "speed-up over the last level",
             "",
             "neglects",
@@ -121,8 +123,9 @@ _NOTE = (
     "housings, half the difference between a rigid and an averaged housing face, and the change "
     "from beam to meridian; for the assembly, the discretization error from two coarser meshes. A "
     "level is accurate enough if its error plus the own error of the last level is within the "
-    "tolerance. Times include meshing, unless the mesh came from the cache, but not the error "
-    "estimate."
+    "tolerance. Time by itself: what the value needs, with meshing, unless the mesh came from the "
+    "cache, and without the estimate of its error. Found after: from the beginning, estimates "
+    "included."
 )
 _EACH_LOAD = (
     "No load was given: the levels are compared by the response of the quantity to each of the six "
@@ -227,6 +230,7 @@ def advised(
                 "title": result.model.title,
                 "values": result.values,
                 "seconds": result.seconds,
+                "waited": result.waited,
                 "estimate": None if np.isnan(result.estimate) else result.estimate,
                 "error": None if np.isnan(result.error) else result.error,
             }

@@ -43,7 +43,14 @@ def compare_runs_command(
 
 
 def _text(found: RunComparison) -> str:
-    lines = [_line(change) for change in found.changes]
+    lines = []
+    modes = Counter(f"{c.before} against {c.after}" for c in found.changes if c.kind == "mode")
+    for mode, count in modes.items():
+        lines.append(
+            f"{mode}: {count} of {found.cases} cases ran quick in one run and not in "
+            "the other: their values differ for that"
+        )
+    lines += [_line(change) for change in found.changes]
     kinds = Counter(change.kind for change in found.changes)
     lines += [
         f"{found.cases} cases in both runs; of {found.checks} checks of the first, {found.equal} "

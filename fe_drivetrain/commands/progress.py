@@ -14,7 +14,8 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import IO, TYPE_CHECKING, NamedTuple, cast
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING, cast
 
 from fe_drivetrain.commands.terminal import write
 
@@ -24,10 +25,36 @@ if TYPE_CHECKING:
     from fe_drivetrain.common.progress import Progress
 
 
-class _Step(NamedTuple):
+_COUNT = re.compile(r"^(.*) \((\d+) of (\d+)\)$")
+_OFTEN = 30.0  # seconds between the lines of one step that counts, in a log file
+
+
+@dataclass
+class _Step:
+    """A step that is shown; ``counted`` is what it had counted to when it began."""
+
     name: str
     task: TaskID
     began: float
+    counted: int
+    shown: float
+
+    def progress(self, step: str, now: float) -> str:
+        """The step with the time that is left, at the pace it had so far."""
+        found = _COUNT.match(step)
+        done = int(found[2]) - self.counted if found else 0
+        if found is None or done <= 0:
+            return step
+        left = (now - self.began) / done * (int(found[3]) - int(found[2]))
+        return f"{step}, about {_duration(left)} left" if left >= 1.0 else step
+
+
+def _duration(seconds: float) -> str:
+    """Seconds, minutes or hours, rounded."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
 
 
 class _Stream(io.TextIOBase):
@@ -55,7 +82,8 @@ def show_steps() -> Iterator[Progress]:
     ------
     Progress
         Called with a step and its lane: 0 for this process, 1 and on for those in parallel to it.
-        An empty step ends the last one. A step that counts, as in "loads (12 of 144)", is one step.
+        An empty step ends the last one. A step that counts, as in "loads (12 of 144)", is one step,
+        which says how long the rest will take at its pace so far.
     """
     from rich.console import Console
     from rich.progress import Progress as Display
@@ -83,16 +111,23 @@ def show_steps() -> Iterator[Progress]:
             show(f"{step.name} ... {outcome or f'{time.perf_counter() - step.began:.1f} s'}")
 
     def report(step: str, lane: int = 0) -> None:
-        name = re.sub(r" \(\d+ of \d+\)$", "", step)
+        found = _COUNT.match(step)
+        name, counted = (found[1], int(found[2])) if found else (step, 0)
+        now = time.perf_counter()
         with lock:
             if lane in running and running[lane].name == name:
-                display.update(running[lane].task, description=step)
+                current = running[lane]
+                text = current.progress(step, now)
+                display.update(current.task, description=text)
+                if not console.is_terminal and now - current.shown > _OFTEN:
+                    show(text)
+                    current.shown = now
                 return
             end(lane)
             if name:
                 if not console.is_terminal:
                     show(f"{name} ...")
-                running[lane] = _Step(name, display.add_task(step, total=None), time.perf_counter())
+                running[lane] = _Step(name, display.add_task(step, total=None), now, counted, now)
 
     with display:
         try:

@@ -58,6 +58,15 @@ def run_command(
     out: OutFolder = None,
     set_: CaseSettings = None,
     quick: Quick = False,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Go on where a run of several cases was stopped: leave out those whose results "
+            "are there, made by the same program with the same settings. A case with a file of "
+            "your own (scene, loads) runs again.",
+        ),
+    ] = False,
     junit: Annotated[
         Path | None,
         typer.Option(
@@ -87,7 +96,7 @@ def run_command(
         found = [case for name in names for case in find_cases(name)]
         return list({case.name: case for case in found}.values())
 
-    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit))
+    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit, resume))
 
 
 def run_and_print(
@@ -96,6 +105,7 @@ def run_and_print(
     settings: Sequence[str] = (),
     quick: bool = False,
     junit: Path | None = None,
+    resume: bool = False,
 ) -> int:
     """Run cases, several of them in parallel, and print the verdicts.
 
@@ -111,6 +121,8 @@ def run_and_print(
         Coarser and smaller.
     junit : Path or None
         File for the verdicts as JUnit XML.
+    resume : bool
+        Leave out cases whose results are there already; for several cases.
 
     Returns
     -------
@@ -121,18 +133,28 @@ def run_and_print(
     def work() -> int:
         hold_threads()
         values = parse_settings(settings)
-        if junit is not None and not junit.resolve().parent.is_dir():
-            raise InputError(f"--junit {junit}: there is no folder {junit.parent}: create it first")
+        if junit is not None:
+            if not junit.resolve().parent.is_dir():
+                raise InputError(
+                    f"--junit {junit}: there is no folder {junit.parent}: create it first"
+                )
+            junit.unlink(missing_ok=True)  # of an earlier run: it says nothing of this one
         cases = find()
+        if resume and len(cases) == 1:
+            raise InputError("--resume is for several cases: leave it out")
+        if junit is not None:
+            from fe_drivetrain.report.junit import write_junit
+            from fe_drivetrain.suite.suite import NOT_RUN
+
+            # stays if the run is stopped
+            write_junit(junit, [c.name for c in cases], {}, {c.name: NOT_RUN for c in cases})
         results: dict[str, Results]
         problems: dict[str, Problem] = {}
         if len(cases) == 1:
             results = {cases[0].name: _run_one(cases[0], out, values, quick)}
         else:
-            results, problems = _run_several(cases, out, values, quick)
+            results, problems = _run_several(cases, out, values, quick, resume)
         if junit is not None:
-            from fe_drivetrain.report.junit import write_junit
-
             write_junit(junit, [case.name for case in cases], results, problems)
         if any(not problem.is_missing_tool for problem in problems.values()):
             return MISTAKE
@@ -153,15 +175,23 @@ def _run_one(case: Case, out: Path | None, settings: Mapping[str, Any], quick: b
 
 
 def _run_several(
-    cases: Sequence[Case], out: Path | None, settings: Mapping[str, Any], quick: bool
+    cases: Sequence[Case],
+    out: Path | None,
+    settings: Mapping[str, Any],
+    quick: bool,
+    resume: bool,
 ) -> tuple[dict[str, Results], dict[str, Problem]]:
     from fe_drivetrain.report.results import read_results
     from fe_drivetrain.suite.result_folders import result_folder
+    from fe_drivetrain.suite.resuming import finished_cases
     from fe_drivetrain.suite.suite import run_cases
 
     folder = Path("reports") if out is None else out
+    kept = finished_cases(cases, folder.resolve(), settings, quick) if resume else []
+    if kept:
+        write(sys.stderr, f"{len(kept)} of {len(cases)} cases are there from an earlier run\n")
     with show_steps() as report:
-        problems = run_cases(cases, folder.resolve(), settings, quick, report)
+        problems = run_cases(cases, folder.resolve(), settings, quick, report, kept)
     results = {
         case.name: read_results(result_folder(folder, case) / "results.json")
         for case in cases

@@ -8,7 +8,7 @@ from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.pictures.model import with_prefix
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.scene import Scene, coarser_scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
@@ -21,7 +21,7 @@ _UNITS = (*3 * ("N/m",), *3 * ("N m/rad",))
 
 def quick_scene(scene: Scene) -> Scene:
     """The scene on a coarser mesh, for a first look."""
-    return scene.model_copy(update={"mesh": scene.mesh.scaled(*_QUICK)})
+    return coarser_scene(scene, *_QUICK)
 
 
 def checked_model(run: Run, scene: Scene) -> Model:

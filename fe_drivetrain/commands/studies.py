@@ -84,6 +84,15 @@ def study_command(
             help="What is left out at the beginning of each file of --loads.",
         ),
     ] = 0.0,
+    slope: Annotated[
+        list[float] | None,
+        typer.Option(
+            "--slope",
+            metavar="M",
+            help="Exponent of an S-N curve, for damage-equivalent loads at 1 Hz. May be repeated. "
+            "Default: 3, 4 and 10.",
+        ),
+    ] = None,
     quick: Quick = False,
     out: _OutFolder = None,
     set_: SceneSettings = None,
@@ -91,8 +100,8 @@ def study_command(
     """Study any scene over hub loads: K_R of its bearing units, reactions, beams against FE.
 
     Solves the assembly of solids and the cheaper levels for unit loads; the reactions of every load
-    step are then one matrix product. Of your own files the reactions are also written as CSV, with
-    the weight of all parts.
+    step are then one matrix product, now and for other loads later. Of your own files the reactions
+    are also written as CSV, with the weight of all parts. Histories may differ in length and step.
 
     The exit status is 0 if every check passes.
     """
@@ -107,6 +116,10 @@ def study_command(
             )
         from fe_drivetrain.commands.study_loads import own_loads
         from fe_drivetrain.commands.study_page import studied
+        from fe_drivetrain.compare.cycles import SLOPES, check_slope
+
+        for exponent in slope or ():
+            check_slope(exponent)
 
         # before the work: a fault in a file is reported at once
         own = None if loads is None else own_loads(loads, skip)
@@ -115,7 +128,7 @@ def study_command(
             scene,
             f"{found.title}: stiffness, reactions, and beams against FE",
             out,
-            lambda run, page: studied(run, page, found, own),
+            lambda run, page: studied(run, page, found, own, slope or SLOPES),
             quick,
         )
 

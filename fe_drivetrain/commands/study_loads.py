@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.compare.time_weighted import sample_weights
 from fe_drivetrain.hub_loads.aero_rotor import assumptions
 from fe_drivetrain.hub_loads.files import read_hub_load_files
 from fe_drivetrain.hub_loads.histories import LoadHistory
@@ -36,6 +38,17 @@ class StudyLoads:
     own: bool
     assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
 
+    @property
+    def seconds(self) -> float:
+        """How long all last together [s]."""
+        return sum(history.seconds for history in self.histories)
+
+    @property
+    def weights(self) -> Floats:
+        """(n,) of all samples, one history after the other: each by the time that it lasts."""
+        histories = self.histories
+        return sample_weights([len(h) for h in histories], [h.step for h in histories])
+
 
 def own_loads(pattern: str, skip: float) -> StudyLoads:
     """Read the user's files.
@@ -56,9 +69,11 @@ def own_loads(pattern: str, skip: float) -> StudyLoads:
     if not any(history.loads.any() for history in histories):
         raise InputError(f"--loads {pattern!r}: all hub loads are zero: give histories with loads")
     count, samples = len(histories), sum(map(len, histories))
+    seconds = sum(history.seconds for history in histories)
     return StudyLoads(
         histories,
-        f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, {samples:,} load steps"
+        f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, {samples:,} load steps "
+        f"over {seconds:,.6g} s"
         + (f"; the first {skip:g} s of each are left out." if skip else "."),
         True,
     )

@@ -27,17 +27,7 @@ _CHARTED = 6  # quantities with their own charts; the tables have all of them
 
 
 def inputs(found: Study) -> Section:
-    """The uncertain values and their distributions.
-
-    Parameters
-    ----------
-    found : Study
-        The study.
-
-    Returns
-    -------
-    Section
-    """
+    """The uncertain values and their distributions."""
     rows: list[list[Cell]] = []
     for k, (key, spread) in enumerate(found.scene.uncertainty.items(), 1):
         nominal = nominal_value(found.scene, key)
@@ -65,17 +55,7 @@ def inputs(found: Study) -> Section:
 
 
 def bands(found: Study) -> Section:
-    """The band of every quantity, next to the error of the model level.
-
-    Parameters
-    ----------
-    found : Study
-        The study.
-
-    Returns
-    -------
-    Section
-    """
+    """The band of every quantity, next to the error of the model level."""
     rows: list[list[Cell]] = []
     for number in found.numbers:
         samples, error = found.samples[number.name], found.errors[number.name]
@@ -123,17 +103,7 @@ def bands(found: Study) -> Section:
 
 
 def slopes(found: Study) -> Section:
-    """First-order sensitivities of every quantity.
-
-    Parameters
-    ----------
-    found : Study
-        The study.
-
-    Returns
-    -------
-    Section
-    """
+    """First-order sensitivities of every quantity."""
     keys = list(found.scene.uncertainty)
     table = Table(
         caption="Relative change of each quantity per relative change of each value; columns are "
@@ -150,17 +120,7 @@ def slopes(found: Study) -> Section:
 
 
 def variance(found: Study) -> Section:
-    """Shares of the variance: of a linear fit to the samples, and Sobol indices if requested.
-
-    Parameters
-    ----------
-    found : Study
-        The study.
-
-    Returns
-    -------
-    Section
-    """
+    """Shares of the variance: of a linear fit to the samples, and Sobol indices if requested."""
     varying = [n for n in found.numbers if _varies(found, n)]
     keys = list(found.scene.uncertainty)
     rows: list[list[Cell]] = []
@@ -191,17 +151,7 @@ def variance(found: Study) -> Section:
 
 
 def ladder(found: Study) -> Section:
-    """The errors of the model levels, and the level that was chosen.
-
-    Parameters
-    ----------
-    found : Study
-        The study.
-
-    Returns
-    -------
-    Section
-    """
+    """The errors of the model levels, and the level that was chosen."""
     rows: list[list[Cell]] = []
     for advice in found.advices:
         for result in advice.results:

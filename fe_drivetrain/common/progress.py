@@ -2,12 +2,18 @@
 
 from typing import Protocol
 
+OVERALL = -1
+"""Lane of what counts the steps of all others, as in "cases (3 of 46)"."""
+
 
 class Progress(Protocol):
     """Called with the name of each step as it begins."""
 
     def __call__(self, step: str, lane: int = 0) -> None:
-        """Show a step of this process (lane 0) or of one beside it; an empty one ends the last."""
+        """Show a step of this process (lane 0), of one beside it, or `OVERALL`.
+
+        An empty step ends the last one of its lane. Steps that count, "NAME (n of N)", are one.
+        """
 
 
 def silent(step: str, lane: int = 0) -> None:

@@ -3,6 +3,7 @@ from .adviser import Quantity as Quantity
 from .adviser import advise as advise
 from .adviser import banded_assembly as banded_assembly
 from .assembly_bands import LEAST_ORDER as LEAST_ORDER
+from .bearing_units import UnitBounds as UnitBounds
 from .bearing_units import banded_unit as banded_unit
 from .bearing_units import scene_supports as scene_supports
 from .bearing_units import unit_bounds as unit_bounds
@@ -34,6 +35,7 @@ from .ladder import statics_level as statics_level
 from .level_costs import Forecast as Forecast
 from .level_costs import forecast as forecast
 from .over_loads import Levels as Levels
+from .over_loads import imbalance as imbalance
 from .over_loads import levels_of as levels_of
 from .over_loads import reaction_history as reaction_history
 from .over_loads import relative_errors as relative_errors

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import silent
@@ -37,6 +38,9 @@ from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
+
+#: Nothing is taken from the cache: times are part of the answer.
+UNCACHED = Cache(None)
 
 
 @dataclass(frozen=True)
@@ -125,6 +129,8 @@ class LevelResult:
         Of the quantity.
     seconds : float
         Wall time of all that its value needs; what its estimate takes comes on top.
+    waited : float
+        Wall time from the beginning to its estimate: what a user waits for this answer.
     estimate : float
         Error expected before any more expensive model is run, relative: 0 where statics decides;
         half the range of its two bounds and the change from beam to meridian where housings are
@@ -139,6 +145,7 @@ class LevelResult:
     values: Floats
     seconds: float
     estimate: float
+    waited: float = 0.0
     error: float = float("nan")
     band: AssemblyBand | None = None
 
@@ -189,7 +196,7 @@ class Advice:
         if self.chosen == len(self.results) - 1:
             return (
                 f"{self.quantity.name} within {share} needs level {result.model.level}, "
-                f"{result.model.title}: {_expected(result)}, {result.seconds:.2g} s"
+                f"{result.model.title}: {_expected(result)}, found in {result.waited:.2g} s"
                 f"{self._of_band()}"
             )
         ratio = self.top.seconds / result.seconds
@@ -197,7 +204,8 @@ class Advice:
         return (
             f"{self.quantity.name} within {share}: level {result.model.level}, "
             f"{result.model.title}, is enough: {100 * result.error:.2g} % from level "
-            f"{self.top.model.level}, {self.top.model.title} ({_expected(self.top)}), and {faster}"
+            f"{self.top.model.level}, {self.top.model.title} ({_expected(self.top)}), and {faster} "
+            f"by itself; found in {self.top.waited:.2g} s"
             f"{self._of_band()}"
         )
 
@@ -241,12 +249,14 @@ def advise(
         )
     length = scene.shaft.length
     results: list[LevelResult] = []
+    start = time.perf_counter()
 
     def add(
         model: LevelModel, seconds: float, estimate: float, band: AssemblyBand | None = None
     ) -> bool:
+        waited = time.perf_counter() - start
         values = quantity.of(model, length)
-        results.append(LevelResult(model, values, seconds, estimate, band=band))
+        results.append(LevelResult(model, values, seconds, estimate, waited, band=band))
         return estimate <= tolerance and not to_the_top
 
     report("level 0: statics")
@@ -280,9 +290,9 @@ def _run_on_springs(
     """
     length = scene.shaft.length
     report("housings, faces in shape")
-    stiff, seconds = housing_springs(scene, coupling="rigid")
+    stiff, seconds = housing_springs(scene, coupling="rigid", cache=UNCACHED)
     report("housings, faces on average")
-    soft = housing_springs(scene, coupling="averaged")[0]
+    soft = housing_springs(scene, coupling="averaged", cache=UNCACHED)[0]
     previous = None
     for level in (1, 2, 3) if to_the_top else (1, 2):
         report(f"level {level}: {TITLES[level]}, housings as springs")
@@ -293,7 +303,7 @@ def _run_on_springs(
         if level == 3 and any(unit.ring_on_housing for unit in scene.bearing_units):
             report("housings under rings that belong to the solid shaft")
             (hard, seconds), (yielding, _) = (
-                housing_springs(scene, c, level) for c in ("rigid", "averaged")
+                housing_springs(scene, c, level, UNCACHED) for c in ("rigid", "averaged")
             )
             bounds = hard, yielding
         model, bound = (shaft_level(scene, level, springs, body) for springs in bounds)
@@ -334,18 +344,18 @@ def banded_assembly(
     """
     length = scene.shaft.length
     sizes, levels = [], []
-    for factor in COARSER:
-        report(f"level 4: assembly of solids, sizes times {factor:g}")
+    for number, factor in enumerate(COARSER, 1):
+        report(f"level 4: assembly of solids ({number} of {len(COARSER) + 1})")
         coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
         try:
-            level, coarse, _ = solved_assembly(coarser)
+            level, coarse, _ = solved_assembly(coarser, UNCACHED)
         except InputError:  # too coarse for a wall
             continue
         sizes.append(mean_size(coarse.mesh))
         levels.append(level)
-    report("level 4: assembly of solids")
+    report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
     start = time.perf_counter()
-    level, model, response = solved_assembly(scene)
+    level, model, response = solved_assembly(scene, UNCACHED)
     seconds = time.perf_counter() - start
     sizes.append(mean_size(model.mesh))
     levels.append(level)

@@ -6,17 +6,20 @@ Joint, housing and bedplate are springs in series.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.made_by import source_hash
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
 from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.response.cached import solved_by, solved_content
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
@@ -39,6 +42,7 @@ def unit_stiffness(
     coupling: Coupling = "averaged",
     method: str = "auto",
     ring: bool = True,
+    cache: Cache | None = None,
 ) -> Floats:
     """Stiffness of a bearing and its housing, solved without the shaft.
 
@@ -61,12 +65,21 @@ def unit_stiffness(
     ring : bool
         Whether such a ring gives; else it is rigid, or part of a solid shaft, and the face is that
         of the housing, or of the rollers.
+    cache : Cache or None
+        Where it may come from, the same to the last bit; the user's if not given.
 
     Returns
     -------
     (6, 6) at the bearing's centre, of joint, housing and bedplate in series [N/m, N, N m/rad].
     """
-    return _solved_unit(scene, name, coupling, method, ring).stiffness
+    content = {"stiffness of": name, "coupling": coupling, "method": method, "ring": ring}
+    (found,) = _kept(
+        scene,
+        content,
+        cache,
+        lambda: (_solved_unit(scene, name, coupling, method, ring).stiffness,),
+    )
+    return found
 
 
 def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
@@ -111,7 +124,7 @@ class UnitBounds(NamedTuple):
     mesh: float
 
 
-def unit_bounds(scene: Scene, name: str) -> UnitBounds:
+def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBounds:
     """Stiffness of a bearing unit between its two bounds, and the band of its mesh.
 
     Parameters
@@ -120,15 +133,44 @@ def unit_bounds(scene: Scene, name: str) -> UnitBounds:
         The scene.
     name : str
         Of the bearing.
+    cache : Cache or None
+        Where they may come from, the same to the last bit; the user's if not given.
 
     Returns
     -------
     UnitBounds
         See there.
     """
-    stiff = _solved_unit(scene, name, "rigid")
-    soft = unit_stiffness(scene, name, "averaged")
-    return UnitBounds(soft, stiff.stiffness, _mesh_band(scene, stiff))
+
+    def solved() -> tuple[Floats, ...]:
+        stiff = _solved_unit(scene, name, "rigid")
+        soft = _solved_unit(scene, name, "averaged").stiffness
+        return soft, stiff.stiffness, np.array(_mesh_band(scene, stiff))
+
+    soft, stiff, mesh = _kept(scene, {"bounds of": name}, cache, solved)
+    return UnitBounds(soft, stiff, float(mesh))
+
+
+def _kept(
+    scene: Scene,
+    content: Mapping[str, Any],
+    cache: Cache | None,
+    solve: Callable[[], tuple[Floats, ...]],
+) -> tuple[Floats, ...]:
+    """What was solved of a scene's bearing unit before, or is now."""
+    used = user_cache() if cache is None else cache
+    whole = {
+        **content,
+        "scene": solved_content(scene),
+        "sizes": scene.mesh.model_dump(mode="json"),
+        "made by": solved_by(),
+        "code": source_hash({"fe_drivetrain.fidelity": {"bearing_units.py"}}),
+    }
+    arrays = used.load("solutions", whole)
+    if arrays is None:
+        arrays = {f"{k}": np.array(a, order="C") for k, a in enumerate(solve())}
+        used.keep("solutions", whole, arrays)
+    return tuple(arrays.values())
 
 
 class _SolvedUnit(NamedTuple):

@@ -16,7 +16,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import least_eigenvalue, scaled_to_unit_diagonal
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
@@ -25,6 +25,7 @@ from fe_drivetrain.scene.component import (
     CarrierComponent,
     Component,
     HousingComponent,
+    check_component_standing,
     material_of,
 )
 from fe_drivetrain.solve.condensation import Condensed, on_supports, supported
@@ -41,6 +42,7 @@ def loads_of(component: Component) -> tuple[str, ...]:
 
 def rigid_level(component: Component) -> LevelModel:
     """Level 0: a rigid body. On bushings, statics and their springs; on a flange, statics alone."""
+    check_component_standing(component)
     start = time.perf_counter()
     names = [a.name for a in component.attachments]
     positions = np.array([a.position for a in component.attachments])
@@ -57,8 +59,6 @@ def rigid_level(component: Component) -> LevelModel:
     parts = {name: motions[6 * k : 6 * k + 6] for k, name in enumerate(names)}
     springs = component.supports
     K = np.asarray(sum(parts[name].T @ k @ parts[name] for name, k in springs.items()))
-    if least_eigenvalue(K) < 1e-13:
-        raise InputError(_FREE)
     reactions = {
         name: k @ parts[name] @ np.linalg.solve(K, resultants) for name, k in springs.items()
     }
@@ -68,12 +68,6 @@ def rigid_level(component: Component) -> LevelModel:
     return LevelModel(
         0, "rigid body on its bushings", neglects, cost, reactions, tuple(names), compliance
     )
-
-
-_FREE = (
-    "the bushings leave the housing free to move: give each a stiffness along x, y and z, and "
-    "about y, where two bushings side by side are a hinge"
-)
 
 
 def frame_level(component: Component, ring_gives: bool = True) -> LevelModel:
@@ -86,6 +80,7 @@ def frame_level(component: Component, ring_gives: bool = True) -> LevelModel:
     ring_gives : bool
         Of a housing, whether the ring is of beams, too.
     """
+    check_component_standing(component)
     start = time.perf_counter()
     if isinstance(component, CarrierComponent):
         body = carrier_frame(component)
@@ -113,6 +108,7 @@ def solid_level(component: Component, solid: SolidComponent | None = None) -> Le
     solid : SolidComponent or None
         It, where it is solved already.
     """
+    check_component_standing(component)
     start = time.perf_counter()
     found = solid_component(component) if solid is None else solid
     return _on_supports(component, 3, "solid", (), found.body, start, found.unknowns)
@@ -127,10 +123,7 @@ def _on_supports(
     start: float,
     unknowns: int,
 ) -> LevelModel:
-    try:
-        found = supported(body, component.supports)
-    except InputError as error:
-        raise InputError(_FREE) from error
+    found = supported(body, component.supports)
     n = len(body.names)
     columns = np.concatenate(
         [*(np.r_[body.rows(name)] for name in component.loaded), 6 * n + np.arange(3)]

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
@@ -25,8 +26,9 @@ from fe_drivetrain.fidelity.shafts import (
     ringed_shaft,
 )
 from fe_drivetrain.geometry import unit_solids
+from fe_drivetrain.response.cached import cached_response
 from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
-from fe_drivetrain.response.unit_loads import Response, unit_load_response
+from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.condensation import Condensed, supported
@@ -205,16 +207,25 @@ def shaft_level(
     return LevelModel(level, title, tuple(neglects), cost, reactions, body.names, motions)
 
 
-def assembly_level(scene: Scene) -> LevelModel:
-    """Level 4: shaft, bearings and housings as solids; stiffness at the hub."""
-    return solved_assembly(scene)[0]
+def assembly_level(scene: Scene, cache: Cache | None = None) -> LevelModel:
+    """Level 4: shaft, bearings and housings as solids; stiffness at the hub.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    cache : Cache or None
+        Where its solution may come from; the user's if not given. The time of one that was kept is
+        that of reading it.
+    """
+    return solved_assembly(scene, cache)[0]
 
 
-def solved_assembly(scene: Scene) -> tuple[LevelModel, Model, Response]:
-    """Level 4, the model that was solved, and its response."""
+def solved_assembly(scene: Scene, cache: Cache | None = None) -> tuple[LevelModel, Model, Response]:
+    """Level 4, the model that was solved, and its response; see `assembly_level`."""
     start = time.perf_counter()
     model = build_model(scene, mesh_scene(scene))
-    response = unit_load_response(model)
+    response = cached_response(model, cache=cache)
     return level_of_response(scene, response, time.perf_counter() - start), model, response
 
 
@@ -227,7 +238,10 @@ def level_of_response(scene: Scene, response: Response, seconds: float) -> Level
 
 
 def housing_springs(
-    scene: Scene, coupling: Coupling = "averaged", level: int = 2
+    scene: Scene,
+    coupling: Coupling = "averaged",
+    level: int = 2,
+    cache: Cache | None = None,
 ) -> tuple[dict[str, Floats], float]:
     """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
 
@@ -237,10 +251,14 @@ def housing_springs(
         See `bearing_units.unit_stiffness`.
     level : int
         Of the shaft that they are for: a solid one (3) has all rings itself.
+    cache : Cache or None
+        Where they may come from; the user's if not given.
     """
     start = time.perf_counter()
     found = {
-        unit.bearing.name: unit_stiffness(scene, unit.bearing.name, coupling, ring=level < 3)
+        unit.bearing.name: unit_stiffness(
+            scene, unit.bearing.name, coupling, ring=level < 3, cache=cache
+        )
         for unit in scene.bearing_units
     }
     return found, time.perf_counter() - start

@@ -14,17 +14,22 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.fidelity.bearing_units import unit_bounds
 from fe_drivetrain.fidelity.ladder import (
     LevelModel,
     assembly_level,
-    housing_springs,
     level_of_response,
     shaft_level,
 )
-from fe_drivetrain.fidelity.shaft_bands import COARSER
+from fe_drivetrain.fidelity.shaft_bands import APART, COARSER
 from fe_drivetrain.fidelity.shafts import condensed_shaft, reference_points
+from fe_drivetrain.mesh.measures import mean_size
+from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
+
+COARSER_ASSEMBLY = "assembly, coarser mesh"
+"""Its name among the models."""
 
 ROUND_OFF = 1e-6
 """Share of a reaction below which its force or moment is the noise of a mesh, and left out."""
@@ -41,11 +46,29 @@ class Levels:
         [N/m, N, N m/rad].
     models : Mapping[str, LevelModel]
         By name, from cheap to expensive. The last one is the assembly that all are compared with.
+    unit_mesh : Mapping[str, float]
+        By how much the mesh may make each unit too stiff, relative.
+    mesh_ratio : float
+        Mean element size of the coarser assembly over that of the other; NaN where there is none.
     """
 
     stiff: Mapping[str, Floats]
     soft: Mapping[str, Floats]
     models: Mapping[str, LevelModel]
+    unit_mesh: Mapping[str, float]
+    mesh_ratio: float
+
+    @property
+    def coarser(self) -> LevelModel | None:
+        """The assembly on a coarser mesh; None where it says nothing of the other's band."""
+        return self.models[COARSER_ASSEMBLY] if self.mesh_ratio > APART else None
+
+    def band(self, change: Floats) -> Floats:
+        """Band of what the coarser mesh changes by so much: continued at first order.
+
+        Stress is singular where parts meet, so that no better order is relied upon.
+        """
+        return np.asarray(np.abs(change) / (self.mesh_ratio - 1.0))
 
     @property
     def reference(self) -> LevelModel:
@@ -76,23 +99,30 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
         A level refuses the scene.
     """
     models = {"beam, rigid housings": shaft_level(scene, 1)}
-    report("bearing units, two bounds")
-    stiff, soft = (housing_springs(scene, coupling)[0] for coupling in ("rigid", "averaged"))
+    report("levels 1 and 2 (1 of 4)")
+    bounds = {
+        unit.bearing.name: unit_bounds(scene, unit.bearing.name) for unit in scene.bearing_units
+    }
+    stiff = {name: found.stiff for name, found in bounds.items()}
+    soft = {name: found.soft for name, found in bounds.items()}
     for level, word in ((1, "beam"), (2, "meridian")):
-        report(f"level {level}, housings as springs")
+        report(f"levels 1 and 2 ({level + 1} of 4)")
         body = condensed_shaft(scene, level)
         for name, springs in (("stiff", stiff), ("soft", soft)):
             models[f"{word}, {name} housings"] = shaft_level(scene, level, springs, body)
-    report("assembly on a coarser mesh")
+    report("levels 1 and 2 (4 of 4)")
+    ratio = float("nan")
+    coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)})
     try:
-        mesh = scene.mesh.scaled(COARSER)
-        models["assembly, coarser mesh"] = assembly_level(scene.model_copy(update={"mesh": mesh}))
+        models[COARSER_ASSEMBLY] = assembly_level(coarse)
+        ratio = mean_size(mesh_scene(coarse)) / mean_size(mesh_scene(scene))
     except InputError:  # too coarse for a wall
         pass
     found = response.diagnostics
     seconds = found.setup_seconds + found.solve_seconds
     models["assembly"] = level_of_response(scene, response, seconds)
-    return Levels(stiff, soft, models)
+    unit_mesh = {name: found.mesh for name, found in bounds.items()}
+    return Levels(stiff, soft, models, unit_mesh, ratio)
 
 
 def reaction_history(
@@ -124,7 +154,9 @@ def reaction_history(
     return np.asarray(result)
 
 
-def relative_errors(reference: Floats, found: Floats, length: float) -> Floats:
+def relative_errors(
+    reference: Floats, found: Floats, length: float, weights: Floats | None = None
+) -> Floats:
     """Error of a reaction's force and of its moment, each as a vector.
 
     Parameters
@@ -133,6 +165,8 @@ def relative_errors(reference: Floats, found: Floats, length: float) -> Floats:
         Samples of a reaction [N, N m].
     length : float
         Of the shaft [m], which makes forces comparable to moments.
+    weights : ndarray, (n,), or None
+        Of the samples, their sum 1; equal where not given.
 
     Returns
     -------
@@ -140,8 +174,9 @@ def relative_errors(reference: Floats, found: Floats, length: float) -> Floats:
         Root mean square of the difference over that of the reference; NaN where the reference is
         but noise, see `ROUND_OFF`.
     """
+    w = np.full(len(reference), 1.0 / len(reference)) if weights is None else weights
     size, error = (
-        np.array([np.sqrt((part**2).sum(axis=1).mean()) for part in (v[:, :3], v[:, 3:])])
+        np.array([np.sqrt(w @ (part**2).sum(axis=1)) for part in (v[:, :3], v[:, 3:])])
         for v in (reference, found - reference)
     )
     scale = np.array([1.0, length])

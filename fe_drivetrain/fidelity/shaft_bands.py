@@ -50,7 +50,7 @@ def banded_meridian(scene: Scene, at: Sequence[str] | None = None) -> tuple[Cond
     Parameters
     ----------
     scene : Scene
-        The scene.
+        Whose shaft.
     at : Sequence[str] or None
         Points that are kept; all where not given.
 
@@ -68,22 +68,7 @@ def banded_meridian(scene: Scene, at: Sequence[str] | None = None) -> tuple[Cond
 
 
 def banded_solid(scene: Scene, at: Sequence[str] | None = None) -> tuple[Condensed, float]:
-    """The solid shaft, and the band of its stiffness.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    at : Sequence[str] or None
-        Points that are kept; all where not given.
-
-    Returns
-    -------
-    Condensed
-        The shaft.
-    float
-        Half width of the band of any entry, relative to the diagonal entries of its row and column.
-    """
+    """The solid shaft, and the band of its stiffness; see `banded_meridian`."""
     solid = shaft_solid(scene)
     body = _kept(solid.body, at)
     band = RECOVERY_SAFETY * _recovered_error(scene, solid, body.names)

@@ -82,6 +82,16 @@ class LoadHistory:
     def __len__(self) -> int:
         return int(self.time.size)
 
+    @property
+    def step(self) -> float:
+        """Mean time between two samples [s]."""
+        return float(self.time[-1] - self.time[0]) / (len(self) - 1)
+
+    @property
+    def seconds(self) -> float:
+        """From the first sample to the last [s]."""
+        return float(self.time[-1] - self.time[0])
+
     def component(self, name: str) -> Floats:
         """One component by its name, for example ``"My"``: (n,) [N or N m].
 

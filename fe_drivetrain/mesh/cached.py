@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache as once
-from importlib.resources import files
 from typing import Any
 
 import gmsh
@@ -15,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.made_by import machine, source_hash
 from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
 from fe_drivetrain.mesh.generation import generate
 from fe_drivetrain.mesh.mesh import Mesh
@@ -89,17 +87,11 @@ def _content(
 @once
 def _made_by() -> dict[str, str]:
     """The programs that make a mesh: another version may make another mesh."""
-    code = hashlib.sha256()
-    for package, names in (("fe_drivetrain.geometry", None), ("fe_drivetrain.mesh", _MESHERS)):
-        for file in sorted(files(package).iterdir(), key=lambda file: file.name):
-            if file.name.endswith(".py") and (names is None or file.name in names):
-                code.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
     return {
         "gmsh": gmsh.__version__,
         "numpy": np.__version__,
-        # A home folder may be shared by machines whose last digits differ.
-        "machine": f"{platform.system()} {platform.machine()}",
-        "code": code.hexdigest(),
+        "machine": machine(),
+        "code": source_hash({"fe_drivetrain.geometry": None, "fe_drivetrain.mesh": _MESHERS}),
     }
 
 

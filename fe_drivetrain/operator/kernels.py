@@ -246,6 +246,25 @@ def keep_dofs(indptr: Index, indices: Index, data: Floats, kept: Floats, diagona
                     data[p, r, r] = diagonal
 
 
+@njit(inline="always")
+def _node_residual(
+    i: int, indptr: Index, indices: Index, data: Floats, X: Floats, B: Floats
+) -> Floats:
+    """``B - K X`` (3, m) of node i; a copy of its own, so that no compiler fears a part of X."""
+    m = X.shape[1]
+    y = np.empty((3, m))
+    for r in range(3):
+        for k in range(m):
+            y[r, k] = B[3 * i + r, k]
+    for p in range(indptr[i], indptr[i + 1]):
+        c = 3 * indices[p]
+        for r in range(3):
+            u, v, w = data[p, r, 0], data[p, r, 1], data[p, r, 2]
+            for k in range(m):
+                y[r, k] -= u * X[c, k] + v * X[c + 1, k] + w * X[c + 2, k]
+    return y
+
+
 @njit(cache=True, parallel=True, fastmath=True)
 def residual(
     indptr: Index, indices: Index, data: Floats, X: Floats, B: Floats, out: Floats
@@ -253,17 +272,7 @@ def residual(
     """``out = B - K X``."""
     m = X.shape[1]
     for i in prange(len(indptr) - 1):
-        # A copy of its own: in place, the compiler must fear that it is a part of X.
-        y = np.empty((3, m))
-        for r in range(3):
-            for k in range(m):
-                y[r, k] = B[3 * i + r, k]
-        for p in range(indptr[i], indptr[i + 1]):
-            c = 3 * indices[p]
-            for r in range(3):
-                u, v, w = data[p, r, 0], data[p, r, 1], data[p, r, 2]
-                for k in range(m):
-                    y[r, k] -= u * X[c, k] + v * X[c + 1, k] + w * X[c + 2, k]
+        y = _node_residual(i, indptr, indices, data, X, B)
         for r in range(3):
             for k in range(m):
                 out[3 * i + r, k] = y[r, k]
@@ -291,16 +300,7 @@ def chebyshev_step(
     """
     m = X.shape[1]
     for i in prange(len(indptr) - 1):
-        y = np.empty((3, m))
-        for r in range(3):
-            for k in range(m):
-                y[r, k] = B[3 * i + r, k]
-        for p in range(indptr[i], indptr[i + 1]):
-            c = 3 * indices[p]
-            for r in range(3):
-                u, v, w = data[p, r, 0], data[p, r, 1], data[p, r, 2]
-                for k in range(m):
-                    y[r, k] -= u * X[c, k] + v * X[c + 1, k] + w * X[c + 2, k]
+        y = _node_residual(i, indptr, indices, data, X, B)
         for r in range(3):
             row = 3 * i + r
             u, v, w = inverse[i, r, 0], inverse[i, r, 1], inverse[i, r, 2]

@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+from fe_drivetrain.common.made_by import program_hash
 from fe_drivetrain.report.results import Environment
 
 _PACKAGES = (
@@ -40,4 +41,5 @@ def environment(
         settings=dict(settings),
         seed=seed,
         quick=quick,
+        code=program_hash(),
     )

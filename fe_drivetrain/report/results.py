@@ -253,6 +253,7 @@ class Environment(_Result):
     settings: dict[str, Any]
     seed: int | None = None
     quick: bool = Field(default=False, description="whether the run was coarser and smaller")
+    code: str = Field(default="", description="SHA-256 of the program's sources")
 
 
 class Problem(NamedTuple):

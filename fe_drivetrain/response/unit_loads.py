@@ -43,6 +43,8 @@ class Response:
         ones, relative to the largest reaction.
     diagnostics : Diagnostics
         Of the solve.
+    kept : bool
+        Whether it was taken from the cache instead of solved.
     """
 
     reactions: Mapping[str, Floats]
@@ -53,6 +55,7 @@ class Response:
     equilibrium_error: float
     superposition_error: float
     diagnostics: Diagnostics
+    kept: bool = False
 
     def reaction_matrix(self) -> tuple[list[str], Floats]:
         """All reactions as one matrix.

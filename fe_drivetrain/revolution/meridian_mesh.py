@@ -7,7 +7,8 @@ singular, or with fillets curved triangles too; isoparametric, all nodes of a fi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -287,11 +288,31 @@ class _Quads:
 
     def __init__(self, at: list[Place], quads: list[list[int]]) -> None:
         self.at = at
-        self.quads = quads
+        self._at_first = np.array(at)
+        self._quads: dict[int, list[int]] = {}  # by number, in the order in which they were made
+        self._around: dict[int, list[int]] = defaultdict(list)  # numbers of those at each node
+        self._made = 0
+        self._add(quads)
+
+    @property
+    def quads(self) -> list[list[int]]:
+        """Those that there are, in the order in which they were made."""
+        return list(self._quads.values())
+
+    def _add(self, quads: Iterable[list[int]]) -> None:
+        for quad in quads:
+            self._quads[self._made] = quad
+            for node in quad:
+                self._around[node].append(self._made)
+            self._made += 1
+
+    def at_node(self, node: int) -> list[list[int]]:
+        """The quadrilaterals at a node."""
+        return [self._quads[k] for k in self._around[node]]
 
     def nearest(self, place: Place) -> int:
-        """The node there."""
-        return int(np.hypot(*(np.array(self.at) - place).T).argmin())
+        """The node there, of those that stood before the first split."""
+        return int(np.hypot(*(self._at_first - place).T).argmin())
 
     def split(self, centre: int, share: Callable[[int], float]) -> dict[int, int]:
         """Split each quadrilateral at a node into a small one there and two around it.
@@ -308,8 +329,10 @@ class _Quads:
         -------
         The new node on the edge to each.
         """
-        fan = [quad for quad in self.quads if centre in quad]
-        self.quads = [quad for quad in self.quads if centre not in quad]
+        fan = self.at_node(centre)
+        for number in list(self._around[centre]):
+            for node in self._quads.pop(number):
+                self._around[node].remove(number)
         on_edge: dict[int, int] = {}
         for quad in fan:
             k = quad.index(centre)
@@ -320,11 +343,13 @@ class _Quads:
                     self.at.append(_towards(self.at[centre], self.at[end], share(end)))
             middle = len(self.at)
             self.at.append(_inside([self.at[i] for i in (centre, b, c, d)], share(b), share(d)))
-            self.quads += [
-                [centre, on_edge[b], middle, on_edge[d]],
-                [on_edge[b], b, c, middle],
-                [middle, c, d, on_edge[d]],
-            ]
+            self._add(
+                (
+                    [centre, on_edge[b], middle, on_edge[d]],
+                    [on_edge[b], b, c, middle],
+                    [middle, c, d, on_edge[d]],
+                )
+            )
         return on_edge
 
     def round_off(self, foot: Place, arc: Segment) -> list[tuple[int, int, Place]] | None:
@@ -338,8 +363,7 @@ class _Quads:
         reach = math.dist(foot, arc.start)
         lengths = {
             end: math.dist(foot, self.at[end])
-            for quad in self.quads
-            if centre in quad
+            for quad in self.at_node(centre)
             for end in (quad[quad.index(centre) - 1], quad[(quad.index(centre) + 1) % 4])
         }
         # the two edges that the arc's ends lie on

@@ -27,3 +27,4 @@ from .scene import Gearbox as Gearbox
 from .scene import Hub as Hub
 from .scene import Scene as Scene
 from .scene import Spread as Spread
+from .scene import coarser_scene as coarser_scene

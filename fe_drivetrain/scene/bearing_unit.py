@@ -40,7 +40,13 @@ def _no_booleans(value: Any) -> Any:
     return value
 
 
-def _within_range(value: tuple[float | Literal["rigid"], ...]) -> Any:
+def within_range(value: tuple[float | Literal["rigid"], ...]) -> Any:
+    """Refuse springs that are neither 0, nor rigid, nor of a size that is one.
+
+    Raises
+    ------
+    ValueError
+    """
     for k in value:
         if k != "rigid" and k != 0 and not _SOFTEST <= k <= _STIFFEST:
             raise ValueError(
@@ -55,7 +61,7 @@ Springs = Annotated[
     tuple[float | Literal["rigid"], ...],
     Field(min_length=6, max_length=6),
     BeforeValidator(_no_booleans),
-    AfterValidator(_within_range),
+    AfterValidator(within_range),
 ]
 #: The same, or six rows of a full matrix.
 _Spring = Annotated[
@@ -138,7 +144,7 @@ class BearingUnit(Keys):
 def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:
     rows = [isinstance(k, tuple) and len(k) == 6 for k in stiffness]
     if not any(isinstance(k, tuple) for k in stiffness):
-        _within_range(stiffness)
+        within_range(stiffness)
     elif not all(rows):
         raise ValueError(
             f"stiffness of bearing {name!r} must be six numbers (or 'rigid'), or six rows of six "
@@ -159,7 +165,7 @@ def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:
                 f"stiffness of bearing {name!r} must be at most {_STIFFEST:g} [N/m, N, N m/rad]: "
                 "give six numbers, and 'rigid' where nothing gives"
             )
-        _within_range(tuple(K.diagonal().tolist()))
+        within_range(tuple(K.diagonal().tolist()))
 
 
 def _check_rows(bearing: Bearing, rollers: Rollers) -> None:

@@ -11,17 +11,18 @@ from collections.abc import Mapping
 from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.geometry import BodySizes, GearboxHousing, PlanetCarrier
-from fe_drivetrain.scene.bearing_unit import Keys
+from fe_drivetrain.scene.bearing_unit import Keys, within_range
 from fe_drivetrain.scene.materials import Material, known_materials
 from fe_drivetrain.scene.scene import (
     HEAVIEST,
     Coupling,
     check_material,
 )
+from fe_drivetrain.scene.standing import RigidBody, check_held
 
 
 class Attachment(NamedTuple):
@@ -63,7 +64,7 @@ class Bushings(Keys):
     Stiffness is along x, y, z [N/m] and about them [N m/rad].
     """
 
-    stiffness: tuple[Annotated[float, Field(ge=0, le=1e16)], ...] = Field(
+    stiffness: Annotated[tuple[float, ...], AfterValidator(within_range)] = Field(
         min_length=6, max_length=6
     )
     coupling: Coupling = "rigid"
@@ -171,3 +172,34 @@ def material_of(component: Component) -> Material:
 def component_hash(component: Component) -> str:
     """SHA-256 of all values of a component, whatever its file looks like."""
     return hashlib.sha256(component.model_dump_json().encode()).hexdigest()
+
+
+def check_component_standing(component: Component) -> None:
+    """Refuse a component that can move as a rigid body on its supports.
+
+    To be called before it is solved there. Its free body, and what its loaded points feel of it,
+    need no such check: two bushings side by side are a hinge, which a shaft in the ring holds.
+
+    Raises
+    ------
+    InputError
+        It is a mechanism; every free motion is named.
+    """
+    positions = {a.name: a.position for a in component.attachments}
+    middle = np.array(component.body.volume_and_centre()[1])
+    apart = np.array(list(positions.values())) - middle
+    reach = float(np.linalg.norm(apart, axis=1).max())
+    body = RigidBody(
+        ("housing" if isinstance(component, HousingComponent) else "carrier",),
+        middle,
+        2.0 * reach,
+        middle + reach * np.vstack([np.eye(3), -np.eye(3)]),
+        material_of(component).youngs_modulus,
+    )
+    supports = [(positions[name], k) for name, k in component.supports.items()]
+    check_held(
+        "component",
+        body,
+        supports,
+        "give the bushings a stiffness in that direction (two side by side are a hinge about y)",
+    )

@@ -9,7 +9,7 @@ from pydantic import (
 )
 
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.geometry import MeshSizes, Shaft, check_parts
+from fe_drivetrain.geometry import MeshSizes, Shaft, check_parts, within_walls
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Keys, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import Material, known_materials
@@ -139,3 +139,25 @@ class Scene(Keys):
     def bearing_unit(self, name: str) -> BearingUnit:
         """The bearing unit of that name."""
         return next(unit for unit in self.bearing_units if unit.bearing.name == name)
+
+
+def coarser_scene(scene: Scene, factor: float, elements_per_turn: int) -> Scene:
+    """A scene on a coarser mesh, as far as its walls allow.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    factor : float
+        Of its mesh sizes; what a thin wall does not allow stays smaller.
+    elements_per_turn : int
+        Round any cylinder.
+    """
+    units = scene.bearing_units
+    sizes = within_walls(
+        scene.mesh.scaled(factor, elements_per_turn),
+        scene.shaft,
+        [unit.bearing for unit in units],
+        {unit.bearing.name: unit.housing for unit in units},
+    )
+    return scene.model_copy(update={"mesh": sizes})

@@ -1,5 +1,6 @@
-"""Whether a scene stands: the shaft, as a rigid body on its bearings and gearbox, is no mechanism.
+"""Whether a body stands: as a rigid one on its supports, it is no mechanism.
 
+The body of a scene is its shaft, on bearings and gearbox; that of a component is all of it.
 Housings stand on the ground, or on a bedplate that holds every motion, so the shaft with its
 bearings is all that can move. Whatever its level, a model of the scene moves without strain where
 this body does.
@@ -8,6 +9,7 @@ this body does.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -48,43 +50,94 @@ def check_standing(
     for unit in units:
         stations.append(unit.bearing.x)
         radii.append(unit.bearing.raceway_diameter / 2)
-    centre = np.array([(shaft.front + shaft.rear) / 2, 0.0, 0.0])
-    length = max(shaft.length, 2 * max(radii))
-    turns = np.array([1.0, 1.0, 1.0, length, length, length])
+    sides = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    rim = (along_x(stations)[:, None] + np.array(radii)[:, None, None] * sides).reshape(-1, 3)
+    supports = [(along_x([shaft.rear])[0], np.diag(gearbox))]
+    supports += [(along_x([unit.bearing.x])[0], joint_stiffness(unit)) for unit in units]
+    body = RigidBody(
+        ("shaft", *(unit.bearing.name for unit in units)),
+        np.array([(shaft.front + shaft.rear) / 2, 0.0, 0.0]),
+        max(shaft.length, 2 * max(radii)),
+        rim,
+        youngs_modulus,
+    )
+    check_held("scene", body, supports, "add a support, or a gearbox stiffness in that direction")
 
-    supports = [(shaft.rear, np.diag(gearbox))]
-    supports += [(unit.bearing.x, joint_stiffness(unit)) for unit in units]
-    own = youngs_modulus * length
+
+@dataclass(frozen=True)
+class RigidBody:
+    """What moves as one, where nothing in it is strained.
+
+    Attributes
+    ----------
+    parts : tuple[str, ...]
+        Names of its parts.
+    centre : Floats
+        (3,) of it [m].
+    length : float
+        Its largest dimension [m].
+    rim : Floats
+        (n, 3) points on its outside, by which the size of a motion is taken [m].
+    youngs_modulus : float
+        Of its material [Pa].
+    """
+
+    parts: tuple[str, ...]
+    centre: Floats
+    length: float
+    rim: Floats
+    youngs_modulus: float
+
+
+def check_held(
+    whole: str, body: RigidBody, supports: Sequence[tuple[Floats, Floats]], fix: str
+) -> None:
+    """Refuse supports that let a body move, or hold it below round-off.
+
+    Parameters
+    ----------
+    whole : str
+        What is refused, as in "scene".
+    body : RigidBody
+        The body.
+    supports : Sequence[tuple[Floats, Floats]]
+        Position (3,) [m] and stiffness to ground (6, 6) of each [N/m, N, N m/rad]; inf on the
+        diagonal where rigid.
+    fix : str
+        What to do, as in "add a support".
+
+    Raises
+    ------
+    InputError
+        It is a mechanism; every free motion is named.
+    """
+    centre, length = body.centre, body.length
+    turns = np.array([1.0, 1.0, 1.0, length, length, length])
+    own = body.youngs_modulus * length
     directions, roots = [np.zeros((1, 6))], [np.zeros((1, 6))]
-    for x, stiffness in supports:
-        motion = point_motions(np.array([[x, 0.0, 0.0]]), centre) / turns
+    for position, stiffness in supports:
+        motion = point_motions(position[None], centre) / turns
         held, root = _held_and_roots(stiffness, own)
         directions.append(held @ motion)
         roots.append(root @ motion)
 
-    parts = ["shaft", *(unit.bearing.name for unit in units)]
     free = sparsest(null_space(directions))
     if len(free):
-        found = [described_motion(parts, motion, centre, length, "freely") for motion in free]
-        raise InputError(
-            "the scene is a mechanism: " + "; ".join(found) + ": add a support, or a gearbox "
-            "stiffness in that direction"
-        )
+        found = [described_motion(body.parts, motion, centre, length, "freely") for motion in free]
+        raise InputError(f"the {whole} is a mechanism: " + "; ".join(found) + f": {fix}")
     root = np.vstack(roots) / np.sqrt(own)
     _, sizes, right = np.linalg.svd(root, full_matrices=False)
-    sides = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    rim = (along_x(stations)[:, None] + np.array(radii)[:, None, None] * sides).reshape(-1, 3)
-    rigid = rigid_motions(rim, centre) / turns
+    rigid = rigid_motions(body.rim, centre) / turns
     lost = []
     for motion in sparsest(right[sizes**2 < 2.0 * _EPSILON]):
         furthest = np.linalg.norm((rigid @ motion).reshape(-1, 3), axis=1).max()
         if np.linalg.norm(root @ motion) ** 2 < _EPSILON * furthest**2:
-            lost.append(described_motion(parts, motion, centre, length, "nearly"))
+            lost.append(described_motion(body.parts, motion, centre, length, "nearly"))
     if lost:
         raise InputError(
-            "the scene is a mechanism but for round-off: " + "; ".join(lost) + ": the springs "
-            f"there are below {_EPSILON:.1g} of the shaft's own stiffness: make them stiffer, or "
-            "hold the motion rigidly"
+            f"the {whole} is a mechanism but for round-off: " + "; ".join(lost) + ": the springs "
+            f"there are below {_EPSILON:.1g} of the {body.parts[0]}'s own stiffness: make them "
+            "stiffer, or hold the motion rigidly"
         )
 
 

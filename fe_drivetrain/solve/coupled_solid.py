@@ -19,6 +19,7 @@ from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, Elimination, ReferencePoint
 from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.operator.elements import check_elements
 from fe_drivetrain.operator.incompressible import assemble_unlocked
 from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.scene.component import Attachment
@@ -117,6 +118,11 @@ def coupled_solid(
         Of each part that is assembled, by its name in the mesh.
     attachments : sequence of Attachment
         Reference points with their faces.
+
+    Raises
+    ------
+    InputError
+        A cell has a node that there is not, or is folded over.
     """
     n = len(mesh.points)
     n_dofs = 3 * n + 6 * sum(a.coupling == "rigid" for a in attachments)
@@ -132,6 +138,8 @@ def coupled_solid(
             point = constraints.averaged_point(name, nodes, weights, mesh.points, position, n_dofs)
         points.append(point)
     cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
+    for some in cells:
+        check_elements(mesh.points, some)
     K = sum(
         assemble_unlocked(mesh.points, some, material.lame, n_dofs)
         for some, material in zip(cells, materials.values(), strict=True)
@@ -163,7 +171,7 @@ def condensed_solid(
     Raises
     ------
     InputError
-        There is only one point, or two move as one.
+        There is only one point, or two move as one; a cell is folded over.
     """
     solid = coupled_solid(mesh, materials, attachments)
     n, total = 3 * len(mesh.points), solid.n_dofs

@@ -2,12 +2,15 @@ from .case import Case as Case
 from .case import all_cases as all_cases
 from .case import find_cases as find_cases
 from .page import Page as Page
+from .page import Target as Target
+from .records import MeshSeries as MeshSeries
 from .records import Record as Record
 from .records import band_of_rows as band_of_rows
 from .records import column as column
 from .records import grouped as grouped
 from .result_folders import run_case as run_case
 from .result_folders import run_into as run_into
+from .resuming import finished_cases as finished_cases
 from .run import Jobs as Jobs
 from .run import Run as Run
 from .run import RunJob as RunJob

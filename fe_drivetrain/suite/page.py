@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,59 @@ from fe_drivetrain.report.results import (
     Verdict,
     judge,
 )
-from fe_drivetrain.suite.records import Record, column, grouped
+from fe_drivetrain.suite.records import MeshSeries, Record, column, grouped
+
+UNITS_OF: Mapping[str, Measure] = {
+    "MPa": "stress",
+    "psi": "stress",
+    "m": "deflection",
+    "mm": "deflection",
+    "µm": "deflection",
+    "mrad": "rotation",
+    "rad": "rotation",
+    "N": "reaction",
+    "MN": "reaction",
+    "J/m": "energy",
+    "N/m": "stiffness",
+    "N m/rad": "stiffness",
+    "N m^2": "stiffness",
+    "kg": "mass",
+}
+"""Kind of quantity, for bias and scatter over all cases, of units that have but one."""
+
+
+class Target(NamedTuple):
+    """What a benchmark asks for; see `Page.equals`.
+
+    Attributes
+    ----------
+    key : str
+        The quantity with its unit: "deflection [mm]"; in the record of a mesh its key.
+    value : float
+        What it should be.
+    within : float
+        Allowed difference, relative to the value.
+    why, source : str
+        Why the tolerance is what it is, and where the value comes from.
+    name : str
+        What was computed, where the key does not state it alone.
+    relative : bool
+        False where `within` is in the unit.
+    measure : str or None
+        Kind of quantity; that of the unit where left out.
+    order : float or None
+        Expected order of convergence.
+    """
+
+    key: str
+    value: float
+    within: float
+    why: str
+    source: str
+    name: str = ""
+    relative: bool = True
+    measure: Measure | None = None
+    order: float | None = None
 
 
 class Page:
@@ -150,6 +202,35 @@ class Page:
             unit=unit,
             measure=measure,
             basis=basis,
+            band=band,
+        )
+
+    def finest(self, series: MeshSeries, target: Target) -> None:
+        """The finest of several meshes meets a target; the band of its value is that of them all.
+
+        Parameters
+        ----------
+        series : MeshSeries
+            What each mesh gave.
+        target : Target
+            What the finest should give.
+        """
+        value, band = series.rows[-1][target.key], series.band(target.key, target.order)
+        self.meets(value, target, band)
+
+    def meets(self, computed: float, target: Target, band: float | None = None) -> None:
+        """The computed value meets a target; `band` as for `equals`."""
+        quantity, _, unit = target.key.removesuffix("]").partition(" [")
+        self.equals(
+            target.name or quantity,
+            computed,
+            target.value,
+            within=target.within,
+            why=target.why,
+            source=target.source,
+            unit=unit,
+            relative=target.relative,
+            measure=target.measure or UNITS_OF.get(unit),
             band=band,
         )
 
@@ -292,6 +373,65 @@ class Page:
     ) -> None:
         """Add a chart of traces; see `fe_drivetrain.report.chart`."""
         self.add(chart(caption, traces, x, y, logarithmic, safe))
+
+    def meshes(
+        self,
+        caption: str,
+        series: MeshSeries,
+        references: Mapping[str, float],
+        heading: str = "reference",
+    ) -> None:
+        """Add a table of quantities on several meshes beside their references, and its data.
+
+        Parameters
+        ----------
+        caption : str
+            What it shows; the records stand under it among `figures`.
+        series : MeshSeries
+            What each mesh gave.
+        references : dict
+            Key of a quantity, with its unit, and its reference.
+        heading : str
+            Of the references' column.
+        """
+        rows = [(key, key, value) for key, value in references.items()]
+        self._meshes(caption, series, rows, heading)
+
+    def _meshes(
+        self, caption: str, series: MeshSeries, rows: list[tuple[str, str, float]], heading: str
+    ) -> None:
+        """The same with what is shown of a key in its row's first cell."""
+        meshes, by = series.rows, series.by
+        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
+        cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
+        self.table(caption, cells, columns)
+        keys = [by, *dict.fromkeys(key for _, key, _ in rows)]
+        self.data(caption, [{key: mesh[key] for key in keys} for mesh in meshes])
+
+    def targets(
+        self, caption: str, series: MeshSeries, targets: Sequence[Target], heading: str = "target"
+    ) -> None:
+        """Check the finest of several meshes against targets, and show all meshes beside them.
+
+        Parameters
+        ----------
+        caption : str
+            Of the table; the records stand under it among `figures`.
+        series : MeshSeries
+            What each mesh gave.
+        targets : sequence of Target
+            In the order of the checks.
+        heading : str
+            Of the targets' column.
+        """
+        for target in targets:
+            self.finest(series, target)
+        rows = []
+        for target in targets:
+            unit = target.key.partition(" [")[2]
+            shown = f"{target.name} [{unit}" if target.name and unit else target.name
+            rows.append((shown or target.key, target.key, target.value))
+        self._meshes(caption, series, rows, heading)
 
     def sweep(
         self,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 Record = dict[str, Any]
 """One point of a sweep: its parameters and what was found there."""
@@ -51,3 +51,26 @@ def band_of_rows(
 
     sizes = [float(n) ** (-1.0 / dimension) for n in column(rows, unknowns)]
     return band_of(sizes, column(rows, value), order)
+
+
+class MeshSeries(NamedTuple):
+    """What ever finer meshes gave.
+
+    Attributes
+    ----------
+    rows : sequence of dict
+        One for each mesh, coarse to fine.
+    by : str
+        Key of what grows as the mesh is refined: the number of elements or of unknowns.
+    dimension : int
+        Elements have the size of `by` to the power -1 / dimension: 1 where it counts elements along
+        a line, 3 where it counts the unknowns of a solid.
+    """
+
+    rows: Sequence[Record]
+    by: str
+    dimension: int = 1
+
+    def band(self, key: str, order: float | None = None) -> float:
+        """Numerical uncertainty of the finest mesh's value of a key; see `band_of_rows`."""
+        return band_of_rows(self.rows, self.by, key, self.dimension, order)

@@ -30,7 +30,7 @@ class Change:
     case : str
         "GROUP/NAME".
     kind : str
-        "lost case", "new case", "lost check", "new check", "renamed", "verdict", "value",
+        "lost case", "new case", "mode", "lost check", "new check", "renamed", "verdict", "value",
         "rounding", "figures".
     what : str
         The check, or what else it is about.
@@ -100,6 +100,9 @@ def compare_runs(before: Path, after: Path) -> RunComparison:
     both = [name for name in first if name in second]
     checks = equal = numbers = equal_numbers = 0
     for name in both:
+        modes = ["quick" if found[name].environment.quick else "full" for found in (first, second)]
+        if modes[0] != modes[1]:
+            changes.append(Change(name, "mode", "run on another mesh and fewer loads", *modes))
         found, same = _checks(name, first[name], second[name])
         changes += found
         checks += len(first[name].verdicts)

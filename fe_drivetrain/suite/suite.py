@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.files import HiddenFolder, sentence_about
 from fe_drivetrain.common.processes import Processes
-from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.result_folders import (
@@ -22,7 +22,8 @@ from fe_drivetrain.suite.result_folders import (
 )
 from fe_drivetrain.suite.settings import settings_by_case
 
-_NOT_RUN = Problem("not run: the run has not come to its end", is_pending=True)
+NOT_RUN = Problem("not run: the run has not come to its end", is_pending=True)
+"""Of a case that has not had its turn."""
 
 
 def run_cases(
@@ -31,6 +32,7 @@ def run_cases(
     settings: Mapping[str, Any] | None = None,
     quick: bool = False,
     report: Progress = silent,
+    kept: Collection[str] = (),
 ) -> dict[str, Problem]:
     """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
 
@@ -51,6 +53,8 @@ def run_cases(
         As of `Run`.
     report : callable
         As of `Run`; the name of a step follows that of its case.
+    kept : collection of str
+        Names of cases whose results are there and stay, see `finished_cases`.
 
     Returns
     -------
@@ -66,9 +70,10 @@ def run_cases(
 
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
+    cases = [case for case in cases if case.name not in kept]
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
-    pending = {case.name: _NOT_RUN for case in cases}
+    pending = {case.name: NOT_RUN for case in cases}
 
     def finish(case: Case, problem: Problem | None) -> None:
         if problem:
@@ -76,12 +81,18 @@ def run_cases(
         else:
             put_in_place(folders[case.name], result_folder(out, case))
         del pending[case.name]
+        count()
         write_index(out, problems | pending)  # a run that is killed later could not
+
+    def count() -> None:
+        if len(cases) > 1:
+            report(f"cases ({len(cases) - len(pending)} of {len(cases)})", OVERALL)
 
     try:
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
         write_index(out, problems | pending)
+        count()
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), report, each_for_itself=True) as processes:
             jobs: dict[Future[Problem | None], Case] = {

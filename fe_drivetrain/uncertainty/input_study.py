@@ -14,6 +14,7 @@ from typing import TypeVar
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.made_by import program_hash
 from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.fidelity.quantities import (
     Number,
@@ -24,6 +25,7 @@ from fe_drivetrain.fidelity.quantities import (
     without_zeros,
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft, meridian_shaft
+from fe_drivetrain.response.cached import solved_by
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.uncertainty.resolver import Resolver
 from fe_drivetrain.uncertainty.response_surface import UnitSurface, touching, unit_surface
@@ -178,9 +180,17 @@ def study(
 
     report("sensitivities")
     slopes = sensitivities(scene, evaluate, list(scene.uncertainty))
-    samples = sample(scene, evaluate, count, seed, report)
+    content = {
+        "numbers of": scene.model_dump(mode="json"),
+        "level": level,
+        "seed of surfaces": seed,
+        "asked": list(asked),
+        "load": None if load is None else load.tolist(),
+        "made by": {"code": program_hash(), **solved_by()},
+    }
+    samples = sample(scene, evaluate, count, seed, report, content)
     varying = [n.name for n in found if samples[n.name].varies]
-    shares = sobol_shares(scene, evaluate, varying, sobol, seed, report) if sobol else {}
+    shares = sobol_shares(scene, evaluate, varying, sobol, seed, report, content) if sobol else {}
     report("error of the level")
     soft_samples = _soft(samples)
     return Study(

@@ -12,35 +12,13 @@ from fe_drivetrain.uncertainty.sampling import Samples, distribution
 
 
 def half_band(samples: Samples) -> float:
-    """Half the width of the band, relative to the nominal value.
-
-    Parameters
-    ----------
-    samples : Samples
-        Of one quantity.
-
-    Returns
-    -------
-    float
-    """
+    """Half the width of the band, relative to the nominal value."""
     band = samples.band()
     return (band.high - band.low) / 2 / abs(samples.nominal)
 
 
 def first_order(found: Study, number: Number) -> float:
-    """Relative standard deviation predicted by the sensitivities, for independent inputs.
-
-    Parameters
-    ----------
-    found : Study
-        The study.
-    number : Number
-        The quantity.
-
-    Returns
-    -------
-    float
-    """
+    """Relative standard deviation predicted by the sensitivities, for independent inputs."""
     parts = [
         found.slopes[number.name][key] * relative_spread(spread)
         for key, spread in found.scene.uncertainty.items()
@@ -49,33 +27,12 @@ def first_order(found: Study, number: Number) -> float:
 
 
 def relative_spread(spread: Spread) -> float:
-    """Standard deviation of a value, relative to its nominal value.
-
-    Parameters
-    ----------
-    spread : Spread
-        Its distribution.
-
-    Returns
-    -------
-    float
-    """
+    """Standard deviation of a value, relative to its nominal value."""
     return float(distribution(spread, 1.0).std())
 
 
 def figures(found: Study) -> dict[str, Any]:
-    """All numbers, for other programs.
-
-    Parameters
-    ----------
-    found : Study
-        The study.
-
-    Returns
-    -------
-    dict
-        As JSON.
-    """
+    """All numbers, for other programs, as JSON."""
     quantities = {}
     for number in found.numbers:
         samples, error = found.samples[number.name], found.errors[number.name]

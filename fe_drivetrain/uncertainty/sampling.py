@@ -21,6 +21,7 @@ from fe_drivetrain.common.reading import value_by_key
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.scene import Scene, Spread
+from fe_drivetrain.uncertainty.kept_rows import evaluated_rows
 
 Evaluate = Callable[[Scene], Mapping[str, float]]
 """Numbers of a scene by name."""
@@ -240,6 +241,7 @@ def sample(
     count: int = 128,
     seed: int = 0,
     report: Callable[[str], object] = lambda step: None,
+    content: Mapping[str, Any] | None = None,
 ) -> dict[str, Samples]:
     """Results over a Latin hypercube of the scene's uncertain values, by name.
 
@@ -253,6 +255,9 @@ def sample(
         Of the hypercube.
     report : callable
         Called with what is being done.
+    content : mapping or None
+        All that `evaluate` depends on, as plain data: its results are kept as they come. None
+        keeps nothing.
 
     Raises
     ------
@@ -263,12 +268,14 @@ def sample(
     keys = tuple(scene.uncertainty)
     quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
     inputs = np.column_stack([d.ppf(q) for d, q in zip(_spreads(scene), quantiles.T, strict=True)])
-    rows = []
-    for number, row in enumerate(inputs):
-        report(f"samples ({number + 1} of {count})")
-        rows.append(_evaluated(scene, evaluate, keys, row))
+    values = evaluated_rows(
+        inputs,
+        lambda row: _evaluated(scene, evaluate, keys, row),
+        content,
+        lambda number: report(f"samples ({number} of {count})"),
+    )
     return {
-        name: Samples(keys, inputs, np.array([row[name] for row in rows]), nominal)
+        name: Samples(keys, inputs, values[name], nominal)
         for name, nominal in evaluate(scene).items()
     }
 
@@ -280,6 +287,7 @@ def sobol_shares(
     count: int = 64,
     seed: int = 0,
     report: Callable[[str], object] = lambda step: None,
+    content: Mapping[str, Any] | None = None,
 ) -> dict[str, Shares]:
     """First-order and total shares of the variance (Sobol 2001; Saltelli et al. 2010), by name.
 
@@ -295,6 +303,8 @@ def sobol_shares(
         Of the samples.
     report : callable
         Called with what is being done.
+    content : mapping or None
+        As of `sample`.
     """
     check_spreads(scene)
     keys = tuple(scene.uncertainty)
@@ -305,13 +315,15 @@ def sobol_shares(
     def results(rows: Floats) -> Floats:
         """(s, n) of (n, d) values."""
         nonlocal done
-        found = []
-        for row in rows:
-            done += 1
-            report(f"samples of Sobol's shares ({done} of {total})")
-            values = _evaluated(scene, evaluate, keys, row)
-            found.append([values[name] for name in names])
-        return np.array(found).T
+        before = done
+        values = evaluated_rows(
+            rows,
+            lambda row: _evaluated(scene, evaluate, keys, row),
+            content,
+            lambda number: report(f"samples of Sobol's shares ({before + number} of {total})"),
+        )
+        done += len(rows)
+        return np.array([values[name] for name in names])
 
     quantiles = qmc.Sobol(d=2 * d, rng=seed).random(count)
     spreads = _spreads(scene)

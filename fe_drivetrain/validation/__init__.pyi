@@ -12,6 +12,7 @@ from . import housing_nodes as housing_nodes
 from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
 from . import layers as layers
+from . import loaded_blocks as loaded_blocks
 from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import low_speed_shaft as low_speed_shaft

@@ -17,9 +17,9 @@ from fe_drivetrain.response import (
     Response,
     bearing_unit_stiffness,
     build_model,
+    cached_response,
     mesh_scene,
     tilt_stiffness,
-    unit_load_response,
     without_gearbox,
 )
 from fe_drivetrain.scene import Scene, change_scene, library_scene
@@ -65,7 +65,7 @@ def tilted(factor: float) -> Tilted:
     scene: Scene = change_scene(library_scene("main_bearing_bonded"), SHORT)
     scene = without_gearbox(scene.model_copy(update={"mesh": scene.mesh.scaled(factor)}))
     model = build_model(scene, mesh_scene(scene))
-    response = unit_load_response(model)
+    response = cached_response(model)
     compliance = np.linalg.inv(bearing_unit_stiffness(response, BEARING))
     return Tilted(
         model,

@@ -15,6 +15,12 @@ ORDERS = 400
 SHEAR = 1.2
 """Shear factor of a rectangle."""
 
+GROWTH = 1.5
+"""Of the lengths of elements away from the load, up to 1.5 walls."""
+
+LONGEST = 0.25
+"""Angle of an element [rad]: stress turns with it, and its recovery is linear in an element."""
+
 ALONG, ACROSS = "bore along the load", "bore across the load"
 UNDER, OUTSIDE, STIFFNESS = "bore under the load", "outside, across", "stiffness"
 
@@ -143,3 +149,25 @@ class SqueezedRing:
     def share(self, change: float) -> float:
         """A change of diameter [m], closing positive, over W R^3 / (E' I)."""
         return float(-change * self.plane.E / (12.0 * self.force * self.ratio**3))
+
+    def boundaries(self, level: int) -> Floats:
+        """Angles [rad] that divide a quarter: one element under the load, growing ones to the end.
+
+        Parameters
+        ----------
+        level : int
+            Every element is divided into so many.
+        """
+        quarter = 0.5 * np.pi
+        longest = min(1.5 / self.ratio, LONGEST)
+        lengths = [self.reach]
+        while sum(lengths) < quarter:
+            lengths.append(min(lengths[-1] * GROWTH, longest))
+        coarse = np.concatenate([[0.0], np.cumsum(lengths)])
+        # the load ends at a boundary; what follows is stretched to end at the quarter
+        remaining = quarter - self.reach
+        coarse[1:] = self.reach + (coarse[1:] - self.reach) * remaining / (coarse[-1] - self.reach)
+        divided = np.arange((len(coarse) - 1) * level + 1) / level
+        fine = np.asarray(np.interp(divided, range(len(coarse)), coarse))
+        fine[-1] = quarter
+        return fine

@@ -1,0 +1,1 @@
+"""Rolling bearings by themselves: rollers and laminae between rigid rings."""

@@ -1,0 +1,153 @@
+"""Load distribution of discrete rollers against Sjovall's integrals."""
+
+import numpy as np
+
+from fe_drivetrain.bearing import (
+    Bearing,
+    ContactLaw,
+    RollerRow,
+    catalogue_bearing,
+    cylindrical,
+    equilibrium,
+    load_zones,
+    sjovall,
+)
+from fe_drivetrain.cases import case
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+
+#: 1 / J_r at half a circle of load, as printed in tables of the integral.
+FACTORS = {"Houpert 1.1": (1.1, 4.0766), "ISO 10/9": (10 / 9, 4.0850), "Hertz 3/2": (1.5, 4.3701)}
+
+#: Peak of discrete rollers times Z / F_r, exponent 10/9, computed independently.
+DISCRETE = {8: 4.0770, 14: 4.0860, 20: 4.0846, 36: 4.0849, 72: 4.0850}
+
+FORCE = 4e5  # N
+
+#: Loaded shares of the diameter in the chart.
+SHARES = [0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.5, 5.0]
+SOURCE = "Sjovall 1933, as in Harris, Rolling bearing analysis, ch. 7"
+
+
+def with_exponent(bearing: Bearing, exponent: float) -> Bearing:
+    """The same bearing with another exponent of its contact law."""
+    return bearing.with_rows(law=ContactLaw(bearing.rows[0].law.stiffness, exponent))
+
+
+@case(
+    "Load distribution of discrete rollers against Sjovall's integrals",
+    source="Sjovall 1933, as in Harris, Rolling bearing analysis, ch. 7",
+)
+def run(run: Run, page: Page) -> None:
+    """Radial, axial and tilting loads of bearing S, and clearance, each in closed form."""
+    bearing = catalogue_bearing("bearing_s")
+    row = bearing.rows[1]
+    assert isinstance(row, RollerRow)
+    Z, cosine = bearing.counts[0], float(np.cos(row.angle))
+    rows: list[Record] = []
+    with run.step("radial force"):
+        for name, (exponent, factor) in FACTORS.items():
+            found = equilibrium(
+                with_exponent(bearing, exponent), [0, 0, -FORCE, 0, 0], tolerance=1e-12
+            )
+            peak = float(found.rollers.max()) * Z * cosine / (0.5 * FORCE)
+            page.equals(
+                f"{name}: peak roller times Z cos(alpha) over the row's force",
+                peak,
+                factor,
+                within=1e-4,
+                why="36 rollers in place of infinitely many: 1e-5; the reference has five digits",
+                source=SOURCE,
+                measure="reaction",
+            )
+            rows.append(
+                {"law": name, "peak factor": peak, "1 / J_r": 1 / sjovall(0.5, exponent)[0]}
+            )
+    with run.step("number of rollers"):
+        for n, factor in DISCRETE.items():
+            one = cylindrical("one row", n, 0.01, 0.03, 0.6)
+            found = equilibrium(one, [0, -FORCE, 0, 0, 0], tolerance=1e-12)
+            page.equals(
+                f"{n} rollers, one under the load: peak times Z / F_r",
+                float(found.rollers.max()) * n / FORCE,
+                factor,
+                within=2e-5,
+                why="the reference is rounded to five digits",
+                source="sums over discrete rollers, computed independently",
+                measure="reaction",
+            )
+    with run.step("axial force and moment"):
+        axial = equilibrium(bearing, [FORCE, 0, 0, 0, 0], tolerance=1e-12).rollers[0]
+        theta = np.array([0, 0, 0, 1e-3, 0])
+        moment = 2 * Z * sjovall(0.5, 1.1)[0] * row.law.stiffness
+        arms = np.abs(row.arm + row.places)
+        moment *= float(np.mean(arms**2.1)) * 1e-3**1.1
+        back = equilibrium(bearing, [0, 0, 0, moment, 0], tolerance=1e-12).displacements[0]
+    page.equals(
+        "axial force: each roller of one row",
+        float(axial[Z:].min()) / 1e3,
+        FORCE / (Z * np.sin(row.angle)) / 1e3,
+        within=1e-10,
+        why="round-off: all rollers are alike",
+        source="F / (Z sin(alpha))",
+        unit="kN",
+        measure="reaction",
+    )
+    page.vanishes(
+        "axial force: the other row",
+        float(axial[:Z].max()),
+        within=0.0,
+        why="it lifts off",
+        source="equilibrium",
+        unit="N",
+    )
+    page.equals(
+        "moment of a tilt of 1 mrad, returned",
+        float(back[3]) * 1e3,
+        float(theta[3]) * 1e3,
+        within=3e-5,
+        why="36 rollers in place of infinitely many",
+        source="M = 2 Z J_r K mean(|e|^2.1) theta^1.1, e the arm of each lamina (Stirling 2023, Eq "
+        "4.13-4.18)",
+        unit="mrad",
+        measure="rotation",
+    )
+    with run.step("clearance"):
+        swept = [clearance(float(um)) for um in range(0, 201, 50 if run.quick else 10)]
+    page.answer(
+        f"Discrete rollers carry Sjovall's peak, {rows[0]['peak factor']:.4f} F / (Z cos(alpha)) "
+        "of a row with exponent 1.1, to 1e-5.",
+        f"A diametral clearance of 0.2 mm raises the peak of the planet bearing from "
+        f"{swept[0]['peak roller [kN]']:.1f} to {swept[-1]['peak roller [kN]']:.1f} kN.",
+    )
+    page.section("Peak factors")
+    page.table("Bearing S under a radial force", rows)
+    page.section("Load zone")
+    page.chart(
+        "J_r and J_a over the loaded share of the diameter",
+        [
+            trace(f"{label}, {name}", SHARES, [sjovall(e, exponent)[i] for e in SHARES])
+            for name, (exponent, _) in FACTORS.items()
+            for i, label in enumerate(("J_r", "J_a"))
+        ],
+        "epsilon",
+        "integral",
+    )
+    page.section("Clearance")
+    page.sweep(
+        "Peak roller of a planet bearing (16 rollers, 178 kN) over its clearance",
+        swept,
+        "diametral clearance [um]",
+        "peak roller [kN]",
+    )
+
+
+def clearance(um: float) -> Record:
+    """The planet bearing of Al-Hamadani's size under 178 kN with a diametral clearance."""
+    bearing = catalogue_bearing("planet_nj2232", clearance=0.5e-6 * float(um))
+    (zone,) = load_zones(bearing, equilibrium(bearing, [0, 0, -178e3, 0, 0]).displacements)
+    return {
+        "diametral clearance [um]": float(um),
+        "peak roller [kN]": float(zone.peak[0]) / 1e3,
+        "loaded rollers": int(zone.loaded[0]),
+    }

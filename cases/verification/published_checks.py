@@ -1,0 +1,88 @@
+"""Main shaft by finite elements, and checks, shared by the cases of published turbines."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation.shaft_theory import polar_moment
+from fe_drivetrain.validation.twisted_tubes import TwistedTube, twisted_tube
+
+DIGITS = "half of the last published digit"
+CLOSED_FORM = "closed form G J / L"
+#: Least and largest shear modulus of steels [Pa].
+USUAL_G = np.array([79.3e9, 80.8e9])
+
+STIFFNESS = "stiffness [N m/rad]"
+
+
+@dataclass(frozen=True)
+class MainShaft:
+    """A uniform main shaft [m, Pa], its stiffness in closed form [N m/rad] and by elements."""
+
+    outer: float
+    inner: float
+    length: float
+    G: float
+    closed: float
+    found: TwistedTube
+
+
+def main_shaft(run: Run, given: Mapping[str, float]) -> MainShaft:
+    """The main shaft of a turbine by finite elements."""
+    outer, G = given["outer"], 1e9 * given["G"]
+    inner = outer - 2 * given["wall"] if "wall" in given else 0.0
+    length = given["length"] if "length" in given else given["to_bearing"] + given["between"]
+    found = run.timed("mesh and solve", twisted_tube, outer, inner, length, G, run.quick)
+    return MainShaft(outer, inner, length, G, G * polar_moment(outer, inner) / length, found)
+
+
+def check_torsion(page: Page, name: str, found: TwistedTube, reference: float, source: str) -> None:
+    """The stiffness by finite elements against a closed form or a published figure."""
+    page.equals(
+        name,
+        found.stiffness,
+        reference,
+        within=found.tolerance,
+        why=found.reason,
+        source=source,
+        unit="N m/rad",
+        measure="stiffness",
+        band=found.band,
+    )
+
+
+def check_digits(
+    page: Page,
+    name: str,
+    computed: float,
+    published: float,
+    half: float,
+    source: str,
+    unit: str = "N m/rad",
+    shown: str = "",
+) -> None:
+    """A closed form against a published stiffness, to half of its last digit."""
+    page.equals(
+        name,
+        computed,
+        published,
+        within=half / published,
+        why=f"{DIGITS}{shown}",
+        source=source,
+        unit=unit,
+        measure="stiffness",
+    )
+
+
+def check_free_free(page: Page, by_eigenvalues: float, closed: float) -> None:
+    """The free-free frequency of rotor and generator, by eigenvalues and in closed form."""
+    page.vanishes(
+        "free-free frequency by eigenvalues against the closed form",
+        by_eigenvalues / closed - 1,
+        within=1e-9,
+        why="round-off of the eigenvalues of two masses: both are the same formula",
+        source="sqrt(k (1 / J_rotor + 1 / n^2 J_generator)) / 2 pi",
+        basis="self-consistency",
+    )

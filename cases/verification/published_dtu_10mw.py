@@ -1,0 +1,120 @@
+"""DTU 10 MW turbine: frequencies of two masses, and the shaft behind the stiffness."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.cases.verification.published_checks import (
+    DIGITS,
+    STIFFNESS,
+    MainShaft,
+    check_digits,
+    check_free_free,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.validation.shaft_theory import (
+    chain_frequencies,
+    polar_moment,
+    rod_frequency,
+    two_mass_frequencies,
+)
+
+STEEL_DENSITY = 7850.0  # kg/m^3
+
+
+def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
+    """Two masses in closed form, by eigenvalues, and with the shaft's own inertia."""
+    stiffness, rotor, polar = given["stiffness"], given["rotor"], given["polar"]
+    generator = given["generator"] * given["ratio"] ** 2
+    free, fixed = two_mass_frequencies(stiffness, rotor, generator)
+    by_eigenvalues = float(chain_frequencies([rotor, generator], [stiffness])[1])
+    held = float(chain_frequencies([rotor], [], stiffness)[0])
+    own = STEEL_DENSITY * polar * shaft.length
+    with_shaft = rod_frequency(stiffness, own, rotor, generator)
+    for name, computed in (("free-free", free), ("free-fixed", fixed)):
+        page.equals(
+            f"{name} frequency, two masses",
+            computed,
+            given[name.replace("-", "_")],
+            within=0.0005,
+            relative=False,
+            why=DIGITS,
+            source=sources["stiffness"],
+            unit="Hz",
+            measure="frequency",
+        )
+    check_free_free(page, by_eigenvalues, free)
+    page.vanishes(
+        "free-fixed frequency by eigenvalues against the closed form",
+        held / fixed - 1,
+        within=1e-9,
+        why="round-off of one eigenvalue: both are the same formula",
+        source="sqrt(k / J_rotor) / 2 pi",
+        basis="self-consistency",
+    )
+    check_digits(
+        page,
+        "stiffness from K G / L of the turbine's HAWC2 shaft",
+        polar * shaft.G / shaft.length,
+        stiffness,
+        0.5,
+        sources["stiffness"],
+        shown=" (1 N m/rad)",
+    )
+    check_digits(
+        page,
+        f"polar moment of a solid shaft of {shaft.outer:g} m",
+        polar_moment(shaft.outer),
+        polar,
+        0.5e-4,
+        sources["polar"],
+        unit="m^4",
+    )
+    page.equals(
+        f"finite elements, solid shaft of {shaft.outer:g} m",
+        shaft.found.stiffness,
+        stiffness,
+        within=shaft.found.tolerance + 0.5e-4 / polar,
+        why=f"{shaft.found.per_turn} parabolic arcs round a turn, and {DIGITS} of K",
+        source=sources["stiffness"],
+        unit="N m/rad",
+        measure="stiffness",
+        band=shaft.found.band,
+    )
+    page.answer(
+        f"Two masses give {free:.4f} Hz free-free and {fixed:.4f} Hz free-fixed, as published. "
+        f"The stiffness is K G / L of a solid shaft of {shaft.outer:g} m over {shaft.length:g} m "
+        "to its last digit; that shaft's own inertia would lower the first frequency by "
+        f"{100 * (1 - with_shaft / free):.3f} %."
+    )
+    sweep = np.logspace(8.5, 11, 60)
+    lines = np.array([two_mass_frequencies(k, rotor, generator) for k in sweep])
+    published = [given["free_free"], given["free_fixed"]]
+    page.chart(
+        "Frequencies of the two masses by the stiffness between them",
+        [
+            trace("free-free", sweep, lines[:, 0]),
+            trace("free-fixed", sweep, lines[:, 1]),
+            trace("published", [stiffness] * 2, published, True, marker={"size": 10}),
+        ],
+        STIFFNESS,
+        "frequency [Hz]",
+        "xy",
+    )
+    page.table(
+        "Frequencies [Hz]",
+        [
+            ["free-free", free, by_eigenvalues, published[0]],
+            ["free-fixed (generator held)", fixed, held, published[1]],
+            ["free-free with the shaft's inertia", with_shaft, None, None],
+        ],
+        ["case", "closed form", "eigenvalues", "published"],
+    )
+    page.text(
+        "The IEA 10 MW turbine's OpenFAST model holds the same stiffness, rounded: see that case."
+    )
+    page.assume("density of the shaft", STEEL_DENSITY, "kg/m^3", "steel")
+    page.data("free_free", free)
+    page.data("free_fixed", fixed)

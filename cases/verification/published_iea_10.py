@@ -1,0 +1,88 @@
+"""IEA 10 MW turbine: the main shaft as a tube, and a stiffness that is another turbine's."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.cases.verification.published_checks import (
+    CLOSED_FORM,
+    STIFFNESS,
+    USUAL_G,
+    MainShaft,
+    check_digits,
+    check_torsion,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.validation.shaft_theory import polar_moment
+
+
+def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
+    """The tube, and what other descriptions of it would give."""
+    found, placeholder = shaft.found, given["placeholder"]
+    G, length = 1e9 * given["dtu_G"], given["dtu_length"]
+    x, polar = np.array(given["hawc2_x"]), np.array(given["hawc2_polar"])
+    # 1 / K is integrated exactly where K is linear
+    steps, slope = np.diff(x), np.diff(polar) / np.diff(x)
+    level = np.abs(slope) < 1e-12
+    flexibility = np.where(
+        level,
+        steps / polar[:-1],
+        np.log(polar[1:] / polar[:-1]) / np.where(level, 1.0, slope),
+    )
+    low, high = shaft.closed * USUAL_G / shaft.G
+    check_torsion(page, "finite elements, tube over 3.0 m", found, shaft.closed, CLOSED_FORM)
+    check_digits(
+        page,
+        "what the placeholder is: K G / L of the DTU 10 MW turbine's shaft",
+        G * given["dtu_polar"] / length,
+        placeholder,
+        500.0,
+        sources["placeholder"],
+        shown=" (1000 N m/rad)",
+    )
+    page.answer(
+        f"DTTorSpr for the main shaft alone: {found.stiffness:.4g} N m/rad (numerical band "
+        f"± {found.band:.1g}; {low:.4g} to {high:.4g} for any usual G). The published "
+        f"{placeholder:.4g} is the DTU 10 MW turbine's, carried over, and "
+        f"{found.stiffness / placeholder:.1f} times softer."
+    )
+    descriptions = {
+        "finite elements, 3.0 m, wall 0.1 m, over 3.0 m": found.stiffness,
+        "closed form of it": shaft.closed,
+        "closed form, G = 79.3 GPa": low,
+        "closed form, G = 80.8 GPa": high,
+        "WISDEM's later shaft, 2.5 m, wall 0.1 m, over 1.0 + 1.2 m": (
+            shaft.G * polar_moment(2.5, 2.3) / 2.2
+        ),
+        "the turbine's HAWC2 shaft, by its sections over 5.4 m": G / flexibility.sum(),
+        "placeholder in the OpenFAST model": placeholder,
+    }
+    page.table(
+        "Torsional stiffness by description of the shaft",
+        [
+            {"shaft": name, STIFFNESS: k, "over the placeholder": k / placeholder}
+            for name, k in descriptions.items()
+        ],
+    )
+    fine = np.linspace(0.0, x[-1], 400)
+    along = np.interp(fine, x, polar)
+    twist = np.cumsum(np.diff(fine) / (G * 0.5 * (along[1:] + along[:-1])))
+    load = 1e3 * 1e7  # 10 MN m, in mrad
+    page.chart(
+        "Twist along the shaft under 10 MN m, from the gearbox-less generator's end: the tube, "
+        "and the sections of the turbine's HAWC2 model",
+        [
+            trace("HAWC2 sections", fine, load * np.concatenate([[0.0], twist])),
+            trace("tube", [0.0, shaft.length], [0.0, load / shaft.closed]),
+            trace("placeholder", [0.0, length], [0.0, load / placeholder]),
+        ],
+        "x [m]",
+        "twist [mrad]",
+    )
+    page.text(
+        "The descriptions differ by far more than any numerical band: what counts as the shaft, "
+        "from where to where, decides. The HAWC2 sections include the thin tube between bearing "
+        "and generator, and hold most twist there."
+    )

@@ -1,0 +1,111 @@
+"""NREL 5 MW turbine: the main shaft beside the stiffness of the whole drivetrain."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.cases.verification.published_checks import (
+    CLOSED_FORM,
+    STIFFNESS,
+    MainShaft,
+    check_free_free,
+    check_torsion,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.validation.shaft_theory import (
+    chain_frequencies,
+    polar_moment,
+    solid_diameter,
+    two_mass_frequencies,
+)
+
+
+def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
+    """The shaft beside the published stiffness of the whole drivetrain."""
+    found, G, length = shaft.found, shaft.G, shaft.length
+    stiffness, rotor = given["stiffness"], given["rotor"]
+    high = G * polar_moment(given["high"]) / given["high_length"] * given["wisdem_ratio"] ** 2
+    series = 1 / (1 / shaft.closed + 1 / high)
+    generator = given["generator"] * given["ratio"] ** 2
+    both = rotor * generator / (rotor + generator)
+    free, fixed = two_mass_frequencies(stiffness, rotor, generator)
+    soft, _ = two_mass_frequencies(series, rotor, generator)
+    length_needed = G * polar_moment(shaft.outer) / stiffness
+    diameter_needed = solid_diameter(stiffness * length / G)
+    page.equals(
+        "damping ratio of the free-free mode",
+        float(given["damping"] / (2 * np.sqrt(stiffness * both))),
+        0.05,
+        within=0.0005,
+        relative=False,
+        why="the published 5 % to two figures",
+        source="Jonkman et al. 2009, NREL/TP-500-38060, section 5: stiffness and damping for 5 % "
+        "(second-hand: the section itself was not read)",
+        unit="-",
+        measure="frequency",
+        basis="second-hand",
+    )
+    check_free_free(page, float(chain_frequencies([rotor, generator], [stiffness])[1]), free)
+    check_torsion(page, "finite elements, low-speed shaft alone", found, shaft.closed, CLOSED_FORM)
+    page.answer(
+        f"The main shaft in WISDEM's model, {shaft.outer:g} m over {length:.2f} m, has "
+        f"{found.stiffness:.4g} N m/rad alone (± {found.band:.1g}): "
+        f"{stiffness / shaft.closed:.2f} times softer than the {stiffness:,.0f} that the "
+        "aeroelastic model has for the whole drivetrain. So the two do not belong to one machine: "
+        f"the published figure would need that shaft to be {length_needed:.2f} m long, or "
+        f"{diameter_needed:.2f} m thick, with all else rigid."
+    )
+    page.table(
+        "Stiffness, on the rotor's side",
+        [
+            {"part": name, STIFFNESS: k, "over the published": k / stiffness}
+            for name, k in (
+                ("published, whole drivetrain", stiffness),
+                ("low-speed shaft, G J / L", shaft.closed),
+                ("low-speed shaft, finite elements", found.stiffness),
+                ("high-speed shaft, G J n^2 / L", high),
+                ("both in series, as WISDEM does", series),
+            )
+        ],
+    )
+    page.table(
+        "Free-free frequency of rotor and generator",
+        [
+            {"stiffness": name, "frequency [Hz]": frequency}
+            for name, frequency in (
+                ("published", free),
+                ("WISDEM's shafts in series", soft),
+                ("published, generator held", fixed),
+            )
+        ],
+    )
+    diameters = np.linspace(0.4, 1.2, 60)
+    page.chart(
+        "Stiffness of a solid main shaft by its diameter, for several lengths, beside the "
+        "published figure of the drivetrain",
+        [
+            *(
+                trace(f"{L:g} m", diameters, [G * polar_moment(d) / L for d in diameters])
+                for L in (1.0, 2.28, 4.0)
+            ),
+            trace("published", diameters[[0, -1]], [stiffness] * 2),
+            trace("finite elements", [shaft.outer], [found.stiffness], True, marker={"size": 10}),
+        ],
+        "diameter [m]",
+        STIFFNESS,
+        "y",
+    )
+    page.text(
+        "A shaft can only be softer than all of itself: compliances add. With the published "
+        "figure and a shaft that takes half of the compliance, it would be "
+        f"{solid_diameter(2 * stiffness * length / G):.2f} m thick over {length:.2f} m. Gearbox "
+        "and generator have the other half then; no published split is known."
+    )
+    page.assume(
+        "bore of the low-speed shaft",
+        "none",
+        "",
+        "a wall of 0.288 m leaves 1 mm of 0.577 m: 1e-11 of J",
+    )

@@ -1,0 +1,255 @@
+"""Answers at given displacements: load zones, laminae, pressures, stiffness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.bearing.contact import STEEL_E, PointContact, line_pressure, point_contact
+from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, angles, pitch_ratio
+from fe_drivetrain.bearing.rolling import elements, forces
+from fe_drivetrain.common.arrays import Floats, Ints
+
+_GAUSS_POINTS = 32
+
+
+@dataclass(frozen=True)
+class LoadZone:
+    """Which rolling elements of one row carry, over n cases.
+
+    Attributes
+    ----------
+    loaded : Ints
+        (n,) how many.
+    peak, total : Floats
+        (n,) largest load, and sum of all [N].
+    at : Floats
+        (n,) angle of the largest load [deg], 0 to 360.
+    centre : Floats
+        (n,) direction of the row's radial force [deg]; not a number without one.
+    """
+
+    loaded: Ints
+    peak: Floats
+    total: Floats
+    at: Floats
+    centre: Floats
+
+
+def by_row(bearing: Bearing, values: Floats) -> list[Floats]:
+    """Columns of all rolling elements, row by row.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    values : Floats
+        (n, total), as from `roller_loads`.
+
+    Returns
+    -------
+    rows : list of Floats
+        (n, elements of the row) each.
+    """
+    return np.split(values, np.cumsum(bearing.counts)[:-1], axis=1)
+
+
+def load_zones(bearing: Bearing, displacements: ArrayLike) -> list[LoadZone]:
+    """The load zone of each row.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    displacements : array_like
+        (n, 5) [m, rad].
+
+    Returns
+    -------
+    zones : list of LoadZone
+        One for each row.
+    """
+    loads, _, contact_angles = elements(bearing, displacements)
+    found = []
+    for row, Q, alpha in zip(
+        bearing.rows, by_row(bearing, loads), by_row(bearing, contact_angles), strict=True
+    ):
+        psi = angles(row)
+        radial = (Q * np.cos(alpha)) @ np.exp(1j * psi)
+        none = np.abs(radial) <= 1e-9 * Q.sum(axis=1)
+        centre = np.where(none, np.nan, np.degrees(np.angle(radial)) % 360.0)
+        found.append(
+            LoadZone(
+                (Q > 0.0).sum(axis=1),
+                Q.max(axis=1),
+                Q.sum(axis=1),
+                np.degrees(psi[Q.argmax(axis=1)]) % 360.0,
+                centre,
+            )
+        )
+    return found
+
+
+def lamina_loads(row: RollerRow, displacements: ArrayLike) -> Floats:
+    """Load of each lamina of each roller of a row.
+
+    Parameters
+    ----------
+    row : RollerRow
+        With one lamina or more.
+    displacements : array_like
+        (n, 5) or (5,) [m, rad].
+
+    Returns
+    -------
+    loads : Floats
+        (n, rollers, laminae) [N].
+    """
+    n_laminae = max(row.laminae, 1)
+    return row.law.load(approaches(row, displacements)) / n_laminae
+
+
+def approaches(row: RollerRow, displacements: ArrayLike) -> Floats:
+    """Approach of the races at each lamina, negative where they are apart.
+
+    Parameters
+    ----------
+    row : RollerRow
+        With one lamina or more.
+    displacements : array_like
+        (n, 5) or (5,) [m, rad].
+
+    Returns
+    -------
+    approach : Floats
+        (n, rollers, laminae) [m]: Stirling 2023, Eq 4.13, less clearance and profile.
+    """
+    u = np.atleast_2d(np.asarray(displacements, dtype=float))
+    psi = angles(row)
+    e_r = np.vstack([-np.cos(psi), np.sin(psi)])
+    tangent = np.vstack([-np.sin(psi), -np.cos(psi)])
+    w, t = u[:, 1:3] @ e_r, u[:, 3:] @ tangent
+    lean = 0.0 if row.aligning else 1.0
+    middle = u[:, :1] * np.sin(row.angle) + w * np.cos(row.angle) + lean * row.arm * t
+    along = lean * row.places
+    whole: Floats = middle[..., None] + t[..., None] * along - row.clearance - row.free
+    return whole
+
+
+def end_loads(row: RollerRow, displacements: ArrayLike) -> Floats:
+    """How much the ends of each roller carry: load per length there over that of the whole roller.
+
+    Parameters
+    ----------
+    row : RollerRow
+        With laminae.
+    displacements : array_like
+        (n, 5) [m, rad].
+
+    Returns
+    -------
+    ends : Floats
+        (n, rollers, 2), upwind end first: 1 is an even load, more is edge loading, 0 an end that is
+        free; 0 of unloaded rollers. The thesis's difference of two end laminae is the difference of
+        these two times the load over the number of laminae.
+    """
+    q = lamina_loads(row, displacements)
+    mean = q.mean(axis=2, keepdims=True)
+    ends: Floats = np.divide(
+        q[..., [0, -1]], mean, out=np.zeros((*q.shape[:2], 2)), where=mean > 0.0
+    )
+    return ends
+
+
+def ball_contacts(
+    row: BallRow, youngs_modulus: float = STEEL_E
+) -> tuple[PointContact, PointContact]:
+    """Hertz's contacts of a ball with the inner and the outer race.
+
+    Parameters
+    ----------
+    row : BallRow
+        The row.
+    youngs_modulus : float
+        Of balls and rings [Pa].
+
+    Returns
+    -------
+    inner, outer : PointContact
+        Curvatures at the unloaded contact angle.
+    """
+    across, gamma = 2.0 / row.diameter, pitch_ratio(row)
+    inner, outer = (
+        point_contact(
+            (across * (1.0 + side * gamma / (1.0 - side * gamma)), across - 1.0 / groove),
+            youngs_modulus,
+        )
+        for side, groove in ((1.0, row.inner_groove), (-1.0, row.outer_groove))
+    )
+    return inner, outer
+
+
+def pressures(
+    bearing: Bearing, displacements: ArrayLike, youngs_modulus: float = STEEL_E
+) -> list[tuple[Floats, Floats]]:
+    """Largest Hertz pressure of each rolling element on the inner and on the outer race.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    displacements : array_like
+        (n, 5) [m, rad].
+    youngs_modulus : float
+        Of rolling elements and rings [Pa].
+
+    Returns
+    -------
+    pressures : list of tuple
+        For each row, (n, elements) on the inner and on the outer race [Pa]: line contact of the
+        most loaded lamina (a barrel roller counts as a cylinder), point contact of balls.
+    """
+    loads = by_row(bearing, elements(bearing, displacements)[0])
+    found = []
+    for row, Q in zip(bearing.rows, loads, strict=True):
+        if isinstance(row, BallRow):
+            inner, outer = ball_contacts(row, youngs_modulus)
+            found.append((inner.pressure(Q), outer.pressure(Q)))
+        else:
+            gamma = pitch_ratio(row)
+            q = lamina_loads(row, displacements).max(axis=2) * max(row.laminae, 1) / row.length
+            found.append(
+                (
+                    line_pressure(q, 2.0 / row.diameter / (1.0 - gamma), youngs_modulus),
+                    line_pressure(q, 2.0 / row.diameter / (1.0 + gamma), youngs_modulus),
+                )
+            )
+    return found
+
+
+def secant_stiffness(bearing: Bearing, displacements: ArrayLike) -> Floats:
+    """The stiffness that a linear spring would need: K_s u = F(u) - F(0).
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    displacements : array_like
+        (n, 5) or (5,) [m, rad].
+
+    Returns
+    -------
+    secants : Floats
+        (n, 5, 5): the mean of the tangent stiffness on the straight way to u; symmetric. At zero
+        clearance it is the tangent over the exponent of the contact law.
+    """
+    u = np.atleast_2d(np.asarray(displacements, dtype=float))
+    x, w = np.polynomial.legendre.leggauss(_GAUSS_POINTS)  # type: ignore[no-untyped-call]
+    s = 0.5 * (x + 1.0)
+    total = np.zeros((len(u), 5, 5))
+    # t = s^4: tangents go as t^(1/10) near zero
+    for here, weight in zip(s, w, strict=True):
+        total += 0.5 * weight * 4.0 * here**3 * forces(bearing, here**4 * u)[1]
+    return total

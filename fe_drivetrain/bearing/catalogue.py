@@ -1,0 +1,236 @@
+"""Bearings by name, from catalogue files in YAML: every number with its source.
+
+The package's own is ``bearings.yaml``; files of a user extend it, and replace entries of the same
+name.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files as package_files
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from fe_drivetrain.bearing.contact import ContactLaw, houpert, iso_line
+from fe_drivetrain.bearing.geometry import (
+    LAMINAE,
+    Arrangement,
+    Bearing,
+    ball_row,
+    cylindrical,
+    double_row_tapered,
+    spherical_roller,
+    tapered_row,
+    toroidal,
+)
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import parse_mapping, read_text, validated
+from fe_drivetrain.common.strict_yaml import no_truth_value
+
+Kind = Literal[
+    "double_row_tapered",
+    "single_row_tapered",
+    "spherical_roller",
+    "cylindrical",
+    "toroidal",
+    "ball",
+]
+
+_SOURCED = (
+    "elements",
+    "element_diameter",
+    "element_length",
+    "pitch_diameter",
+    "contact_angle",
+    "spread",
+    "ratings",
+)
+
+#: What each kind needs beside number, diameter and pitch diameter, and nothing else of these.
+_NEEDS = {
+    "double_row_tapered": ("arrangement", "element_length", "contact_angle", "spread", "law"),
+    "single_row_tapered": ("element_length", "contact_angle", "law"),
+    "spherical_roller": ("element_length", "contact_angle", "law"),
+    "cylindrical": ("element_length", "law"),
+    "toroidal": ("element_length", "law"),
+    "ball": ("contact_angle",),
+}
+
+
+class Printed(BaseModel):
+    """Ratings as a catalogue prints them [N]."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    C: float | None = Field(default=None, gt=0, description="basic dynamic load rating [N]")
+    C0: float | None = Field(default=None, gt=0, description="basic static load rating [N]")
+    Cu: float | None = Field(default=None, gt=0, description="fatigue load limit [N]")
+
+
+class Entry(BaseModel):
+    """One bearing of a catalogue; lengths in m, angles in deg."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    title: str = Field(description="one line")
+    kind: Kind = Field(description="kind of bearing")
+    arrangement: Arrangement | None = Field(default=None, description="X or O")
+    elements: int = Field(description="rolling elements of one row")
+    element_diameter: float = Field(description="of a roller in its middle, or a ball [m]")
+    element_length: float | None = Field(default=None, description="effective length [m]")
+    pitch_diameter: float = Field(description="circle of the elements' middles [m]")
+    contact_angle: float | None = Field(default=None, description="[deg]")
+    spread: float | None = Field(default=None, description="distance of the rows' middles [m]")
+    law: Literal["houpert", "iso"] | None = Field(default=None, description="contact law")
+    clearance: float = Field(default=0.0, description="along the contact normal [m]")
+    laminae: int = Field(default=LAMINAE, description="of a roller; 0 is the closed form")
+    crown: float = Field(default=0.0, description="profile factor over the diameter [-]")
+    ratings: Printed | None = Field(default=None, description="as printed in a catalogue")
+    scenes: list[str] = Field(default=[], description="library scenes that it stands in")
+    sources: dict[str, str] = Field(description="where each number comes from, or assumed: why")
+
+    _truth = field_validator("*", mode="before")(no_truth_value)
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        needs = _NEEDS[self.kind]
+        for name in ("arrangement", "element_length", "contact_angle", "spread", "law"):
+            given = getattr(self, name) is not None
+            if given != (name in needs):
+                raise InputError(
+                    f"{name} of {self.title!r} is {'given' if given else 'missing'}: a bearing of "
+                    f"kind {self.kind} needs {', '.join(needs)}, and no more"
+                )
+        stated = {name for name in _SOURCED if getattr(self, name) is not None}
+        if stated != self.sources.keys():
+            wrong = ", ".join(sorted(stated ^ self.sources.keys()))
+            raise InputError(
+                f"sources of {self.title!r} must name each number that is given, and no other; see "
+                f"{wrong}: say where it comes from, or 'assumed: why'"
+            )
+        return self
+
+    @property
+    def assumed(self) -> list[str]:
+        """The numbers that no source gives."""
+        return [name for name, text in self.sources.items() if text.startswith("assumed")]
+
+    def bearing(self, name: str) -> Bearing:
+        """The bearing.
+
+        Parameters
+        ----------
+        name : str
+            For messages and reports.
+
+        Returns
+        -------
+        bearing : Bearing
+            Upwind row first; a single tapered row carries an inner ring that is pushed downwind.
+
+        Raises
+        ------
+        InputError
+            Sizes that do not fit each other.
+        """
+        size = (self.elements, self.element_diameter)
+        angle = self.contact_angle or 0.0
+        if self.kind == "ball":
+            return Bearing(
+                name,
+                (ball_row(*size, self.pitch_diameter, angle, radial_clearance=2 * self.clearance),),
+            )
+        assert self.element_length is not None
+        law: ContactLaw = (
+            houpert(self.element_length, self.element_diameter)
+            if self.law == "houpert"
+            else iso_line(self.element_length)
+        )
+        more: dict[str, Any] = {
+            "clearance": self.clearance,
+            "laminae": self.laminae,
+            "crown": self.crown * self.element_diameter,
+            "law": law,
+        }
+        body = (*size, self.element_length, self.pitch_diameter)
+        if self.kind == "double_row_tapered":
+            assert self.spread is not None
+            assert self.arrangement is not None
+            return double_row_tapered(name, *body, angle, self.spread, self.arrangement, **more)
+        if self.kind == "single_row_tapered":
+            return Bearing(name, (tapered_row(*body, angle, **more),))
+        if self.kind == "spherical_roller":
+            return spherical_roller(name, *body, angle, **more)
+        make = cylindrical if self.kind == "cylindrical" else toroidal
+        return make(name, *body, **more)
+
+
+def read_catalogue(*more: str | Path) -> dict[str, Entry]:
+    """All bearings by name: the package's, and those of files.
+
+    Parameters
+    ----------
+    *more : str or Path
+        Catalogue files, later ones before earlier ones.
+
+    Returns
+    -------
+    entries : dict
+        Entries by name.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or an entry is wrong.
+    """
+    entries = dict(_own())
+    for path in more:
+        entries |= _parsed(read_text(path, "bearing catalogue"), str(path))
+    return entries
+
+
+def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
+    """A bearing of the catalogue, with other values where given.
+
+    Parameters
+    ----------
+    name : str
+        Of the entry.
+    *more : str or Path
+        Catalogue files beside the package's.
+    **changes : Any
+        Fields of `Entry`, as ``contact_angle=20``.
+
+    Returns
+    -------
+    bearing : Bearing
+        Named as the entry.
+
+    Raises
+    ------
+    InputError
+        No such entry, or values that do not fit.
+    """
+    entries = read_catalogue(*more)
+    if name not in entries:
+        raise InputError(f"bearing {name!r} is in no catalogue: use one of {', '.join(entries)}")
+    entry = entries[name]
+    if changes:
+        entry = validated(Entry, entry.model_dump() | changes, f"bearing {name}")
+    return entry.bearing(name)
+
+
+@cache
+def _own() -> dict[str, Entry]:
+    text = package_files("fe_drivetrain.bearing").joinpath("bearings.yaml").read_text("utf-8")
+    return _parsed(text, "bearings.yaml")
+
+
+def _parsed(text: str, source: str) -> dict[str, Entry]:
+    found = {}
+    for name, data in parse_mapping(text, source).items():
+        found[name] = validated(Entry, data, f"{source}: {name}")
+        found[name].bearing(name)  # sizes that fit each other
+    return found

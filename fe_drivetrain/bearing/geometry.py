@@ -1,0 +1,630 @@
+"""What a rolling bearing is: rows of rollers or balls between rigid rings.
+
+Frame: x downwind along the shaft, z up, y = z cross x, origin at the bearing's centre. The angle of
+a rolling element is 0 on the right, looking downwind, 90 degrees on top (Stirling 2023, section
+3.5): e_r = (0, -cos psi, sin psi). A contact angle is positive where the row carries an inner ring
+that is pushed downwind: the inner ring pushes a rolling element along (sin(alpha), cos(alpha) e_r).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import asin, cos, degrees, isfinite, pi, radians, sin, tan
+from typing import Literal
+
+import numpy as np
+
+from fe_drivetrain.bearing.contact import (
+    ContactLaw,
+    houpert,
+    in_series,
+    iso_line,
+    lamina_places,
+    log_profile,
+    point_contact,
+)
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+
+Arrangement = Literal["X", "O"]
+"""Face to face (X, TDI: contact lines meet outside) or back to back (O, TDO)."""
+
+LAMINAE = 30
+"""Laminae of a roller where nothing else is given, the least of ISO/TS 16281."""
+
+
+@dataclass(frozen=True)
+class RollerRow:
+    """A row of rollers.
+
+    Attributes
+    ----------
+    rollers : int
+        How many.
+    place : float
+        x of the rollers' middles [m].
+    radius : float
+        Of the rollers' middles from the axis: half the pitch diameter [m].
+    angle : float
+        Contact angle [rad]; the sign says which push of the inner ring the row carries.
+    diameter, length : float
+        Of a roller: in its middle, and effective [m].
+    law : ContactLaw
+        Of one roller.
+    clearance : float
+        Along the contact normal, both contacts together [m]; negative is a preload.
+    laminae : int
+        Slices of a roller; 0 is the closed form along a straight roller.
+    crown : float
+        Factor of the logarithmic profile of one contact [m], both being crowned; 0 is straight.
+    aligning : bool
+        The rollers carry no moment, as on a race that is a sphere about the bearing's centre, or in
+        a toroidal bearing.
+    phase : float
+        Angle of the first roller [rad].
+    """
+
+    rollers: int
+    place: float
+    radius: float
+    angle: float
+    diameter: float
+    length: float
+    law: ContactLaw
+    clearance: float = 0.0
+    laminae: int = LAMINAE
+    crown: float = 0.0
+    aligning: bool = False
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_row(self, "roller", self.rollers)
+        if not (isfinite(self.length) and self.length > 0.0):
+            raise InputError(f"roller length is {self.length:g} m: it must be positive")
+        if not 0 <= self.laminae <= 1000:
+            raise InputError(
+                f"a roller has {self.laminae} laminae: give 1 to 1000, or 0 for the closed form"
+            )
+        if not (isfinite(self.crown) and 0.0 <= self.crown <= 0.01 * self.diameter):
+            raise InputError(
+                f"crown of {1e6 * self.crown:g} um on rollers of {1e3 * self.diameter:g} mm: give "
+                "0 to 1 % of their diameter (0.00035 to 0.00045 of it in ISO/TS 16281)"
+            )
+        if self.crown and not self.laminae:
+            raise InputError("a crowned roller has no closed form: give laminae, 30 or more")
+        if self.aligning and abs(self.arm) > 1e-9 * self.radius:
+            raise InputError(
+                f"the contact normals of an aligning row pass {1e3 * self.arm:.3g} mm from the "
+                "bearing's centre: place it at radius times tan(angle), "
+                f"{1e3 * self.radius * tan(self.angle):.6g} mm"
+            )
+
+    @property
+    def arm(self) -> float:
+        """Approach at a roller's middle over the tilt about its tangent [m]."""
+        return self.place * cos(self.angle) - self.radius * sin(self.angle)
+
+    @property
+    def places(self) -> Floats:
+        """Laminae along a roller, from its middle, growing with x [m]."""
+        return lamina_places(self.length, max(self.laminae, 1))
+
+    @property
+    def free(self) -> Floats:
+        """What each lamina has to approach before it carries, without the clearance [m]."""
+        if not self.crown:
+            return np.zeros(max(self.laminae, 1))
+        return 2.0 * log_profile(self.places, self.length, self.crown)
+
+
+@dataclass(frozen=True)
+class BallRow:
+    """A row of balls in grooves, whose contact angle follows the load.
+
+    Attributes
+    ----------
+    balls : int
+        How many.
+    place, radius : float
+        x and radius of the balls' centres [m].
+    angle : float
+        Contact angle of the unloaded bearing without clearance [rad]: 0 is a deep groove.
+    diameter : float
+        Of a ball [m].
+    inner_groove, outer_groove : float
+        Radii of the grooves [m].
+    law : ContactLaw
+        Of one ball.
+    clearance : float
+        Along the contact normal [m]: half of the radial internal clearance of a deep groove;
+        negative is a preload.
+    phase : float
+        Angle of the first ball [rad].
+    """
+
+    balls: int
+    place: float
+    radius: float
+    angle: float
+    diameter: float
+    inner_groove: float
+    outer_groove: float
+    law: ContactLaw
+    clearance: float = 0.0
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_row(self, "ball", self.balls)
+        for name in ("inner_groove", "outer_groove"):
+            radius = getattr(self, name)
+            if not 0.5 * self.diameter < radius < self.diameter:
+                raise InputError(
+                    f"{name.replace('_', ' ')} has a radius of {1e3 * radius:g} mm: it must be "
+                    f"more than the balls' {500.0 * self.diameter:g} mm, and less than twice it"
+                )
+        if not self.clearance < 0.5 * self.groove_distance:
+            raise InputError(
+                f"clearance of {1e6 * self.clearance:g} um: it must be less than half the distance "
+                f"of the groove centres, {5e5 * self.groove_distance:g} um"
+            )
+
+    @property
+    def groove_distance(self) -> float:
+        """Distance of the groove centres where the ball just touches both [m]."""
+        return self.inner_groove + self.outer_groove - self.diameter
+
+    @property
+    def groove_centre(self) -> tuple[float, float]:
+        """x and radius of the inner groove's centre [m] (ISO/TS 16281: R_i)."""
+        free = self.inner_groove - 0.5 * self.diameter
+        across = cos(self.angle) * (1.0 - max(self.clearance, 0.0) / self.groove_distance)
+        return self.place + free * sin(self.angle), self.radius + free * across
+
+
+Row = RollerRow | BallRow
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """Rows between two rigid rings; the outer one is fixed.
+
+    Attributes
+    ----------
+    name : str
+        For messages and reports.
+    rows : tuple
+        Of `RollerRow` and `BallRow`, upwind first.
+    """
+
+    name: str
+    rows: tuple[Row, ...]
+
+    def __post_init__(self) -> None:
+        if not self.rows:
+            raise InputError(f"bearing {self.name!r} has no rows: give at least one")
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Rolling elements of each row."""
+        return tuple(count(row) for row in self.rows)
+
+    @property
+    def arm(self) -> float:
+        """The length that makes moments of forces: the largest pitch radius [m]."""
+        return max(row.radius for row in self.rows)
+
+    def with_rows(self, **changes: float | int | ContactLaw) -> Bearing:
+        """The same bearing with the same change to every row, as ``with_rows(laminae=60)``."""
+        return replace(self, rows=tuple(replace(row, **changes) for row in self.rows))  # type: ignore[arg-type]
+
+
+def count(row: Row) -> int:
+    """Rolling elements of a row."""
+    return row.rollers if isinstance(row, RollerRow) else row.balls
+
+
+def angles(row: Row) -> Floats:
+    """Angles of the rolling elements [rad], from the right and upward, looking downwind."""
+    n = count(row)
+    return row.phase + 2.0 * np.pi * np.arange(n) / n
+
+
+def pitch_ratio(row: Row) -> float:
+    """gamma = D cos(alpha) / D_pw [-]; the cage turns (1 - gamma) / 2 times with the inner ring."""
+    return row.diameter * cos(row.angle) / (2.0 * row.radius)
+
+
+def tapered_row(
+    rollers: int,
+    diameter: float,
+    length: float,
+    pitch_diameter: float,
+    contact_angle: float,
+    place: float = 0.0,
+    thrust: Literal[1, -1] = 1,
+    law: ContactLaw | None = None,
+    **more: float | int,
+) -> RollerRow:
+    """One row of tapered rollers; their taper is neglected (Stirling 2023, 4.2.2).
+
+    Parameters
+    ----------
+    rollers : int
+        How many.
+    diameter, length, pitch_diameter : float
+        Of a roller, and of the circle of their middles [m].
+    contact_angle : float
+        Mean of inner and outer race [deg], between 0 and 90.
+    place : float
+        x of the rollers' middles [m].
+    thrust : int
+        1: it carries an inner ring that is pushed downwind; -1: upwind.
+    law : ContactLaw, optional
+        `houpert` where left out.
+    **more : float
+        Of `RollerRow`: clearance, laminae, crown, phase.
+
+    Returns
+    -------
+    row : RollerRow
+        The row.
+    """
+    alpha = _inclined("tapered row", contact_angle)
+    return RollerRow(
+        rollers,
+        place,
+        0.5 * pitch_diameter,
+        thrust * alpha,
+        diameter,
+        length,
+        law or houpert(length, diameter),
+        **more,  # type: ignore[arg-type]
+    )
+
+
+def double_row_tapered(
+    name: str,
+    rollers: int,
+    diameter: float,
+    length: float,
+    pitch_diameter: float,
+    contact_angle: float,
+    spread: float,
+    arrangement: Arrangement,
+    law: ContactLaw | None = None,
+    **more: float | int,
+) -> Bearing:
+    """Two rows of tapered rollers about the bearing's centre.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    rollers : int
+        In each row.
+    diameter, length, pitch_diameter : float
+        Of a roller, and of the circle of their middles [m].
+    contact_angle : float
+        [deg], between 0 and 90.
+    spread : float
+        Distance of the rows' middles [m].
+    arrangement : str
+        "X": a push downwind loads the downwind row (TDI); "O": the upwind row (TDO).
+    law : ContactLaw, optional
+        `houpert` where left out.
+    **more : float
+        Of `RollerRow`: clearance, laminae, crown, phase.
+
+    Returns
+    -------
+    bearing : Bearing
+        Upwind row first.
+    """
+    if arrangement not in ("X", "O"):
+        raise InputError(f"arrangement {arrangement!r} of {name}: give X (face to face) or O")
+    if not spread > 0.0:
+        raise InputError(f"rows of {name} are {spread:g} m apart: give a positive distance")
+    sign: Literal[1, -1] = 1 if arrangement == "X" else -1
+    upwind: Literal[1, -1] = -1 if sign == 1 else 1
+    return Bearing(
+        name,
+        tuple(
+            tapered_row(
+                rollers,
+                diameter,
+                length,
+                pitch_diameter,
+                contact_angle,
+                place,
+                thrust,
+                law,
+                **more,
+            )
+            for place, thrust in ((-0.5 * spread, upwind), (0.5 * spread, sign))
+        ),
+    )
+
+
+def spherical_roller(
+    name: str,
+    rollers: int,
+    diameter: float,
+    length: float,
+    pitch_diameter: float,
+    contact_angle: float,
+    law: ContactLaw | None = None,
+    **more: float | int,
+) -> Bearing:
+    """Two rows of barrel rollers on an outer race that is a sphere about the bearing's centre.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    rollers : int
+        In each row.
+    diameter, length, pitch_diameter : float
+        Of a roller, and of the circle of their middles [m].
+    contact_angle : float
+        [deg], between 0 and 90; the rows stand where their contact normals meet in the centre.
+    law : ContactLaw, optional
+        `iso_line` where left out: the conformity is close, and a roller under load touches along
+        its length.
+    **more : float
+        Of `RollerRow`: clearance, laminae, crown, phase.
+
+    Returns
+    -------
+    bearing : Bearing
+        Carries no moment: a load with one is refused.
+    """
+    alpha = _inclined("spherical roller bearing", contact_angle)
+    rows = tuple(
+        RollerRow(
+            rollers,
+            side * 0.5 * pitch_diameter * tan(alpha),
+            0.5 * pitch_diameter,
+            side * alpha,
+            diameter,
+            length,
+            law or iso_line(length),
+            aligning=True,
+            **more,  # type: ignore[arg-type]
+        )
+        for side in (-1.0, 1.0)
+    )
+    return Bearing(name, rows)
+
+
+def cylindrical(
+    name: str,
+    rollers: int,
+    diameter: float,
+    length: float,
+    pitch_diameter: float,
+    places: tuple[float, ...] = (0.0,),
+    law: ContactLaw | None = None,
+    **more: float | int,
+) -> Bearing:
+    """Rows of cylindrical rollers: they float along the axis, and carry tilt by their length.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    rollers : int
+        In each row.
+    diameter, length, pitch_diameter : float
+        Of a roller, and of the circle of their middles [m].
+    places : tuple of float
+        x of each row's middles [m].
+    law : ContactLaw, optional
+        `iso_line` where left out.
+    **more : float
+        Of `RollerRow`: clearance, laminae, crown, phase.
+
+    Returns
+    -------
+    bearing : Bearing
+        Carries no axial force: a load with one is refused.
+    """
+    rows = tuple(
+        RollerRow(
+            rollers,
+            place,
+            0.5 * pitch_diameter,
+            0.0,
+            diameter,
+            length,
+            law or iso_line(length),
+            **more,  # type: ignore[arg-type]
+        )
+        for place in places
+    )
+    return Bearing(name, rows)
+
+
+def toroidal(
+    name: str,
+    rollers: int,
+    diameter: float,
+    length: float,
+    pitch_diameter: float,
+    law: ContactLaw | None = None,
+    **more: float | int,
+) -> Bearing:
+    """One row of long barrel rollers on toroidal races (CARB): it floats along the axis and tilts.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    rollers : int
+        How many.
+    diameter, length, pitch_diameter : float
+        Of a roller, and of the circle of their middles [m].
+    law : ContactLaw, optional
+        `iso_line` where left out.
+    **more : float
+        Of `RollerRow`: clearance, laminae, crown, phase.
+
+    Returns
+    -------
+    bearing : Bearing
+        Carries radial force alone. That axial motion and tilt change its clearance is neglected.
+    """
+    row = RollerRow(
+        rollers,
+        0.0,
+        0.5 * pitch_diameter,
+        0.0,
+        diameter,
+        length,
+        law or iso_line(length),
+        aligning=True,
+        **more,  # type: ignore[arg-type]
+    )
+    return Bearing(name, (row,))
+
+
+def ball_row(
+    balls: int,
+    diameter: float,
+    pitch_diameter: float,
+    contact_angle: float = 0.0,
+    place: float = 0.0,
+    inner_conformity: float = 0.52,
+    outer_conformity: float = 0.53,
+    radial_clearance: float = 0.0,
+    youngs_modulus: float = 206e9,
+    phase: float = 0.0,
+) -> BallRow:
+    """A row of balls, deep groove or angular contact, with Hertz's law from its curvatures.
+
+    Parameters
+    ----------
+    balls : int
+        How many.
+    diameter, pitch_diameter : float
+        Of a ball, and of the circle of their centres [m].
+    contact_angle : float
+        [deg]: 0 is a deep groove; its sign says which push of the inner ring the row carries.
+    place : float
+        x of the balls' centres [m].
+    inner_conformity, outer_conformity : float
+        Radius of a groove over the diameter of a ball; the defaults are those of ISO/TS 16281.
+    radial_clearance : float
+        Radial internal clearance [m], of the diameter.
+    youngs_modulus : float
+        Of balls and rings [Pa].
+    phase : float
+        Angle of the first ball [rad].
+
+    Returns
+    -------
+    row : BallRow
+        The row.
+    """
+    if not -90.0 < contact_angle < 90.0:
+        raise InputError(
+            f"contact angle of {contact_angle:g} deg: a ball bearing with races inside each other "
+            "needs one between -90 and 90 deg"
+        )
+    alpha = radians(contact_angle)
+    _check_sizes(diameter, 0.5 * pitch_diameter)
+    gamma = diameter * cos(alpha) / pitch_diameter
+    across = 2.0 / diameter
+    contacts = [
+        point_contact(
+            (
+                across * (1.0 + sign * gamma / (1.0 - sign * gamma)),
+                across - 1.0 / (conformity * diameter),
+            ),
+            youngs_modulus,
+        )
+        for sign, conformity in ((1.0, inner_conformity), (-1.0, outer_conformity))
+    ]
+    return BallRow(
+        balls,
+        place,
+        0.5 * pitch_diameter,
+        alpha,
+        diameter,
+        inner_conformity * diameter,
+        outer_conformity * diameter,
+        in_series(*contacts),
+        0.5 * radial_clearance * cos(alpha),
+        phase,
+    )
+
+
+def contact_angle_from_taper(outer_diameter: float, inner_diameter: float, length: float) -> float:
+    """Half the cone of a race from its two diameters.
+
+    Parameters
+    ----------
+    outer_diameter, inner_diameter : float
+        Largest and smallest diameter of the race [m].
+    length : float
+        Along the race [m].
+
+    Returns
+    -------
+    angle : float
+        [deg].
+    """
+    share = 0.5 * (outer_diameter - inner_diameter) / length
+    if not 0.0 < share < 1.0:
+        raise InputError(
+            f"a race from {1e3 * inner_diameter:g} to {1e3 * outer_diameter:g} mm along "
+            f"{1e3 * length:g} mm is no cone: check its diameters"
+        )
+    return degrees(asin(share))
+
+
+def _inclined(what: str, contact_angle: float) -> float:
+    """A contact angle that must carry both axial and radial force [rad]."""
+    if not 0.0 < contact_angle < 90.0:
+        raise InputError(
+            f"contact angle of a {what} is {contact_angle:g} deg: it must be between 0 and 90 deg; "
+            "use a cylindrical bearing for 0"
+        )
+    return radians(contact_angle)
+
+
+def _check_sizes(diameter: float, radius: float) -> None:
+    for what, value in (("diameter of the rolling elements", diameter), ("pitch radius", radius)):
+        if not (isfinite(value) and value > 0.0):
+            raise InputError(f"{what} is {value:g} m: it must be positive and finite")
+    if not diameter < radius:
+        raise InputError(
+            f"rolling elements of {1e3 * diameter:g} mm on a pitch radius of {1e3 * radius:g} mm "
+            "leave no inner ring: check diameter and pitch diameter"
+        )
+
+
+def _check_row(row: Row, what: str, n: int) -> None:
+    """Sizes that no bearing has."""
+    _check_sizes(row.diameter, row.radius)
+    if n < 3:
+        raise InputError(f"a row has {n} {what}s: give 3 or more")
+    apart = 2.0 * row.radius * sin(pi / n)
+    if row.diameter > apart:
+        raise InputError(
+            f"{n} {what}s of {1e3 * row.diameter:g} mm overlap: on a pitch diameter of "
+            f"{2e3 * row.radius:g} mm they are {1e3 * apart:.4g} mm apart; give "
+            "fewer or thinner ones"
+        )
+    if not (isfinite(row.angle) and abs(row.angle) < 0.5 * pi - 1e-6):
+        raise InputError(
+            f"contact angle of a row is {degrees(row.angle):g} deg: it must be between -90 and "
+            "90 deg"
+        )
+    if not (isfinite(row.place) and isfinite(row.phase)):
+        raise InputError("place and first angle of a row must be finite numbers [m, rad]")
+    if not (isfinite(row.clearance) and abs(row.clearance) <= 0.01 * row.diameter):
+        raise InputError(
+            f"clearance of {1e6 * row.clearance:g} um along the contact of {what}s of "
+            f"{1e3 * row.diameter:g} mm: beyond 1 % of their diameter there is no bearing left; "
+            "give a smaller clearance, or preload where it is negative"
+        )

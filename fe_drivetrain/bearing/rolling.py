@@ -1,0 +1,639 @@
+"""Equilibrium of a bearing in five degrees of freedom, for many load cases at once.
+
+The inner ring moves by u = (u_x, u_y, u_z [m], theta_y, theta_z [rad]) against the fixed outer
+ring, under the loads (Fx, Fy, Fz [N], My, Mz [N m]) at the bearing's centre. Equilibrium is the
+minimum of a convex energy, so that any start leads to it (`kernels`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import nnls
+
+from fe_drivetrain.bearing import kernels
+from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, angles
+from fe_drivetrain.common.arrays import Bools, Floats, Ints, chunks
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.threads import cores
+
+COMPONENTS = ("Fx", "Fy", "Fz", "My", "Mz")
+MOTIONS = (
+    "axial displacement",
+    "displacement along y",
+    "displacement along z",
+    "tilt about y",
+    "tilt about z",
+)
+
+TOLERANCE = 1e-8
+"""Residual over load, moments over the pitch radius."""
+
+CONTINUED = 4.0
+"""Loads fall by this factor from one to the next where a case has to be followed down to it."""
+
+CARRIED = 1e-9
+"""Share of a load that may act on a motion that nothing carries: round-off of who made it."""
+
+
+class Packed(NamedTuple):
+    """A bearing as the compiled loops take it."""
+
+    data: Floats
+    first: Ints
+    sines: Floats
+    cosines: Floats
+    lam: Ints
+    xi: Floats
+    free: Floats
+    tables: Floats
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Where the inner ring comes to rest under each load case.
+
+    Attributes
+    ----------
+    bearing : Bearing
+        The bearing.
+    loads, displacements : Floats
+        (n, 5) on the inner ring [N, N m], and its motions [m, rad].
+    residuals : Floats
+        (n,) what is left of the balance, over what `converged` allows.
+    converged : Bools
+        (n,).
+    iterations, evaluations : Ints
+        (n,) Newton steps, and evaluations of all rollers.
+    unbalanced : Floats
+        (n, 5) loads less the forces of the bearing [N, N m]: of a reduction, what it leaves out.
+    """
+
+    bearing: Bearing
+    loads: Floats
+    displacements: Floats
+    residuals: Floats
+    converged: Bools
+    iterations: Ints
+    evaluations: Ints
+
+    @cached_property
+    def unbalanced(self) -> Floats:
+        """(n, 5) loads less the forces of the bearing [N, N m]."""
+        return self.loads - forces(self.bearing, self.displacements)[0]
+
+    @cached_property
+    def rollers(self) -> Floats:
+        """(n, total) load of each rolling element [N], row by row."""
+        return roller_loads(self.bearing, self.displacements)
+
+
+def equilibrium(
+    bearing: Bearing,
+    loads: ArrayLike,
+    *,
+    tolerance: float = TOLERANCE,
+    start: ArrayLike | None = None,
+    phases: ArrayLike | None = None,
+    warm: bool = True,
+    damped: bool = True,
+) -> Equilibrium:
+    """The displacements that balance each load case.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    loads : array_like
+        (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m] on the inner ring at the bearing's centre.
+    tolerance : float
+        Largest residual over the load, moments divided by the pitch radius.
+    start : array_like, optional
+        (n, 5) displacements to start from; the answer is the same.
+    phases : array_like, optional
+        (n,) angle by which the rolling elements have moved on with the cage [rad].
+    warm : bool
+        Start each case from the one before it, where its load is near.
+    damped : bool
+        False is plain Newton, which may fail: for studies.
+
+    Returns
+    -------
+    found : Equilibrium
+        Each case converged, or flagged. A motion that nothing resists (axial of a floating bearing,
+        tilt of an aligning one) stays zero.
+
+    Raises
+    ------
+    InputError
+        A load is no number, or acts on a motion that nothing carries, or lifts the inner ring off.
+
+    Notes
+    -----
+    Newton's method on a convex energy with exact tangents: the tangent is held up by a part of all
+    contacts' stiffness that vanishes with the residual, and along each step the slope of the energy
+    is brought below 0.6 of what it was. Preloaded bearings under small loads stop at the round-off
+    of their internal forces.
+    """
+    F = checked_loads(bearing, loads)
+    B, carried = _free_motions(bearing)
+    _refuse_mechanism(bearing, F, B, carried)
+    return _solved(bearing, F, B[None], tolerance, start, phases, warm, damped)
+
+
+def three_degrees(
+    bearing: Bearing, loads: ArrayLike, *, tolerance: float = TOLERANCE
+) -> Equilibrium:
+    """The reduction to axial, radial and tilting displacement of Stirling 2023, section 4.2.1.
+
+    The radial displacement is taken along the radial force, the tilt about the axis of the moment;
+    what acts across them is left unbalanced (`Equilibrium.unbalanced`). Exact where force and
+    moment act in one plane.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    loads : array_like
+        (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m].
+    tolerance : float
+        Largest residual over the load, of the three components.
+
+    Returns
+    -------
+    found : Equilibrium
+        Minimum of the same energy, over three motions.
+    """
+    F = checked_loads(bearing, loads)
+    radial, moment = F[:, 1:3], F[:, 3:5]
+    force_size = np.hypot(*radial.T)
+    moment_size = np.hypot(*moment.T)
+    # without one of them, the plane of the other
+    along = np.where(
+        force_size[:, None] > 0.0,
+        radial,
+        np.where(moment_size[:, None] > 0.0, moment @ [[0.0, -1.0], [1.0, 0.0]], [0.0, -1.0]),
+    )
+    about = np.where(moment_size[:, None] > 0.0, moment, along @ [[0.0, 1.0], [-1.0, 0.0]])
+    B = np.zeros((len(F), 5, 3))
+    B[:, 0, 0] = 1.0
+    B[:, 1:3, 1] = along / np.hypot(*along.T)[:, None]
+    B[:, 3:5, 2] = about / np.hypot(*about.T)[:, None] / bearing.arm
+    whole, carried = _free_motions(bearing)
+    _refuse_mechanism(bearing, F, whole, carried)
+    return _solved(bearing, F, B, tolerance, None, None, False, True)
+
+
+def forces(
+    bearing: Bearing, displacements: ArrayLike, *, phases: ArrayLike | None = None
+) -> tuple[Floats, Floats]:
+    """Loads that hold the inner ring at given displacements, and the tangent stiffness there.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    displacements : array_like
+        (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
+    phases : array_like, optional
+        (n,) angle by which the rolling elements have moved on with the cage [rad].
+
+    Returns
+    -------
+    loads : Floats
+        (n, 5) [N, N m].
+    tangents : Floats
+        (n, 5, 5) their derivatives, symmetric.
+    """
+    u = _five(bearing, displacements, "displacements", MOTIONS)
+    turned = u if phases is None else turn(u, -np.asarray(phases, dtype=float))
+    F, K = np.empty((len(u), 5)), np.empty((len(u), 5, 5))
+    turned, pack = np.ascontiguousarray(turned), packed(bearing)
+    in_threads(
+        lambda cases: kernels.forces_of(turned[cases], *pack, F[cases], K[cases]),
+        len(u),
+        kernels.CHUNK,
+    )
+    if phases is not None:
+        R = _rotations(np.asarray(phases, dtype=float))
+        F, K = turn(F, np.asarray(phases, dtype=float)), R @ K @ np.swapaxes(R, 1, 2)
+    return F, K
+
+
+def roller_loads(
+    bearing: Bearing, displacements: ArrayLike, *, phases: ArrayLike | None = None
+) -> Floats:
+    """Load of each rolling element.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    displacements : array_like
+        (n, 5) or (5,) [m, rad].
+    phases : array_like, optional
+        (n,) angle by which the rolling elements have moved on with the cage [rad].
+
+    Returns
+    -------
+    loads : Floats
+        (n, total) [N], row by row.
+    """
+    return elements(bearing, displacements, phases=phases)[0]
+
+
+def elements(
+    bearing: Bearing, displacements: ArrayLike, *, phases: ArrayLike | None = None
+) -> tuple[Floats, Floats, Floats]:
+    """Load, moment about its middle, and contact angle of each rolling element.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    displacements : array_like
+        (n, 5) or (5,) [m, rad].
+    phases : array_like, optional
+        (n,) angle by which the rolling elements have moved on with the cage [rad].
+
+    Returns
+    -------
+    loads, moments, contact_angles : Floats
+        (n, total) each, row by row [N, N m, rad].
+    """
+    u = _five(bearing, displacements, "displacements", MOTIONS)
+    if phases is not None:
+        u = turn(u, -np.asarray(phases, dtype=float))
+    found = tuple(np.empty((len(u), sum(bearing.counts))) for _ in range(3))
+    u, pack = np.ascontiguousarray(u), packed(bearing)
+    in_threads(
+        lambda cases: kernels.elements_of(u[cases], *pack, *(whole[cases] for whole in found)),
+        len(u),
+        kernels.CHUNK,
+    )
+    return found[0], found[1], found[2]
+
+
+@lru_cache(maxsize=64)
+def packed(bearing: Bearing) -> Packed:
+    """The numbers of all rows in arrays.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+
+    Returns
+    -------
+    packed : Packed
+        For the compiled loops; not to be written to.
+    """
+    data = np.zeros((len(bearing.rows), kernels.N_DATA))
+    xi, free, psi = [], [], []
+    for d, row in zip(data, bearing.rows, strict=True):
+        psi.append(angles(row))
+        d[kernels.SIN], d[kernels.COS] = np.sin(row.angle), np.cos(row.angle)
+        d[kernels.STIFF], d[kernels.EXPONENT] = row.law.stiffness, row.law.exponent
+        if isinstance(row, BallRow):
+            d[kernels.KIND] = kernels.BALLS
+            d[kernels.DISTANCE] = row.groove_distance
+            d[kernels.AXIAL] = (row.groove_distance - row.clearance) * np.sin(row.angle)
+            d[kernels.RADIAL] = (row.groove_distance - row.clearance) * np.cos(row.angle)
+            d[kernels.ARM], d[kernels.GROOVE] = row.groove_centre
+            xi.append(np.zeros(0))
+            free.append(np.zeros(0))
+        else:
+            d[kernels.KIND] = kernels.LAMINAE if row.laminae else kernels.CLOSED
+            d[kernels.ARM] = 0.0 if row.aligning else row.arm
+            d[kernels.LEAN] = 0.0 if row.aligning else 1.0
+            d[kernels.LENGTH], d[kernels.GAP] = row.length, row.clearance
+            xi.append(row.places)
+            free.append(row.free)
+    every = np.concatenate(psi)
+    return Packed(
+        data,
+        np.cumsum([0, *bearing.counts]),
+        np.sin(every),
+        np.cos(every),
+        np.cumsum([0, *(len(x) for x in xi)]),
+        np.concatenate(xi),
+        np.concatenate(free),
+        np.stack([kernels.power_table(row.law.exponent - 1.0) for row in bearing.rows]),
+    )
+
+
+def in_threads(work: Callable[[slice], None], n: int, size: int) -> None:
+    """Work on chunks of n cases, in as many threads as there are cores.
+
+    Parameters
+    ----------
+    work : callable
+        Takes the slice of a chunk; releases the interpreter while it computes.
+    n, size : int
+        Cases, and those of a chunk.
+    """
+    parts = list(chunks(n, size))
+    if len(parts) == 1:
+        work(parts[0])
+    else:
+        with ThreadPoolExecutor(cores()) as pool:
+            for _ in pool.map(work, parts):
+                pass
+
+
+def turn(vectors: Floats, phases: Floats) -> Floats:
+    """Loads or displacements (n, 5) turned about the axis by angles (n,) [rad], as psi grows."""
+    return np.asarray(np.einsum("nij,nj->ni", _rotations(phases), vectors))
+
+
+def _rotations(phases: Floats) -> Floats:
+    """(n, 5, 5): psi grows from -y to z."""
+    co, si = np.cos(phases), np.sin(phases)
+    R = np.zeros((len(phases), 5, 5))
+    R[:, 0, 0] = 1.0
+    for i in (1, 3):
+        R[:, i, i] = R[:, i + 1, i + 1] = co
+        R[:, i, i + 1], R[:, i + 1, i] = si, -si
+    return R
+
+
+@lru_cache(maxsize=64)
+def _free_motions(bearing: Bearing) -> tuple[Floats, Bools]:
+    """Motions that some contact resists, as columns with tilts over the pitch radius; and which."""
+    H = _linear(bearing, np.diag([1.0, 1.0, 1.0, 1.0 / bearing.arm, 1.0 / bearing.arm]))
+    values, vectors = np.linalg.eigh(H)
+    # Rounded to 1e-16 of the largest; a roller's length L resists tilt by (L / arm)^2 / 12 of it.
+    kept = values > 1e-12 * values[-1]
+    B = vectors[:, kept]
+    B[np.abs(B) < 1e-14] = 0.0
+    B[3:] /= bearing.arm
+    return B, kept
+
+
+def _linear(bearing: Bearing, B: Floats) -> Floats:
+    """B^T H B, H the sum of K n h h^T over all contacts as if each were loaded, by 1 m."""
+    whole = np.zeros((5, 5))
+    for row in bearing.rows:
+        psi = angles(row)
+        e, t = (
+            np.column_stack([-np.cos(psi), np.sin(psi)]),
+            np.column_stack([-np.sin(psi), -np.cos(psi)]),
+        )
+        if isinstance(row, RollerRow):
+            arms = np.zeros(1) if row.aligning else row.arm + row.places
+            # a straight roller's length beyond its laminae
+            spread = 0.0 if row.aligning or row.laminae else row.length**2 / 12.0
+            alpha = [row.angle]
+        else:
+            x, R = row.groove_centre
+            # a deep groove carries axial force once it has moved
+            lift = row.angle if abs(row.angle) > 0.02 else 0.02
+            alpha = [lift, -lift] if lift != row.angle else [lift]
+            arms, spread = np.zeros(0), 0.0
+        k = row.law.stiffness * row.law.exponent / len(alpha)
+        for angle in alpha:
+            here = arms if len(arms) else np.array([x * np.cos(angle) - R * np.sin(angle)])
+            for arm in here:
+                h = np.column_stack([np.full(len(psi), np.sin(angle)), np.cos(angle) * e, arm * t])
+                whole += k / len(here) * h.T @ h
+        whole[3:, 3:] += k * spread * t.T @ t
+    return B.T @ whole @ B
+
+
+def _solved(
+    bearing: Bearing,
+    loads: Floats,
+    B: Floats,
+    tolerance: float,
+    start: ArrayLike | None,
+    phases: ArrayLike | None,
+    warm: bool,
+    damped: bool,
+) -> Equilibrium:
+    n, m = len(loads), B.shape[2]
+    if not 1e-14 <= tolerance < 1.0:
+        raise InputError(f"tolerance is {tolerance:g}: give 1e-14 to 1, as 1e-8")
+    turned = loads if phases is None else turn(loads, -np.asarray(phases, dtype=float))
+    B = np.ascontiguousarray(B)
+    soft = np.stack([_linear(bearing, b) for b in B])
+    # all contacts deflected by as much as carries the load
+    row = max(bearing.rows, key=lambda r: r.law.stiffness * r.radius)
+    total = sum(z * r.law.stiffness for z, r in zip(bearing.counts, bearing.rows, strict=True))
+    targets = np.einsum("nij,ni->nj", np.broadcast_to(B, (n, 5, m)), turned)
+    deflection = (np.linalg.norm(targets, axis=1) / total) ** (1.0 / row.law.exponent)
+    scales = np.maximum(deflection, 1e-30) ** (row.law.exponent - 1.0)
+    if start is not None:
+        u0 = _five(bearing, start, "start", MOTIONS)
+        guesses = np.einsum(
+            "nij,ni->nj",
+            np.broadcast_to(np.linalg.pinv(B).swapaxes(1, 2), (n, 5, m)),
+            np.broadcast_to(u0, (n, 5)),
+        )
+    elif all(r.clearance < 0.0 for r in bearing.rows):
+        guesses = np.zeros((n, m))
+    else:
+        guesses = (
+            np.linalg.solve(soft + 1e-9 * _mean_diagonal(soft), targets[..., None])[..., 0]
+            / scales[:, None]
+        )
+    found = _run(bearing, turned, B, guesses, soft, scales, tolerance, warm, damped)
+    lost = np.flatnonzero(found.residuals > 1.0)
+    if damped and len(lost):
+        some = lost if len(B) > 1 else np.array([0])
+        again = _continued(
+            bearing, turned[lost], B[some], soft[some], scales[lost], deflection[lost], tolerance
+        )
+        for whole, part in zip(found, again, strict=True):
+            whole[lost] = part
+        _refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
+    u = found.displacements
+    if phases is not None:
+        u = turn(u, np.asarray(phases, dtype=float))
+    return Equilibrium(
+        bearing,
+        loads,
+        u,
+        found.residuals,
+        found.residuals <= 1.0,
+        found.steps,
+        found.evaluations,
+    )
+
+
+class _Found(NamedTuple):
+    displacements: Floats
+    steps: Ints
+    evaluations: Ints
+    residuals: Floats
+
+
+def _run(
+    bearing: Bearing,
+    loads: Floats,
+    B: Floats,
+    guesses: Floats,
+    soft: Floats,
+    scales: Floats,
+    tolerance: float,
+    warm: bool,
+    damped: bool,
+) -> _Found:
+    """The compiled Newton method over chunks of cases, in threads."""
+    n, pack = len(loads), packed(bearing)
+    loads, guesses = np.ascontiguousarray(loads), np.ascontiguousarray(guesses)
+    found = _Found(np.empty((n, 5)), np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n))
+
+    def solve(cases: slice) -> None:
+        own = cases if len(B) > 1 else slice(None)
+        kernels.solve_cases(
+            loads[cases],
+            B[own],
+            guesses[cases],
+            soft[own],
+            scales[cases],
+            *pack,
+            tolerance,
+            warm,
+            damped,
+            found.displacements[cases],
+            found.steps[cases],
+            found.evaluations[cases],
+            found.residuals[cases],
+        )
+
+    in_threads(solve, n, kernels.CHUNK)
+    return found
+
+
+def _continued(
+    bearing: Bearing,
+    loads: Floats,
+    B: Floats,
+    soft: Floats,
+    scales: Floats,
+    deflection: Floats,
+    tolerance: float,
+) -> _Found:
+    """Down from larger loads, under which a clearance is small: each from the one before.
+
+    A load that just closes a clearance is nearly a problem of rigid contacts, whose few carrying
+    rollers Newton's method alone finds slowly.
+    """
+    n, m = len(loads), B.shape[2]
+    row = max(bearing.rows, key=lambda r: r.law.exponent)
+    free = max(max(abs(r.clearance) for r in bearing.rows), 1e-6)
+    most = max(free / max(float(deflection.min()), 1e-30), 10.0) ** row.law.exponent
+    factors = CONTINUED ** np.arange(np.ceil(np.log(most) / np.log(CONTINUED)), -1.0, -1.0)
+    back = np.broadcast_to(np.linalg.pinv(B), (n, m, 5))
+    at = np.zeros((n, m))
+    steps, evaluations = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    for factor in factors:
+        stiffer = scales * factor ** (1.0 - 1.0 / row.law.exponent)
+        found = _run(bearing, factor * loads, B, at, soft, stiffer, tolerance, False, True)
+        at = np.einsum("nij,nj->ni", back, found.displacements)
+        steps += found.steps
+        evaluations += found.evaluations
+    return _Found(found.displacements, steps, evaluations, found.residuals)
+
+
+def _mean_diagonal(soft: Floats) -> Floats:
+    """(n, m, m): the identity times the mean diagonal."""
+    m = soft.shape[1]
+    return np.asarray(np.trace(soft, axis1=1, axis2=2)[:, None, None] / m * np.eye(m))
+
+
+def _five(bearing: Bearing, values: ArrayLike, what: str, names: tuple[str, ...]) -> Floats:
+    """Five finite columns."""
+    found = np.atleast_2d(np.asarray(values, dtype=float))
+    if found.ndim != 2 or found.shape[1] != 5:
+        raise InputError(
+            f"{what} of {bearing.name} have the shape {np.shape(values)}: give (n, 5), the columns "
+            f"being {', '.join(names)}"
+        )
+    if not np.isfinite(found).all():
+        case, column = np.argwhere(~np.isfinite(found))[0]
+        raise InputError(
+            f"{names[column]} of case {case} on {bearing.name} is {found[case, column]}: give "
+            "finite numbers"
+        )
+    return found
+
+
+def checked_loads(bearing: Bearing, loads: ArrayLike) -> Floats:
+    """Loads as (n, 5) finite numbers.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        For messages.
+    loads : array_like
+        (n, 5) or (5,) [N, N m].
+
+    Returns
+    -------
+    loads : Floats
+        (n, 5).
+
+    Raises
+    ------
+    InputError
+        Another shape, or a value that is no number.
+    """
+    return _five(bearing, loads, "loads", COMPONENTS)
+
+
+def _refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools) -> None:
+    """Raise where a load acts on a motion that no contact resists."""
+    if carried.all():
+        return
+    scale = np.array([1.0, 1.0, 1.0, bearing.arm, bearing.arm])
+    unit = B * scale[:, None]  # orthonormal columns
+    scaled = loads / scale
+    left = scaled - scaled @ unit @ unit.T
+    size = np.linalg.norm(scaled, axis=1)
+    bad = np.linalg.norm(left, axis=1) > CARRIED * size
+    if bad.any():
+        case = int(np.argmax(bad))
+        component = int(np.argmax(np.abs(left[case])))
+        unit_name = "N" if component < 3 else "N m"
+        raise InputError(
+            f"{COMPONENTS[component]} of case {case} on {bearing.name} is "
+            f"{loads[case, component]:.6g} {unit_name}, and no contact of the bearing carries it: "
+            f"leave it to another bearing, or give one that resists {MOTIONS[component]}"
+        )
+
+
+def _refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
+    """Raise where no pushes of rollers add up to the load, as of a single row pushed open."""
+    rollers = [row for row in bearing.rows if isinstance(row, RollerRow)]
+    if not len(loads) or len(rollers) < len(bearing.rows):
+        return  # the normals of balls turn
+    scale = np.array([1.0, 1.0, 1.0, bearing.arm, bearing.arm])
+    normals = []
+    for row in rollers:
+        psi = angles(row)
+        co, si = np.cos(psi), np.sin(psi)
+        ends = (
+            [0.0] if row.aligning else (row.arm + row.places[[0, -1]] * (1 if row.laminae else 0))
+        )
+        half = 0.5 * row.length if not row.laminae and not row.aligning else 0.0
+        for arm in np.add.outer(ends, [-half, half]).ravel():
+            one = np.sin(row.angle) * np.ones_like(psi)
+            cosine = np.cos(row.angle)
+            normals.append(np.array([one, -cosine * co, cosine * si, -arm * si, -arm * co]))
+    H = np.concatenate(normals, axis=1) / scale[:, None]
+    for case, load in zip(cases, loads / scale, strict=True):
+        size = np.linalg.norm(load)
+        if nnls(H, load / size)[1] > 1e-6:
+            given = ", ".join(f"{x:.6g}" for x in load * scale)
+            raise InputError(
+                f"loads ({given}) N and N m of case {case} on {bearing.name}: no rollers balance "
+                "them, and the inner ring lifts off; add axial force, or a second row that opposes "
+                "the first"
+            )

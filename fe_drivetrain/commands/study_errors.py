@@ -1,0 +1,164 @@
+"""Beams against FE over the loads of a study, and which level each reaction needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, GRAVITY
+from fe_drivetrain.compare.time_weighted import weighted_rms
+from fe_drivetrain.fidelity.over_loads import (
+    COARSER_ASSEMBLY,
+    Levels,
+    reaction_history,
+    relative_errors,
+)
+from fe_drivetrain.fidelity.shaft_bands import COARSER
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import Record
+
+ENOUGH = 0.05
+"""Of the root mean square: what the study takes for accurate enough."""
+
+_SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
+#: Levels from cheap to expensive, each with the models of its two bounds.
+_LEVELS = {
+    "1 beam, rigid housings": ("beam, rigid housings",),
+    "1 beam, housings as springs": ("beam, stiff housings", "beam, soft housings"),
+    "2 meridian, housings as springs": ("meridian, stiff housings", "meridian, soft housings"),
+}
+
+
+def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
+    """RMSE of each level against the assembly, and the cheapest level that is enough.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the tables and the answer.
+    scene : Scene
+        The scene.
+    levels : Levels
+        All levels.
+    loads : StudyLoads
+        Hub loads.
+
+    Returns
+    -------
+    int
+        The cheapest of levels 1 and 2 that is enough for all, or the more accurate one.
+    """
+    page.section("Beams against FE")
+    others = list(levels.models)[:-1]
+    hub = np.concatenate([history.loads for history in loads.histories])
+    weights = loads.weights
+    weight, length = scene.gearbox.weight, scene.shaft.length
+    absolute: list[Record] = []
+    shares: dict[str, dict[str, float]] = {}
+    for name in levels.reference.reaction_matrices:
+        reference = reaction_history(levels.reference, name, hub, weight, GRAVITY)
+        rmse: dict[str, Floats] = {}
+        relative: dict[str, Floats] = {}
+        for label in others:
+            found = reaction_history(levels.models[label], name, hub, weight, GRAVITY)
+            rmse[label] = weighted_rms(found - reference, weights)
+            relative[label] = relative_errors(reference, found, length, weights)
+        size = weighted_rms(reference, weights)
+        for k, kind in enumerate(("force", "moment")):
+            if np.isnan(relative[others[0]][k]):
+                continue
+            shares[f"{name}, {kind}"] = {label: float(relative[label][k]) for label in others}
+            for c in range(3 * k, 3 * k + 3):
+                absolute.append(
+                    {
+                        "reaction": f"{name}, {FORCES[c]} [{_SHOWN_UNITS[c]}]",
+                        "rms of FE": size[c] / 1e3,
+                        **{label: rmse[label][c] / 1e3 for label in others},
+                    }
+                )
+    rows: list[Record] = [
+        {"reaction": reaction, **{label: 100.0 * share for label, share in of.items()}}
+        for reaction, of in shares.items()
+    ]
+    page.table(
+        "Error of each reaction as a vector over all load steps: root mean square of the "
+        "difference to the assembly over that of the assembly's [%]",
+        rows,
+    )
+    page.table("RMSE of each component against the assembly over all load steps", absolute)
+    note = "Stiff and soft housings are the two bounds of the bearing units. "
+    if COARSER_ASSEMBLY in levels.models:
+        note += (
+            f"The assembly on a mesh {COARSER:g} times coarser shows what the mesh does to the "
+            "reference: differences as small as that are not errors of a beam. "
+        )
+    else:
+        note += f"The mesh cannot be {COARSER:g} times coarser, so its own error is not shown. "
+    page.text(f"{note}Forces and moments that are the mesh's noise are left out.")
+    page.data("error_percent", rows)
+    page.data("rmse_kN", absolute)
+    worst = {label: max(of[label] for of in shares.values()) for label in others}
+    page.answer(_enough(worst))
+    _advice(page, levels, shares)
+    errors_of = {n: max(worst[m] for m in _LEVELS[label]) for n, label in _SAMPLED.items()}
+    enough = [level for level, error in errors_of.items() if error <= ENOUGH]
+    return enough[0] if enough else min(errors_of, key=lambda level: errors_of[level])
+
+
+#: Levels with housings as springs.
+_SAMPLED = {1: "1 beam, housings as springs", 2: "2 meridian, housings as springs"}
+
+
+def _advice(page: Page, levels: Levels, shares: Mapping[str, Mapping[str, float]]) -> None:
+    """The cheapest level for each reaction, the band of the assembly's own mesh included."""
+    rows: list[Record] = []
+    for reaction, of in shares.items():
+        band = 0.0
+        if levels.coarser is not None:
+            band = float(levels.band(np.array(of[COARSER_ASSEMBLY])))
+        found = {label: max(of[model] for model in models) for label, models in _LEVELS.items()}
+        enough = [label for label, error in found.items() if error + band <= ENOUGH]
+        needed = enough[0] if enough else "4 assembly of solids"
+        if not enough and band > ENOUGH:
+            needed = "none: a finer mesh of the assembly"
+        rows.append(
+            {
+                "reaction": reaction,
+                "level that it needs": needed,
+                "error of that level [%]": 100.0 * found[enough[0]] if enough else None,
+                "± mesh of the assembly [%]": None if levels.coarser is None else 100.0 * band,
+            }
+        )
+    page.table(
+        f"The cheapest level that has each reaction within {100 * ENOUGH:g} % over these loads, "
+        "for either bound of the housings",
+        rows,
+    )
+    page.text(
+        "'fe-drivetrain advise' answers for one quantity and another tolerance, ranks the details "
+        "of the scene, and says what each level takes."
+    )
+    page.data("advice", rows)
+
+
+def _enough(worst: Mapping[str, float]) -> str:
+    """The cheapest level whose reactions are all within the tolerance, for either bound."""
+    share = f"{100 * ENOUGH:g} %"
+    for labels in _LEVELS.values():
+        largest = max(worst[label] for label in labels)
+        if largest <= ENOUGH:
+            return (
+                f"Over these loads {' and '.join(labels)}: every reaction is within {share} of the "
+                f"assembly's (root mean square of force and of moment; the worst "
+                f"{100 * largest:.2g} %)."
+            )
+    compared = [label for labels in _LEVELS.values() for label in labels]
+    best = min(compared, key=lambda label: worst[label])
+    return (
+        f"Over these loads no level below the assembly has every reaction within {share} of it; "
+        f"the nearest, {best}, has {100 * worst[best]:.2g} %."
+    )

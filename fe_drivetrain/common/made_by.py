@@ -1,0 +1,111 @@
+"""What made a result, as plain data: code, packages, threads and machine, for the key of a cache.
+
+Two results with the same inputs and the same maker are the same to the last digit.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Iterator, Mapping, Sequence, Set
+from functools import cache as once
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from typing import Any
+
+#: Which choose kernels by the processor. MKL is loaded by a solver, in the course of a process.
+_CHOOSE = ("openblas", "blis")
+
+
+def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
+    """SHA-256 of the sources of packages.
+
+    Parameters
+    ----------
+    rooms : mapping
+        Modules by the name of their package, as in {"fe_drivetrain.mesh": {"mesh.py"}}; all of a
+        package where None.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits.
+    """
+    code = hashlib.sha256()
+    for package, names in rooms.items():
+        for file in sorted(files(package).iterdir(), key=lambda file: file.name):
+            if file.name.endswith(".py") and (names is None or file.name in names):
+                code.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return code.hexdigest()
+
+
+@once
+def program_hash() -> str:
+    """SHA-256 of all sources and tables of this program, cases and geometry included."""
+    code = hashlib.sha256()
+    for package in ("fe_drivetrain", "fe_drivetrain.geometry", "fe_drivetrain.cases"):
+        for name, file in sorted(_sources(files(package), package)):
+            code.update(name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return code.hexdigest()
+
+
+def _sources(folder: Traversable, name: str) -> Iterator[tuple[str, Traversable]]:
+    for entry in folder.iterdir():
+        inner = f"{name}/{entry.name}"
+        if entry.is_dir():
+            yield from _sources(entry, inner)
+        elif entry.name.endswith((".py", ".yaml")):
+            yield inner, entry
+
+
+def versions(packages: Sequence[str]) -> dict[str, str | None]:
+    """Versions of installed packages by name; None of one that is not installed.
+
+    Parameters
+    ----------
+    packages : sequence of str
+        As they are called in an index of packages.
+
+    Returns
+    -------
+    dict
+    """
+    return {name: _version(name) for name in packages}
+
+
+def machine() -> str:
+    """System and processor: a home folder may be shared by machines whose last digits differ."""
+    return f"{platform.system()} {platform.machine()}"
+
+
+def arithmetic() -> dict[str, Any]:
+    """What decides the order of sums: threads, and the kernels that a BLAS chose for the processor.
+
+    Returns
+    -------
+    dict
+        Read again each time: threads may be limited in the course of a process.
+    """
+    import numba
+    import scipy.linalg  # noqa: F401 - loads its BLAS, which else comes with the first solution
+    from threadpoolctl import threadpool_info  # type: ignore[import-untyped]
+
+    libraries = [
+        [str(found.get(key)) for key in ("internal_api", "version", "num_threads", "architecture")]
+        for found in threadpool_info()
+        if found.get("internal_api") in _CHOOSE
+    ]
+    return {
+        "machine": machine(),
+        "numba threads": numba.get_num_threads(),
+        "blas": sorted(map(list, {tuple(library) for library in libraries})),
+    }
+
+
+@once
+def _version(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None

@@ -1,0 +1,154 @@
+"""Unit-load responses from the cache: a scene is solved once, new load histories cost a product."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from functools import cache as once
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.made_by import arithmetic, source_hash, versions
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.solve.solvers import Diagnostics
+
+Arrays = dict[str, NDArray[Any]]
+
+_ROOMS = ("common", "geometry", "scene", "mesh", "operator", "interfaces", "solve", "response")
+_PACKAGES = ("numpy", "scipy", "numba", "pyamg", "scikit-sparse", "pypardiso", "mkl", "gmsh")
+
+
+def cached_response(
+    model: Model, method: str = "auto", seed: int = 0, cache: Cache | None = None
+) -> Response:
+    """`unit_load_response` of a model, taken from the cache where it was solved before.
+
+    Parameters
+    ----------
+    model : Model
+        As `build_model` made it of its scene and mesh.
+    method : str
+        Solver, see `fe_drivetrain.solve.solve`. What "auto" chose when it was solved is kept.
+    seed : int
+        As of `unit_load_response`.
+    cache : Cache or None
+        The user's if not given.
+
+    Returns
+    -------
+    Response
+        The same to the last bit, with the same layout in memory, whether kept or solved now; its
+        ``kept`` says which. Times in its diagnostics are those of when it was solved.
+
+    Raises
+    ------
+    InputError
+        As `unit_load_response`.
+    """
+    used = user_cache() if cache is None else cache
+    content = {
+        "scene": solved_content(model.scene),
+        "mesh": _mesh_hash(model.mesh),
+        "method": method,
+        "seed": seed,
+        "made by": solved_by(),
+    }
+    arrays = used.load("solutions", content)
+    if arrays is not None:
+        try:
+            return replace(_from_arrays(arrays), kept=True)
+        except (KeyError, IndexError, TypeError, ValueError):
+            pass  # not as it was written: solved again below
+    arrays = _to_arrays(unit_load_response(model, method, seed))
+    used.keep("solutions", content, arrays)
+    return _from_arrays(arrays)
+
+
+def solved_content(scene: Scene) -> dict[str, Any]:
+    """What of a scene a solution depends on: all but its title, weights, sizes and spreads.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene. Its mesh is hashed by itself.
+
+    Returns
+    -------
+    dict
+        Plain data.
+    """
+    content = scene.model_dump(mode="json", exclude={"title", "uncertainty", "mesh"})
+    del content["gearbox"]["weight"]
+    return content
+
+
+def solved_by() -> dict[str, Any]:
+    """The programs that make a solution, with all that decides on its last digits."""
+    return _programs() | {"arithmetic": arithmetic()}
+
+
+@once
+def _programs() -> dict[str, Any]:
+    return {
+        "code": source_hash({f"fe_drivetrain.{room}": None for room in _ROOMS}),
+        "packages": versions(_PACKAGES),
+    }
+
+
+def _mesh_hash(mesh: Mesh) -> str:
+    """SHA-256 of a mesh: nodes, cells, parts, faces and named points."""
+    found = hashlib.sha256()
+    names = [mesh.part_names, list(mesh.faces), mesh.named_points]
+    found.update(json.dumps(names, ensure_ascii=True).encode())
+    for array in (mesh.points, mesh.cells, mesh.part, *mesh.faces.values()):
+        found.update(f"{array.dtype.str}{array.shape}".encode())
+        found.update(array.tobytes())
+    return found.hexdigest()
+
+
+def _to_arrays(response: Response) -> Arrays:
+    """A response as plain arrays."""
+    arrays: Arrays = {
+        "displacements": response.displacements,
+        "checks": np.array([response.equilibrium_error, response.superposition_error]),
+        "diagnostics": np.array(json.dumps(asdict(response.diagnostics))),
+    }
+    for what, values in _groups(response).items():
+        arrays[f"{what} names"] = np.array(list(values), dtype=np.str_)
+        arrays |= {f"{what} {k}": value for k, value in enumerate(values.values())}
+    # How arrays lie in memory can decide the last digits of what follows, so as a file keeps them.
+    return {name: np.ascontiguousarray(array) for name, array in arrays.items()}
+
+
+def _groups(response: Response) -> dict[str, Mapping[str, NDArray[Any]]]:
+    return {
+        "reactions": response.reactions,
+        "positions": response.positions,
+        "motions": response.motions,
+        "strain_energy": response.strain_energy,
+    }
+
+
+def _from_arrays(arrays: Arrays) -> Response:
+    def group(what: str) -> dict[str, NDArray[Any]]:
+        return {str(n): arrays[f"{what} {k}"] for k, n in enumerate(arrays[f"{what} names"])}
+
+    equilibrium, superposition = arrays["checks"].tolist()
+    return Response(
+        reactions=group("reactions"),
+        positions=group("positions"),
+        motions=group("motions"),
+        strain_energy=group("strain_energy"),
+        displacements=arrays["displacements"],
+        equilibrium_error=equilibrium,
+        superposition_error=superposition,
+        diagnostics=Diagnostics(**json.loads(str(arrays["diagnostics"].ravel()[0]))),
+    )

@@ -1,0 +1,162 @@
+"""Benchmarks on structured blocks: spacing, supports and loads by face, what is read at nodes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.interfaces import Constraint, held_dofs
+from fe_drivetrain.mesh import FACES, Block
+from fe_drivetrain.operator import nodal_stresses, traction_loads
+from fe_drivetrain.scene import Material
+from fe_drivetrain.solve import Static, solve_solid
+from fe_drivetrain.validation.ring_solids import Polar, node_at, polar_stresses
+
+Traction = Floats | Callable[[Floats, Floats], Floats]
+"""(3,) [Pa], or a function of positions and outward normals; see `traction_loads`."""
+
+
+def graded(
+    divisions: tuple[int, int, int], power: float, *towards: str
+) -> tuple[Floats | None, Floats | None, Floats | None]:
+    """Boundaries of elements that are thinner towards some faces, for the `edges` of `brick`.
+
+    Parameters
+    ----------
+    divisions : tuple[int, int, int]
+        Elements along each direction of the unit cube.
+    power : float
+        A boundary at an even place s is put at s to this power, measured from the face; between two
+        opposite faces each half is graded to its own.
+    *towards : str
+        Any of "x0", "x1", "y0", "y1", "z0" and "z1".
+
+    Returns
+    -------
+    edges : tuple
+        (n + 1,) places from 0 to 1 for each direction; None where none of its faces is named.
+
+    Raises
+    ------
+    ValueError
+        There is no such face.
+    """
+    if unknown := sorted(set(towards) - set(FACES)):
+        raise ValueError(f"no face {unknown[0]!r}: use some of {', '.join(FACES)}")
+    x, y, z = (
+        _spacing(n, power, f"{axis}0" in towards, f"{axis}1" in towards)
+        for axis, n in zip("xyz", divisions, strict=True)
+    )
+    return x, y, z
+
+
+def _spacing(n: int, power: float, low: bool, high: bool) -> Floats | None:
+    even = np.arange(n + 1) / n
+    if low and high:
+        fold = 2.0 * even - 1.0
+        return np.asarray(0.5 + 0.5 * np.sign(fold) * (1.0 - (1.0 - np.abs(fold)) ** power))
+    if low:
+        return np.asarray(even**power)
+    return np.asarray(1.0 - (1.0 - even) ** power) if high else None
+
+
+def supports(block: Block, *nodes: tuple[ArrayLike, str], **faces: str) -> Constraint:
+    """Fix faces and nodes in some directions, as one constraint "supports".
+
+    Parameters
+    ----------
+    block : Block
+        What is supported.
+    *nodes : tuple[ArrayLike, str]
+        Nodes, one or several, and the directions in which they are fixed: "x", "yz", ...
+    **faces : str
+        Directions by the name of a face: ``y0="y"`` is a plane of symmetry.
+
+    Returns
+    -------
+    constraint : Constraint
+        Each degree of freedom once, however often it is named.
+    """
+    parts = [(block.face_nodes(face), axes) for face, axes in faces.items()] + list(nodes)
+    held = [3 * np.ravel(some) + "xyz".index(axis) for some, axes in parts for axis in axes]
+    return held_dofs("supports", np.unique(np.concatenate(held)), block.points.size)
+
+
+def face_loads(block: Block, **tractions: Traction) -> Floats:
+    """Nodal forces (3 n,) [N] of tractions by the name of their face."""
+    F = np.zeros(block.points.size)
+    for face, traction in tractions.items():
+        F += traction_loads(block.points, block.faces[face], traction)
+    return F
+
+
+def edge_nodes(block: Block, first: str, second: str, along: int) -> Ints:
+    """Nodes on the edge that two faces share, ascending along an axis (0, 1, 2)."""
+    edge = np.intersect1d(block.face_nodes(first), block.face_nodes(second))
+    return np.asarray(edge[np.argsort(block.points[edge, along])])
+
+
+@dataclass(frozen=True)
+class LoadedBlock:
+    """A block under one load, and what is read at its nodes.
+
+    Attributes
+    ----------
+    block : Block
+        The mesh.
+    material : Material
+        Of all of it.
+    static : Static
+        The solution.
+    """
+
+    block: Block
+    material: Material
+    static: Static
+
+    @property
+    def energy(self) -> float:
+        """Strain energy [J]."""
+        return float(self.static.energy[0])
+
+    @cached_property
+    def u(self) -> Floats:
+        """(n, 3) displacements [m]."""
+        return self.static.u[: self.block.points.size, 0].reshape(-1, 3)
+
+    @cached_property
+    def stress(self) -> Floats:
+        """(n, 6) stresses xx, yy, zz, xy, yz, zx [Pa], recovered at the nodes."""
+        return nodal_stresses(
+            self.block.points, self.block.cells, self.u.ravel(), self.material.lame
+        )
+
+    @cached_property
+    def polar(self) -> Polar:
+        """The same stresses in polar components about the x axis."""
+        return polar_stresses(self.stress, self.block.points)
+
+    def node(self, *position: float) -> int:
+        """The node at x, y and z [m]; raises ValueError where there is none."""
+        return node_at(self.block.points, position)
+
+
+def solve_block(block: Block, material: Material, F: Floats, *held: Constraint) -> LoadedBlock:
+    """Solve a block of one material under nodal forces.
+
+    Parameters
+    ----------
+    block : Block
+        The mesh.
+    material : Material
+        Of all of it.
+    F : Floats
+        (3 n,) nodal forces [N], as of `face_loads`.
+    *held : Constraint
+        Supports, planes of symmetry, ...
+    """
+    static = solve_solid(block.points, block.cells, material.lame, held, F)
+    return LoadedBlock(block, material, static)

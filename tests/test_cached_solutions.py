@@ -1,0 +1,180 @@
+"""A solution from the cache is the one that would be solved, to the last bit."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import coarse_scene
+
+from fe_drivetrain.common.cache import Cache
+from fe_drivetrain.common.made_by import arithmetic, source_hash
+from fe_drivetrain.fidelity import bearing_units
+from fe_drivetrain.fidelity.bearing_units import unit_bounds, unit_stiffness
+from fe_drivetrain.response import cached
+from fe_drivetrain.response.cached import cached_response, solved_content
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.scene.reading import change_scene
+
+GROUPS = ("reactions", "positions", "motions", "strain_energy")
+
+
+@pytest.fixture
+def solves(monkeypatch: pytest.MonkeyPatch, bonded_response: Response) -> list[Model]:
+    """One entry for each time that a system is solved; what is found was solved once a session."""
+    made: list[Model] = []
+
+    def counted(model: Model, method: str, seed: int) -> Response:
+        made.append(model)
+        return bonded_response
+
+    monkeypatch.setattr(cached, "unit_load_response", counted)
+    return made
+
+
+def assert_same(a: Response, b: Response) -> None:
+    for group in GROUPS:
+        one, other = getattr(a, group), getattr(b, group)
+        assert list(one) == list(other)  # reactions are stacked in this order
+        for name in one:
+            assert one[name].shape == other[name].shape
+            assert one[name].tobytes() == other[name].tobytes()
+    assert a.displacements.tobytes() == b.displacements.tobytes()
+    assert a.diagnostics == b.diagnostics
+    assert a.equilibrium_error == b.equilibrium_error
+    assert a.superposition_error == b.superposition_error
+
+
+def test_a_kept_solution_is_the_one_that_was_solved(
+    tmp_path: Path, bonded_model: Model, bonded_response: Response, solves: list[Model]
+) -> None:
+    cache = Cache(tmp_path)
+    none, first, again = (
+        cached_response(bonded_model, cache=c) for c in (Cache(None), cache, cache)
+    )
+    assert len(solves) == 2
+    assert [r.kept for r in (none, first, again)] == [False, False, True]
+    for response in (none, first, again):
+        assert_same(response, bonded_response)
+    # histories, too, to the last digit: arrays lie in memory in the same way
+    loads = np.random.default_rng(1).standard_normal((500, 6)) * 1e5
+    for name in bonded_response.reactions:
+        reactions = [r.history(name, loads, 1e5, 9.81) for r in (none, first, again)]
+        assert reactions[0].tobytes() == reactions[1].tobytes() == reactions[2].tobytes()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"shaft.material": "ductile_iron"},
+        {"gearbox.stiffness": [0.0, 3e7, 2e7, "rigid", 0.0, 0.0]},
+        {"hub.coupling": "rigid"},
+    ],
+)
+def test_what_a_solution_depends_on_is_in_its_key(change: dict[str, Any]) -> None:
+    scene = coarse_scene("bonded")
+    assert solved_content(scene) != solved_content(change_scene(scene, change))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"title": "another"},
+        {"gearbox.weight": 3e5},
+        {"uncertainty": {"shaft.front": {"uniform": 0.001}}},
+    ],
+)
+def test_what_a_solution_does_not_depend_on_is_not(change: dict[str, Any]) -> None:
+    scene = coarse_scene("bonded")
+    assert solved_content(scene) == solved_content(change_scene(scene, change))
+
+
+def test_another_mesh_solver_or_maker_is_solved_again(
+    tmp_path: Path,
+    bonded_model: Model,
+    solves: list[Model],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cache = Cache(tmp_path)
+    cached_response(bonded_model, cache=cache)
+    points = bonded_model.mesh.points.copy()
+    points[0, 0] = np.nextafter(points[0, 0], 10.0)
+    moved = replace(bonded_model, mesh=replace(bonded_model.mesh, points=points))
+    assert not cached_response(moved, cache=cache).kept
+    assert not cached_response(bonded_model, "superlu", cache=cache).kept
+    assert not cached_response(bonded_model, seed=1, cache=cache).kept
+    monkeypatch.setattr(cached, "_programs", lambda: {"code": "of an older version"})
+    assert not cached_response(bonded_model, cache=cache).kept
+    assert len(solves) == 5
+
+
+def cut(file: Path, arrays: dict[str, Any]) -> None:
+    file.write_bytes(file.read_bytes()[:5000])
+
+
+def incomplete(file: Path, arrays: dict[str, Any]) -> None:
+    np.savez(file, **{k: v for k, v in arrays.items() if k != "reactions 1"})
+
+
+def other_diagnostics(file: Path, arrays: dict[str, Any]) -> None:
+    np.savez(file, **(arrays | {"diagnostics": np.array('{"of": "another form"}')}))
+
+
+@pytest.mark.parametrize("damage", [cut, incomplete, other_diagnostics])
+def test_an_entry_that_is_not_sound_is_solved_again(
+    tmp_path: Path,
+    bonded_model: Model,
+    bonded_response: Response,
+    solves: list[Model],
+    damage: Callable[[Path, dict[str, Any]], None],
+) -> None:
+    cache = Cache(tmp_path)
+    cached_response(bonded_model, cache=cache)
+    (file,) = tmp_path.rglob("*.npz")
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    damage(file, arrays)
+    again = cached_response(bonded_model, cache=cache)
+    assert not again.kept
+    assert_same(again, bonded_response)
+    assert cached_response(bonded_model, cache=cache).kept
+    assert len(solves) == 2
+
+
+def test_solutions_count_for_the_bound_in_size(
+    tmp_path: Path, bonded_model: Model, solves: list[Model]
+) -> None:
+    cache = Cache(tmp_path, limit=0)
+    cached_response(bonded_model, cache=cache)
+    assert list(tmp_path.rglob("*.npz")) == []
+
+
+def test_bounds_of_a_bearing_unit_are_kept_to_the_last_bit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = coarse_scene("bonded", **{"mesh.elements_per_turn": 8, "mesh.housing": 0.2})
+    cache = Cache(tmp_path)
+    first = unit_bounds(scene, "main_bearing", cache)
+    soft = unit_stiffness(scene, "main_bearing", cache=cache)
+    monkeypatch.setattr(bearing_units, "_solved_unit", None)  # would fail if it were called
+    again = unit_bounds(scene, "main_bearing", cache)
+    assert unit_stiffness(scene, "main_bearing", cache=cache).tobytes() == soft.tobytes()
+    assert soft.tobytes() == first.soft.tobytes()
+    assert first.mesh == again.mesh
+    assert first.soft.tobytes() == again.soft.tobytes()
+    assert first.stiff.tobytes() == again.stiff.tobytes()
+    with pytest.raises(TypeError):
+        unit_bounds(change_scene(scene, {"mesh.housing": 0.21}), "main_bearing", cache)
+
+
+def test_threads_and_code_are_in_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    import numba
+
+    before = arithmetic()
+    monkeypatch.setattr(numba, "get_num_threads", lambda: 17)
+    assert arithmetic() != before
+    room = "fe_drivetrain.response"
+    assert source_hash({room: {"model.py"}}) != source_hash({room: {"unit_loads.py"}})
