@@ -53,7 +53,7 @@ def power_table(q: float) -> Floats:
     return table
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 def powers(x: Floats, bits: Ints, n: int, table: Floats, out: Floats) -> None:
     """out = x^q of the first n, all positive; ``bits`` is the same memory as x, and is spoilt."""
     c1, c2, c3 = table[_SERIES], table[_SERIES + 1], table[_SERIES + 2]
@@ -67,7 +67,7 @@ def powers(x: Floats, bits: Ints, n: int, table: Floats, out: Floats) -> None:
         out[k] *= 1.0 + r * (c1 + r * (c2 + r * (c3 + r * (c4 + r * (c5 + r * c6)))))
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy")
 def _power(x: float, n: float) -> float:
     """x^n for positive x; the exponents of springs and balls without a logarithm."""
     if n == 0.0:
@@ -77,7 +77,7 @@ def _power(x: float, n: float) -> float:
     return float(x**n)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
     """Integrals along a straight roller: s becomes load, moment, and three of the tangent."""
     half = 0.5 * abs(c) * L
@@ -109,7 +109,7 @@ def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
     s[4] = q * n * (i2 - 2.0 * b * i1 + b * b * i0) / (c * c)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 def _laminae(
     b: float,
     c: float,
@@ -156,7 +156,7 @@ def _laminae(
     s[2], s[3], s[4] = K * s2, K * s3, K * s4
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _element(
     d: Floats,
     xi: Floats,
@@ -216,7 +216,7 @@ def _element(
     return float(Q)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _evaluate(
     u: Floats,
     data: Floats,
@@ -277,7 +277,7 @@ def _evaluate(
     return total
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _solve(A: Floats, b: Floats, m: int, x: Floats) -> bool:
     """x = A^-1 b of a positive definite m x m system by Cholesky, A overwritten; whether it is."""
     for j in range(m):
@@ -302,7 +302,7 @@ def _solve(A: Floats, b: Floats, m: int, x: Floats) -> bool:
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _projected(B: Floats, F: Floats, g: Floats) -> None:
     """g = B^T F."""
     for j in range(len(g)):
@@ -311,7 +311,7 @@ def _projected(B: Floats, F: Floats, g: Floats) -> None:
             g[j] += B[k, j] * F[k]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _expanded(B: Floats, w: Floats, u: Floats) -> None:
     """u = B w."""
     for k in range(5):
@@ -320,7 +320,7 @@ def _expanded(B: Floats, w: Floats, u: Floats) -> None:
             u[k] += B[k, j] * w[j]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _norm(g: Floats) -> float:
     total = 0.0
     for value in g:
@@ -328,7 +328,7 @@ def _norm(g: Floats) -> float:
     return float(np.sqrt(total))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _newton(
     load: Floats,
     B: Floats,
@@ -427,7 +427,7 @@ def _newton(
         steps += 1
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def solve_cases(
     loads: Floats,
     bases: Floats,
@@ -516,7 +516,7 @@ def solve_cases(
         )
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def forces_of(
     displacements: Floats,
     data: Floats,
@@ -551,7 +551,7 @@ def forces_of(
         )
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def elements_of(
     displacements: Floats,
     data: Floats,

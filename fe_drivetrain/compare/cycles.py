@@ -81,7 +81,7 @@ def rainflow_cycles(signal: ArrayLike) -> Cycles:
     InputError
         A value is not finite.
     """
-    from rainflow import extract_cycles  # type: ignore[import-untyped]
+    from rainflow import extract_cycles
 
     if not np.isfinite(signal).all():
         raise InputError("a history to count cycles of holds a value that is not finite: remove it")

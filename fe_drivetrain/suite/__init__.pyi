@@ -5,7 +5,6 @@ from .page import Page as Page
 from .page import Target as Target
 from .records import MeshSeries as MeshSeries
 from .records import Record as Record
-from .records import band_of_rows as band_of_rows
 from .records import column as column
 from .records import grouped as grouped
 from .result_folders import run_case as run_case

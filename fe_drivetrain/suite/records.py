@@ -1,4 +1,4 @@
-"""Records of a sweep: dicts with the same keys, units in the keys; columns, groups, bands."""
+"""Records of a sweep: dicts with the same keys, units in the keys; columns, groups, mesh series."""
 
 from __future__ import annotations
 
@@ -22,37 +22,6 @@ def grouped(rows: Sequence[Record], by: str) -> list[tuple[Any, list[Record]]]:
     return list(groups.items())
 
 
-def band_of_rows(
-    rows: Sequence[Record],
-    unknowns: str,
-    value: str,
-    dimension: int = 3,
-    order: float | None = None,
-) -> float:
-    """Numerical uncertainty of the last row's value, from a series of ever finer meshes.
-
-    Parameters
-    ----------
-    rows : sequence of dict
-        Of one series, coarse to fine.
-    unknowns, value : str
-        Keys of the number of unknowns, and of the value.
-    dimension : int
-        Of the mesh: the size of elements goes as unknowns^(-1/dimension).
-    order : float, optional
-        Expected order of convergence.
-
-    Returns
-    -------
-    band : float
-        Half width, in the unit of the value; see `fe_drivetrain.compare.band_of`.
-    """
-    from fe_drivetrain.compare.convergence import band_of
-
-    sizes = [float(n) ** (-1.0 / dimension) for n in column(rows, unknowns)]
-    return band_of(sizes, column(rows, value), order)
-
-
 class MeshSeries(NamedTuple):
     """What ever finer meshes gave.
 
@@ -72,5 +41,21 @@ class MeshSeries(NamedTuple):
     dimension: int = 1
 
     def band(self, key: str, order: float | None = None) -> float:
-        """Numerical uncertainty of the finest mesh's value of a key; see `band_of_rows`."""
-        return band_of_rows(self.rows, self.by, key, self.dimension, order)
+        """Numerical uncertainty of the finest mesh's value.
+
+        Parameters
+        ----------
+        key : str
+            Of the value in the rows.
+        order : float, optional
+            Expected order of convergence.
+
+        Returns
+        -------
+        band : float
+            Half width, in the unit of the value; see `fe_drivetrain.compare.band_of`.
+        """
+        from fe_drivetrain.compare.convergence import band_of
+
+        sizes = [float(n) ** (-1.0 / self.dimension) for n in column(self.rows, self.by)]
+        return band_of(sizes, column(self.rows, key), order)
