@@ -29,6 +29,10 @@ SIZE_PER_WALL = 3.0
 """Largest mesh size, in thicknesses of the thinnest wall: elements flatter than this fold over."""
 
 
+LEAST_TURN, SOUND_TURN = 6, 8
+"""Fewest elements round any cylinder or sphere, and fewest that fold over but seldom."""
+
+
 class MeshSizes(Part):
     """Edge lengths of the elements of each kind of part."""
 
@@ -40,19 +44,32 @@ class MeshSizes(Part):
     )
     elements_per_turn: int = Field(
         default=12,
-        ge=6,
+        ge=LEAST_TURN,
         le=360,
         description="least number of elements round any cylinder or sphere",
     )
 
     def scaled(self, factor: float, elements_per_turn: int | None = None) -> MeshSizes:
-        """Sizes times a factor, above 1 for a coarser mesh, and other elements a turn if given."""
+        """Sizes times a factor, above 1 for a coarser mesh.
+
+        Curved faces set many of the sizes: the elements a turn are divided by the factor, so that
+        all sizes are times it, down to the fewest that make sound elements.
+
+        Parameters
+        ----------
+        factor : float
+            On all sizes.
+        elements_per_turn : int or None
+            In place of those, where a mesh is wanted that is coarse and sound, not one of a series.
+        """
+        turn = self.elements_per_turn
+        turn = max(min(turn, SOUND_TURN), round(turn / factor))
         return MeshSizes(
             shaft=self.shaft * factor,
             bearing=self.bearing * factor,
             housing=self.housing * factor,
             bearing_edge=self.bearing_edge * factor,
-            elements_per_turn=elements_per_turn or self.elements_per_turn,
+            elements_per_turn=elements_per_turn or turn,
         )
 
     def finer(self, kinds: Iterable[str], factor: float) -> MeshSizes:

@@ -20,7 +20,11 @@ from fe_drivetrain.suite.run import Run
 
 def series_of_order(order, limit=5.0):
     levels = [
-        {"K_R": np.array([[limit, limit + 0.1 * size**order]]), "checks": np.array([1e-10, 1e-12])}
+        {
+            "K_R": np.array([[limit, limit + 0.1 * size**order]]),
+            "checks": np.array([1e-10, 1e-12]),
+            "size": np.array(size),
+        }
         for size in (*FACTORS, 1.0)
     ]
     return Series(tuple(levels))
@@ -94,3 +98,30 @@ def test_figures_of_a_coarser_mesh_are_those_of_the_case(tmp_path):
     np.testing.assert_allclose(
         found[f"reaction {name}"], solved.response.reactions[name], rtol=1e-6, atol=1e-6
     )
+
+
+def test_the_sizes_of_a_series_are_those_that_elements_have() -> None:
+    """A mesh that is no coarser than the next ends the series; so does one that cannot be made."""
+
+    class Job:
+        def __init__(self, found: dict[str, np.ndarray] | None) -> None:
+            self.result = lambda: found
+
+    coarse, middle, own = series_of_order(1.0).levels
+    stopped = bands.Coarser([Job(coarse), Job({**middle, "size": np.array(1.02)})]).below(own)  # type: ignore[list-item]
+    assert not stopped.complete
+    nearer = {**middle, "size": np.array(1.16)}
+    narrow, wide = (
+        bands.Coarser([Job(coarse), Job(m)]).below(own).band(lambda f: float(f["K_R"][0, 1]))  # type: ignore[list-item]
+        for m in (middle, nearer)
+    )
+    assert wide > 1.5 * narrow
+
+
+def test_recovered_stresses_give_the_tilt_stiffness_a_band_whatever_the_meshes() -> None:
+    series = series_of_order(1.0)
+    recovered = {**series.levels[-1], "recovered": np.array([0.2])}
+    for levels in ((recovered,), (*series.levels[:-1], recovered)):
+        band = Series(levels).band(lambda f: float(f["K_R"][0, 1]))
+        assert band == pytest.approx(5.1 * (1 - 1 / 1.2))
+    assert Series((recovered,)).band(lambda f: float(f["checks"][0])) is None

@@ -25,6 +25,7 @@ from fe_drivetrain.fidelity import (
     solid_component,
     solid_level,
 )
+from fe_drivetrain.mesh import mean_size
 from fe_drivetrain.report import (
     Cell,
     Chart,
@@ -94,7 +95,7 @@ class Ladder:
     def band(self, quantity: Callable[[LevelModel], float]) -> GridConvergence:
         """What the three solids say of a quantity."""
         values = [quantity(model) for model in (*self.coarse, self.top)]
-        return band_of([solid.sizes.edge for solid in self.solids], values)
+        return band_of([mean_size(solid.mesh) for solid in self.solids], values)
 
 
 def band_of(sizes: Sequence[float], values: Sequence[float]) -> GridConvergence:

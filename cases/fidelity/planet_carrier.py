@@ -35,7 +35,7 @@ from fe_drivetrain.fidelity import (
     torque_share,
 )
 from fe_drivetrain.interfaces import averaged_point
-from fe_drivetrain.mesh import MEANS, face_weights, turns
+from fe_drivetrain.mesh import MEANS, face_weights, mean_size, turns
 from fe_drivetrain.report import Cell
 from fe_drivetrain.scene import CarrierComponent, change_component, library_component, material_of
 from fe_drivetrain.suite import Page, Run
@@ -140,7 +140,7 @@ def _compare_walls(
         beams = frame_level(single)
         meshed = [solid_component(coarser(single, factor)) for factor in (*COARSER, 1.0)]
         solids = [pin_motions(single, solid_level(single, solid)) for solid in meshed]
-    sizes = [solid.sizes.edge for solid in meshed]
+    sizes = [mean_size(solid.mesh) for solid in meshed]
     own = [
         band_of(sizes, values) for values in ([s.wind_up for s in solids], [s.tilt for s in solids])
     ]

@@ -224,7 +224,12 @@ def run(run: Run, page: Page) -> None:
             for f in series["bonded"].levels[:-1]
         ]
     by_mesh.append((mean_error[second], mean_error[third], correlation[third]))
-    of_beams = bands.Series(tuple({"beams": np.array(row)} for row in by_mesh))
+    sizes = [f["size"] for f in series["bonded"].levels]
+    of_beams = bands.Series(
+        tuple(
+            {"beams": np.array(row), "size": size} for row, size in zip(by_mesh, sizes, strict=True)
+        )
+    )
     error_band = {
         label: of_beams.band(lambda f, k=k: float(f["beams"][k]))
         for k, label in enumerate((second, third))

@@ -51,8 +51,9 @@ BALANCED = MeshSizes(
 
 
 def balanced(factor: float) -> MeshSizes:
-    """`BALANCED` sizes times a factor, but for the shaft."""
-    return BALANCED.scaled(factor).model_copy(update={"shaft": BALANCED.shaft})
+    """`BALANCED` sizes times a factor, but for the shaft, on which elements a turn count, too."""
+    sizes = BALANCED.scaled(factor, BALANCED.elements_per_turn)
+    return sizes.model_copy(update={"shaft": BALANCED.shaft})
 
 
 def sizes_in_words(sizes: MeshSizes) -> str:

@@ -11,12 +11,12 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.compare.time_weighted import weighted_rms
 from fe_drivetrain.fidelity.over_loads import (
-    COARSER,
     COARSER_ASSEMBLY,
     Levels,
     reaction_history,
     relative_errors,
 )
+from fe_drivetrain.fidelity.shaft_bands import COARSER
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record

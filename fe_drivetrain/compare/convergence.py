@@ -13,9 +13,14 @@ that only roughly, and some not at all; what is observed decides how wide the ba
   that of the last two meshes at a least order, where one is given, such as that of a singularity.
 - oscillatory: differences change sign, or all but vanish at once; no order, and the band is
   safety times the range of the last three values. Nothing is averaged.
-- divergent: differences do not shrink as the sizes do. No band, unless a least order is given; then
-  it is the wider of that of an oscillating series and the distance to the limit at that order.
+- divergent: differences do not shrink as the sizes do. No band, unless a least order is given.
 - converged: differences are round-off, and so is the band.
+
+Where a least order is given, the band reaches to the limit at that order, by the last two meshes.
+These may agree by chance, as meshes that are not nested do: where no order is seen, or one above
+2.1, it also reaches to that limit by the first and the last of the last three, and where none is
+seen, it is at least three times range / (h_coarse / h_fine - 1). Orders above 2.1 are not believed,
+and that band is given to series that scatter, by Eca and Hoekstra (2014; recalled, not re-read).
 """
 
 from __future__ import annotations
@@ -43,6 +48,7 @@ ORDERS = 0.2, 8.0
 SAFETY, DOUBTFUL = 1.25, 3.0
 
 _AGREES = 0.1
+_TOO_HIGH = 2.1
 _DIGITS = 4
 
 
@@ -144,9 +150,9 @@ def grid_convergence(
         Of the theory. A higher observed order is not believed; where the two are more than a tenth
         apart, the safety factor is 3 (Oberkampf and Roy 2010, section 8.7; recalled, not re-read).
     least_order : float or None
-        Order to count on at the worst, as where stress is singular. The band then holds that limit
-        too, and where no order is observed, it is the one that is used. Oberkampf and Roy take 0.5
-        for the least that is believed.
+        Order to count on at the worst, as where stress is singular. The band then holds the limits
+        at that order, too, and where no order is observed, it is the one that is used. Oberkampf
+        and Roy take 0.5 for the least that is believed.
     round_off : float
         Differences below this share of the values are none.
 
@@ -167,13 +173,18 @@ def grid_convergence(
         relative = band / abs(fine) if fine else 0.0
         return GridConvergence(*series, "converged", nan, fine, band, band, relative, nan, nan)
 
-    slowest = None if least_order is None else richardson(h[-2:], v[-2:], least_order)
     order = observed_order(h[-3:], v[-3:])
+    slowest = None
+    if least_order is not None:
+        coarse = (-2,) if order <= _TOO_HIGH else (-2, -3)
+        pairs = (richardson(h[[k, -1]], v[[k, -1]], least_order) for k in coarse)
+        slowest = max(pairs, key=lambda limit: abs(limit - fine))
     if np.isnan(order):
         behaviour: Behaviour = "divergent" if _stands_still(h[-3:], v[-3:]) else "oscillatory"
         limit = fine if slowest is None else slowest
         known = max(spread, abs(limit - fine))
-        band = max(safety * spread, abs(limit - fine))
+        scatter = 0.0 if slowest is None else DOUBTFUL * spread / (h[-3] / h[-1] - 1.0)
+        band = max(safety * spread, abs(limit - fine), scatter)
         if behaviour == "divergent" and slowest is None:
             known = band = float("inf")
         relative = band / abs(fine) if fine else nan

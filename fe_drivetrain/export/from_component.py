@@ -13,6 +13,7 @@ from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
 from fe_drivetrain.fidelity.shaft_bands import COARSER, ORDER
+from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.scene.component import Component, HousingComponent, component_hash
 from fe_drivetrain.solve.condensation import Condensed, keep_points
 
@@ -80,7 +81,7 @@ def component_superelement(
     fine, *others = [_part(component, body, what, at) for body in bodies]
     band = None
     if level == 3 and solids is not None:
-        ratio = solids[1].sizes.edge / solids[0].sizes.edge
+        ratio = mean_size(solids[1].mesh) / mean_size(solids[0].mesh)
         if ratio > 1.0:  # else the coarser mesh had to be made finer
             band = largest_difference(others[0].stiffness, fine.stiffness) / (ratio**ORDER - 1.0)
     program = f"fe-drivetrain {version('fe-drivetrain')}"

@@ -1,7 +1,8 @@
 from .ablation import simplified as simplified
-from .adviser import LEAST_ORDER as LEAST_ORDER
 from .adviser import Quantity as Quantity
 from .adviser import advise as advise
+from .adviser import banded_assembly as banded_assembly
+from .assembly_bands import LEAST_ORDER as LEAST_ORDER
 from .bearing_units import UnitBounds as UnitBounds
 from .bearing_units import banded_unit as banded_unit
 from .bearing_units import scene_supports as scene_supports
@@ -29,6 +30,7 @@ from .ladder import LevelModel as LevelModel
 from .ladder import assembly_level as assembly_level
 from .ladder import housing_springs as housing_springs
 from .ladder import shaft_level as shaft_level
+from .ladder import solved_assembly as solved_assembly
 from .ladder import statics_level as statics_level
 from .level_costs import Forecast as Forecast
 from .level_costs import forecast as forecast

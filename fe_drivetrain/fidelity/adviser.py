@@ -17,26 +17,30 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.compare.convergence import grid_convergence
+from fe_drivetrain.common.progress import silent
+from fe_drivetrain.fidelity.assembly_bands import (
+    COARSER,
+    AssemblyBand,
+    assembly_band,
+    motion_error,
+    reaction_error,
+)
 from fe_drivetrain.fidelity.ladder import (
     TITLES,
     LevelModel,
-    assembly_level,
     housing_springs,
     shaft_level,
+    solved_assembly,
     statics_level,
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft
+from fe_drivetrain.mesh.measures import mean_size
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
 
 #: Nothing is taken from the cache: times are part of the answer.
 UNCACHED = Cache(None)
-
-#: Factors on mesh sizes of the two coarser assemblies that give the top level its band.
-COARSER = (1.8, 1.35)
-
-#: Stress is singular where parts meet: no better order is relied upon.
-LEAST_ORDER = 0.5
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,26 @@ class Quantity:
             return "N/m" if component[0] == "u" else "N m/rad"
         return "N" if component[0] == "F" else "N m"
 
+    def columns(self, length: float) -> Floats:
+        """(10, k) factors of `model.LOADS` that each value is of, see `of`."""
+        if self.name.startswith("hub.stiffness"):
+            return np.eye(10)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
+        if self.load is not None:
+            return self.load[:, None]
+        scale = np.array([1.0, 1.0, 1.0, length, length, length])
+        return np.asarray(np.eye(10)[:, :6] * scale)
+
+    def recovered(self, model: Model, response: Response, length: float) -> Floats:
+        """(k,) errors of the values of an assembly, estimated from recovered stresses."""
+        owner, _, component = self.name.partition(".")
+        columns = self.columns(length)
+        if owner == "hub":
+            motion = MOTIONS.index(component.rpartition(".")[2])
+            given = response.motions["hub"][motion, motion]
+            return np.asarray(motion_error(model, response, columns)[0] / given**2)
+        row = FORCES.index(component)
+        return np.asarray(reaction_error(model, response, owner, [row], columns)[0])
+
     def of(self, model: LevelModel, length: float) -> Floats:
         """(k,) its values: one, or one for each hub load, moments counting as length times 1 N."""
         owner, _, component = self.name.partition(".")
@@ -113,6 +137,8 @@ class LevelResult:
         springs; the band of the mesh where it is the assembly; NaN where it has none.
     error : float
         Difference to the last result, relative.
+    band : AssemblyBand or None
+        What the estimate of the assembly rests on.
     """
 
     model: LevelModel
@@ -121,6 +147,7 @@ class LevelResult:
     estimate: float
     waited: float = 0.0
     error: float = float("nan")
+    band: AssemblyBand | None = None
 
 
 @dataclass(frozen=True)
@@ -160,21 +187,17 @@ class Advice:
         """The answer."""
         share = f"{100 * self.tolerance:g} %"
         if self.chosen is None:
-            band = (
-                "has no band of its mesh, for its walls are too thin for one "
-                f"{max(COARSER):g} times coarser"
-                if np.isnan(self.top.estimate)
-                else f"has a band of {100 * self.top.estimate:.2g} %"
-            )
             return (
                 f"{self.quantity.name}: no level is known to be within {share}; the finest, "
-                f"{self.top.model.title}, {band}: make its mesh finer"
+                f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %: "
+                f"make its mesh finer{self._of_band()}"
             )
         result = self.results[self.chosen]
         if self.chosen == len(self.results) - 1:
             return (
                 f"{self.quantity.name} within {share} needs level {result.model.level}, "
                 f"{result.model.title}: {_expected(result)}, found in {result.waited:.2g} s"
+                f"{self._of_band()}"
             )
         ratio = self.top.seconds / result.seconds
         faster = f"{ratio:.3g} times faster" if ratio > 1 else f"{1 / ratio:.3g} times slower"
@@ -183,7 +206,12 @@ class Advice:
             f"{result.model.title}, is enough: {100 * result.error:.2g} % from level "
             f"{self.top.model.level}, {self.top.model.title} ({_expected(self.top)}), and {faster} "
             f"by itself; found in {self.top.waited:.2g} s"
+            f"{self._of_band()}"
         )
+
+    def _of_band(self) -> str:
+        band = self.top.band
+        return "" if band is None else f". On the assembly's band: {band.sentence()}"
 
 
 def advise(
@@ -223,9 +251,12 @@ def advise(
     results: list[LevelResult] = []
     start = time.perf_counter()
 
-    def add(model: LevelModel, seconds: float, estimate: float) -> bool:
+    def add(
+        model: LevelModel, seconds: float, estimate: float, band: AssemblyBand | None = None
+    ) -> bool:
         waited = time.perf_counter() - start
-        results.append(LevelResult(model, quantity.of(model, length), seconds, estimate, waited))
+        values = quantity.of(model, length)
+        results.append(LevelResult(model, values, seconds, estimate, waited, band=band))
         return estimate <= tolerance and not to_the_top
 
     report("level 0: statics")
@@ -240,8 +271,8 @@ def advise(
     if not done:
         springs, done = _run_on_springs(scene, quantity, to_the_top, add, report)
     if not done:
-        model, seconds, band = _assembly(scene, quantity, report)
-        add(model, seconds, band)
+        model, seconds, (band,) = banded_assembly(scene, [quantity], report)
+        add(model, seconds, band.half_width, band)
     return _judged(quantity, tolerance, results, springs)
 
 
@@ -288,36 +319,56 @@ def _run_on_springs(
     return stiff, False
 
 
-def _assembly(
-    scene: Scene, quantity: Quantity, report: Callable[[str], object]
-) -> tuple[LevelModel, float, float]:
-    """The assembly, its time alone, and the band of its mesh from two coarser ones."""
+def banded_assembly(
+    scene: Scene, quantities: Sequence[Quantity], report: Callable[[str], object] = silent
+) -> tuple[LevelModel, float, list[AssemblyBand]]:
+    """Solve the assembly, and two on coarser meshes that give its values their bands.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its mesh sizes are the finest.
+    quantities : Sequence[Quantity]
+        What is asked for.
+    report : callable
+        Called with what is being done.
+
+    Returns
+    -------
+    LevelModel
+        The assembly on the finest mesh.
+    float
+        Wall time of that alone [s].
+    list[AssemblyBand]
+        Of each quantity.
+    """
     length = scene.shaft.length
-    sizes, series = [], []
+    sizes, levels = [], []
     for number, factor in enumerate(COARSER, 1):
         report(f"level 4: assembly of solids ({number} of {len(COARSER) + 1})")
-        turn = max(8, round(scene.mesh.elements_per_turn / factor))
-        mesh = scene.mesh.scaled(factor, turn)
+        coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
         try:
-            coarse = assembly_level(scene.model_copy(update={"mesh": mesh}), UNCACHED)
+            level, coarse, _ = solved_assembly(coarser, UNCACHED)
         except InputError:  # too coarse for a wall
             continue
-        sizes.append(factor)
-        series.append(quantity.of(coarse, length))
+        sizes.append(mean_size(coarse.mesh))
+        levels.append(level)
     report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
     start = time.perf_counter()
-    model = assembly_level(scene, UNCACHED)
+    level, model, response = solved_assembly(scene, UNCACHED)
     seconds = time.perf_counter() - start
-    values = quantity.of(model, length)
-    if len(series) < len(COARSER):
-        return model, seconds, float("nan")
-    size = np.linalg.norm(values)
+    sizes.append(mean_size(model.mesh))
+    levels.append(level)
+    report("level 4: errors estimated from recovered stresses")
     bands = [
-        grid_convergence([*sizes, 1.0], [*(s[k] for s in series), v], least_order=LEAST_ORDER)
-        for k, v in enumerate(values)
-        if max(abs(s[k]) for s in (*series, values)) > 1e-6 * size
+        assembly_band(
+            sizes,
+            [quantity.of(level, length) for level in levels],
+            quantity.recovered(model, response, length),
+        )
+        for quantity in quantities
     ]
-    return model, seconds, float(np.linalg.norm([b.uncertainty for b in bands]) / size)
+    return level, seconds, bands
 
 
 def _judged(
@@ -332,7 +383,7 @@ def _judged(
             f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
             "ask for another, or give another load"
         )
-    judged = [replace(result, error=_difference(result.values, top.values)) for result in results]
+    judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
     chosen = None
     for number, result in enumerate(judged):
         # the uncertainty of the top counts against all levels below it

@@ -27,7 +27,8 @@ from fe_drivetrain.fidelity.shafts import (
 )
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.model import LOADS, build_model, mesh_scene
+from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
+from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.condensation import Condensed, supported
@@ -217,11 +218,22 @@ def assembly_level(scene: Scene, cache: Cache | None = None) -> LevelModel:
         Where its solution may come from; the user's if not given. The time of one that was kept is
         that of reading it.
     """
+    return solved_assembly(scene, cache)[0]
+
+
+def solved_assembly(scene: Scene, cache: Cache | None = None) -> tuple[LevelModel, Model, Response]:
+    """Level 4, the model that was solved, and its response; see `assembly_level`."""
     start = time.perf_counter()
-    response = cached_response(build_model(scene, mesh_scene(scene)), cache=cache)
+    model = build_model(scene, mesh_scene(scene))
+    response = cached_response(model, cache=cache)
+    return level_of_response(scene, response, time.perf_counter() - start), model, response
+
+
+def level_of_response(scene: Scene, response: Response, seconds: float) -> LevelModel:
+    """Level 4 of a scene that was solved, and the wall time that took [s]."""
     names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
     reactions = {name: response.reactions[name] for name in names}
-    cost = Cost(time.perf_counter() - start, response.diagnostics.n_unknowns)
+    cost = Cost(seconds, response.diagnostics.n_unknowns)
     return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
 
 

@@ -16,28 +16,20 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.fidelity.bearing_units import unit_bounds
 from fe_drivetrain.fidelity.ladder import (
-    TITLES,
-    Cost,
     LevelModel,
     assembly_level,
+    level_of_response,
     shaft_level,
 )
+from fe_drivetrain.fidelity.shaft_bands import APART, COARSER
 from fe_drivetrain.fidelity.shafts import condensed_shaft, reference_points
 from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
 
-COARSER = 1.35
-"""Factor on the mesh sizes of the second assembly, which shows what the mesh does."""
-
 COARSER_ASSEMBLY = "assembly, coarser mesh"
 """Its name among the models."""
-
-#: Two meshes whose mean sizes are nearer than this say nothing of each other.
-_APART = 1.05
-#: Fewest elements round a turn of the coarser mesh.
-_LEAST_TURN = 6
 
 ROUND_OFF = 1e-6
 """Share of a reaction below which its force or moment is the noise of a mesh, and left out."""
@@ -69,7 +61,7 @@ class Levels:
     @property
     def coarser(self) -> LevelModel | None:
         """The assembly on a coarser mesh; None where it says nothing of the other's band."""
-        return self.models[COARSER_ASSEMBLY] if self.mesh_ratio > _APART else None
+        return self.models[COARSER_ASSEMBLY] if self.mesh_ratio > APART else None
 
     def band(self, change: Floats) -> Floats:
         """Band of what the coarser mesh changes by so much: continued at first order.
@@ -120,24 +112,17 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
             models[f"{word}, {name} housings"] = shaft_level(scene, level, springs, body)
     report("levels 1 and 2 (4 of 4)")
     ratio = float("nan")
-    turn = max(_LEAST_TURN, round(scene.mesh.elements_per_turn / COARSER))
-    coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER, turn)})
+    coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)})
     try:
         models[COARSER_ASSEMBLY] = assembly_level(coarse)
         ratio = mean_size(mesh_scene(coarse)) / mean_size(mesh_scene(scene))
     except InputError:  # too coarse for a wall
         pass
-    models["assembly"] = _assembly(scene, response)
+    found = response.diagnostics
+    seconds = found.setup_seconds + found.solve_seconds
+    models["assembly"] = level_of_response(scene, response, seconds)
     unit_mesh = {name: found.mesh for name, found in bounds.items()}
     return Levels(stiff, soft, models, unit_mesh, ratio)
-
-
-def _assembly(scene: Scene, response: Response) -> LevelModel:
-    names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
-    found = response.diagnostics
-    cost = Cost(found.setup_seconds + found.solve_seconds, found.n_unknowns)
-    reactions = {name: response.reactions[name] for name in names}
-    return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
 
 
 def reaction_history(

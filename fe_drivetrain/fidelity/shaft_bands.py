@@ -34,7 +34,7 @@ SHARPEST = 0.5
 #: Factor on the sizes of the coarser solid, and the order that is relied upon.
 COARSER, ORDER = 1.35, 1.0
 #: Two meshes whose mean sizes are nearer than this say nothing of each other.
-_APART = 1.05
+APART = 1.05
 #: Components that are looked at; what is along and about z repeats them.
 _COMPONENTS = (0, 1, 3, 5)
 
@@ -72,14 +72,12 @@ def banded_solid(scene: Scene, at: Sequence[str] | None = None) -> tuple[Condens
     solid = shaft_solid(scene)
     body = _kept(solid.body, at)
     band = RECOVERY_SAFETY * _recovered_error(scene, solid, body.names)
-    turn = max(6, round(scene.mesh.elements_per_turn / COARSER))
-    sizes = scene.mesh.scaled(COARSER, turn)
     try:
-        coarse = shaft_solid(scene.model_copy(update={"mesh": sizes}))
+        coarse = shaft_solid(scene.model_copy(update={"mesh": scene.mesh.scaled(COARSER)}))
     except InputError:  # too coarse for a wall: what is recovered is the band
         return body, band
     ratio = mean_size(coarse.mesh) / mean_size(solid.mesh)
-    if ratio < _APART:
+    if ratio < APART:
         return body, band
     change = largest_difference(_kept(coarse.body, at).stiffness, body.stiffness)
     return body, max(band, change / (ratio**ORDER - 1.0))

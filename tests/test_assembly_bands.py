@@ -1,0 +1,116 @@
+"""Bands of assemblies: influence functions, recovered errors, and what a series of meshes shows."""
+
+import numpy as np
+import pytest
+from conftest import coarse_scene
+
+from fe_drivetrain.compare.convergence import grid_convergence
+from fe_drivetrain.fidelity.adviser import Quantity
+from fe_drivetrain.fidelity.assembly_bands import assembly_band, motion_error, reaction_error
+from fe_drivetrain.geometry import MeshSizes
+from fe_drivetrain.response.influence_fields import reaction_influences
+from fe_drivetrain.response.model import Model, build_model, mesh_scene
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
+from fe_drivetrain.solve.error_estimate import SAFETY, recovery_estimate
+
+BEDPLATE = [1e9, "rigid", 1e9, 1e7, "rigid", 1e7]
+
+
+def solved_scene(**changes: object) -> tuple[Model, Response]:
+    """A bonded bearing and springs, so that statics decides nothing."""
+    scene = coarse_scene("bonded", **changes)
+    model = build_model(scene, mesh_scene(scene))
+    return model, unit_load_response(model)
+
+
+@pytest.fixture(scope="module")
+def solved() -> tuple[Model, Response]:
+    return solved_scene()
+
+
+def test_ground_that_moves_lifts_each_load_by_its_reaction(solved: tuple[Model, Response]) -> None:
+    """Betti: displacements by the moved ground, at each load, are the reactions to that load."""
+    on_bedplate = solved_scene(**{"bearing_units.main_bearing.bedplate": BEDPLATE})
+    for name, (model, response) in (
+        ("main_bearing", solved),
+        ("gearbox", on_bedplate),
+        ("main_bearing", on_bedplate),
+    ):
+        found = reaction_influences(model, name, range(6)).T @ model.unit_loads()
+        expected = response.reactions[name]
+        np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-8 * np.abs(expected).max())
+
+
+def test_work_of_errors_is_their_energy_on_themselves(solved: tuple[Model, Response]) -> None:
+    model, response = solved
+    mesh, load = model.mesh, np.eye(10)[:, [4]]
+    parts = [
+        (mesh.cells[mesh.part_cells(p)], model.scene.material_of(p).lame) for p in mesh.part_names
+    ]
+    u = response.displacements.reshape(-1, 10) @ load
+    energy = recovery_estimate(mesh.points, parts, u[:, 0]).error_energy
+    assert motion_error(model, response, load)[0, 0] == pytest.approx(2 * energy, rel=1e-9)
+
+
+def test_the_band_is_the_larger_of_series_and_recovered_stresses() -> None:
+    sizes, values = [1.8, 1.35, 1.0], [np.array([5.0 + h]) for h in (1.8, 1.35, 1.0)]
+    narrow, wide = (assembly_band(sizes, values, np.array([e])) for e in (0.01, 10.0))
+    assert narrow.series == wide.series == narrow.half_width
+    assert narrow.half_width * 6.0 > 1.0  # the error is 1 of 6
+    assert wide.half_width == pytest.approx(SAFETY * 10.0 / 6.0)
+    assert "three meshes converge" in narrow.sentence()
+    assert "recovered stresses, the wider" in wide.sentence()
+
+
+@pytest.mark.parametrize(
+    ("values", "words"), [((1.0, 1.2, 1.1), "go up and down"), ((1.0, 1.1, 1.3), "do not converge")]
+)
+def test_a_series_without_order_says_so_and_is_wide(values: tuple[float, ...], words: str) -> None:
+    """Its band is three times what the range would be off from element size zero, at least."""
+    found = assembly_band([1.8, 1.35, 1.0], [np.array([v]) for v in values], np.array([0.0]))
+    assert words in found.sentence()
+    assert found.half_width * values[-1] >= 3.0 * np.ptp(values) / 0.8 * (1 - 1e-12)
+
+
+def test_values_that_agree_by_chance_get_no_narrow_band() -> None:
+    """Two meshes that differ by a hundredth of what the first two do show no convergence."""
+    for last in (1.0999, 1.1, 1.1001):
+        found = grid_convergence([1.8, 1.35, 1.0], [1.0, 1.1, last], least_order=0.5)
+        assert found.uncertainty > 0.25
+
+
+def test_meshes_of_nearly_one_size_count_once() -> None:
+    """Where elements fold over, a mesh is made finer than asked for, and may be no coarser one."""
+    values = [np.array([v]) for v in (1.4, 1.2, 1.19)]
+    two = assembly_band([1.8, 1.01, 1.0], values, np.array([0.0]))
+    assert two.sizes == (1.8, 1.0)
+    assert two.half_width == pytest.approx(3.0 * (0.21 / 0.8) / 1.19)
+    one = assembly_band([0.9, 1.01, 1.0], values, np.array([0.1]))
+    assert np.isnan(one.series)
+    assert one.half_width == pytest.approx(SAFETY * 0.1 / 1.19)
+    assert "no series of meshes" in one.sentence()
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.35, 1.5])
+def test_all_sizes_scale(factor: float) -> None:
+    sizes = MeshSizes(elements_per_turn=18)
+    scaled = sizes.scaled(factor)
+    for name in ("shaft", "bearing", "housing", "bearing_edge"):
+        assert getattr(scaled, name) == pytest.approx(factor * getattr(sizes, name))
+    assert scaled.elements_per_turn == pytest.approx(18 / factor, abs=0.5)
+    assert sizes.scaled(factor, 11).elements_per_turn == 11
+    # fewer fold over, but those that were asked for stay
+    assert sizes.scaled(9.0).elements_per_turn == 8
+    assert MeshSizes(elements_per_turn=6).scaled(9.0).elements_per_turn == 6
+
+
+def test_the_error_of_a_sum_of_loads_is_at_most_that_of_each(
+    solved: tuple[Model, Response],
+) -> None:
+    model, response = solved
+    load = np.zeros(10)
+    load[[2, 4]] = 1.0, -2.0
+    columns = np.column_stack([load, np.eye(10)[:, [2, 4]]])
+    both, force, moment = reaction_error(model, response, "main_bearing", [4], columns)[0]
+    assert 0 < both <= force + 2.0 * moment
+    assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0).T
