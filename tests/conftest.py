@@ -42,6 +42,7 @@ COARSE = {
     "mesh.bearing": 0.1,
     "mesh.housing": 0.1,
     "mesh.bearing_edge": 0.1,
+    "mesh.elements_per_turn": 8,
     "shaft.front": -1.0,
     "shaft.sections.0.length": 2.2,
 }

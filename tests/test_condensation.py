@@ -92,7 +92,11 @@ def test_solid_and_meridian_agree_but_for_the_ring_and_the_mesh() -> None:
     soft = {"youngs_modulus": 1e6, "poisson_ratio": 0.3, "density": 0.0}
     scene = coarse_scene(
         "spherical",
-        **{"materials.soft": soft, "bearing_units.main_bearing.bearing.material": "soft"},
+        **{
+            "materials.soft": soft,
+            "bearing_units.main_bearing.bearing.material": "soft",
+            "mesh.elements_per_turn": 12,
+        },
     )
     solid, exact = solid_shaft(scene), meridian_shaft(scene)
     ends = [

@@ -158,8 +158,9 @@ def test_a_curved_surface_has_the_area_of_the_mesh(bonded_model: Model) -> None:
     mesh = bonded_model.mesh
     for face in ("shaft.front", "main_bearing.outer", "main_bearing.housing.base"):
         surface = curved_surface(mesh.faces[face], mesh.points)
-        # flat triangles inscribed in curved ones lose a little area
-        assert surface.area == pytest.approx(area(mesh, face), rel=5e-3)
+        # flat triangles inscribed in curved ones lose a little area: sixteen chords round a turn
+        lost = 1 - np.sinc(1 / 16)
+        assert surface.area == pytest.approx(area(mesh, face), rel=lost)
         # and VTK keeps the points that it adds in single precision, to 6e-8 of their coordinates
         assert surface.area <= area(mesh, face) * (1 + 2e-7)
 

@@ -78,8 +78,10 @@ def test_near_nullspace_of_free_bodies_costs_no_energy(bonded_model):
     edge = np.abs(motions - expected).max(axis=1)
     corner = np.unique(model.mesh.cells[:, :4])
     assert edge.reshape(-1, 3)[corner].max() < 1e-12
-    # Curved edges are as far from the linear elements' as their middles are off.
-    assert edge.max() < 0.02
+    # Curved edges are as far from the linear elements' as their middles are off: the sagitta of an
+    # eighth of the largest circle, times a unit rotation.
+    radius = np.hypot(*(model.mesh.points[model.mesh.face_nodes("main_bearing.outer")].T[1:])).max()
+    assert edge.max() < 1.01 * radius * (1 - np.cos(np.pi / 8))
 
 
 def test_bodies_are_parts_that_share_nodes(spherical_mesh, bonded_model):
