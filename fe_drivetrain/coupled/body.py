@@ -133,9 +133,8 @@ class LinearBody:
             for name, place in zip(body.names, body.positions, strict=True)
         }
         whole = applied(body).reshape(len(body.names), 6, -1)
-        total = np.asarray(
-            factors @ sum(T[name] @ part for name, part in zip(body.names, whole, strict=True)).T
-        )
+        moved = [T[name] @ part for name, part in zip(body.names, whole, strict=True)]
+        total = np.asarray(factors @ np.sum(moved, axis=0).T)
         for name, reaction in self.reactions(factors, forces, deflections).items():
             total -= reaction @ T[name].T
         for name, force in zip(self.bearings, np.moveaxis(forces, 1, 0), strict=True):
@@ -252,7 +251,7 @@ def in_housings(body: LinearBody, housings: Mapping[str, ArrayLike]) -> LinearBo
     return replace(
         body,
         stiffness=0.5 * (series + series.T),
-        loads=np.linalg.solve(whole, body.loads),
+        loads=np.asarray(np.linalg.solve(whole, body.loads)),
         housings=body.housings + C,
     )
 

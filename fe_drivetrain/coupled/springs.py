@@ -166,7 +166,7 @@ def tilting_stiffness(
     if kind == "tangent":
         return np.asarray(tangent)
     along = np.einsum("ni,ni->n", F[:, 3:], axis)
-    return np.where(tilted, along / np.where(tilted, size, 1.0), tangent)
+    return np.asarray(np.where(tilted, along / np.where(tilted, size, 1.0), tangent))
 
 
 def stiffness_loop(
