@@ -270,7 +270,7 @@ TWO_BEARINGS = [
         "mesh.bearing=0.12",
         "mesh.housing=0.12",
         "mesh.bearing_edge=0.12",
-        "mesh.elements_per_turn=8",
+        "mesh.elements_per_turn=12",
     )
     for word in ("--set", change)
 ]

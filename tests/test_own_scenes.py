@@ -38,7 +38,8 @@ SLOW = {"secant_stiffness"}
 def pages(tmp_path_factory) -> dict[str, Results]:
     """Results of each case on a small scene with a sliding bearing."""
     folder = tmp_path_factory.mktemp("own")
-    scene = coarse_scene("spherical", title="Turbine of mine").model_dump(mode="json")
+    changes = {"title": "Turbine of mine", "mesh.elements_per_turn": 12}
+    scene = coarse_scene("spherical", **changes).model_dump(mode="json")
     (folder / "mine.yaml").write_text(yaml.safe_dump(scene))
     time = 0.05 * np.arange(40)
     forces = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
