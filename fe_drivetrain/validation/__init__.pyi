@@ -3,6 +3,7 @@ from . import bracket_plane as bracket_plane
 from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
 from . import distorted_blocks as distorted_blocks
+from . import elliptic_plate as elliptic_plate
 from . import exact_blocks as exact_blocks
 from . import extreme_parts as extreme_parts
 from . import faulty_meshes as faulty_meshes
