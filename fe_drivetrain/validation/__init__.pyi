@@ -23,6 +23,7 @@ from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
+from . import pressed_plate as pressed_plate
 from . import published_drivetrains as published_drivetrains
 from . import quarter_disc as quarter_disc
 from . import random_shafts as random_shafts
