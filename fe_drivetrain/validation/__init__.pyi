@@ -28,6 +28,7 @@ from . import published_drivetrains as published_drivetrains
 from . import quarter_disc as quarter_disc
 from . import random_shafts as random_shafts
 from . import rigid_ended_shafts as rigid_ended_shafts
+from . import ring_slices as ring_slices
 from . import ring_solids as ring_solids
 from . import round_shafts as round_shafts
 from . import seat_couplings as seat_couplings

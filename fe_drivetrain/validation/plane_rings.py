@@ -122,6 +122,10 @@ class Rotating:
     force: float
     plane: Plane
 
+    def body_force(self, x: Floats) -> Floats:
+        """Force per volume [N/m^3] at (..., 3) positions; the axis of rotation is x."""
+        return self.force * x * [0.0, 1.0, 1.0]
+
     def radial(self, r: Floats) -> Floats:
         """Radial stress [Pa]."""
         a2, b2, r2 = self.inner**2, self.outer**2, np.asarray(r) ** 2
