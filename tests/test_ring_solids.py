@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import held_nodes
@@ -23,7 +24,12 @@ from fe_drivetrain.validation.plane_rings import (
 from fe_drivetrain.validation.quarter_disc import (
     quarter_disc,
 )
-from fe_drivetrain.validation.ring_slices import divided_sector, slice_supports
+from fe_drivetrain.validation.ring_slices import (
+    divided_sector,
+    half_wave,
+    slice_supports,
+    wave_pressure,
+)
 from fe_drivetrain.validation.ring_solids import (
     facets_where,
     moves_as_one,
@@ -104,6 +110,19 @@ def test_a_slice_has_nodes_on_the_radii_that_it_is_divided_at_and_a_plane_end():
     # a disc in rotation becomes thinner, and most where it is stretched most
     assert ends[False].max() < 0.0
     assert np.ptp(ends[False]) > 0.1 * abs(ends[True][0])
+
+
+def test_half_a_wave_of_pressure_pushes_and_pulls_equally():
+    block = half_wave(1.0, 1.2, 3, 1)
+    x, y, z = block.points.T
+    assert np.arctan2(z, y).max() == pytest.approx(np.pi / 3)
+    assert np.ptp(x) == pytest.approx(0.1)
+    F = traction_loads(block.points, block.faces["x1"], wave_pressure(2.0, 3)).reshape(-1, 3)
+    # positive pressure at t = 0 pushes inwards: the integral of p cos(3t) e_r over half a wave
+    t = np.linspace(0.0, np.pi / 3, 20001)
+    along_y = -2.0 * 1.2 * 0.1 * trapezoid(np.cos(3 * t) * np.cos(t), t)
+    assert F[:, 1].sum() == pytest.approx(along_y, rel=1e-3)
+    assert F[block.face_nodes("y0"), 1].sum() < 0.0
 
 
 def test_node_at_wants_a_node():

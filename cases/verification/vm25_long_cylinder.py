@@ -11,8 +11,8 @@ from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.validation.plane_rings import Rotating, plane_strain
 from fe_drivetrain.validation.ring_slices import along_the_middle, divided_sector, slice_supports
 
-INNER, INSIDE, MIDDLE, OUTER = (r * INCH for r in (4.0, 5.43, 6.0, 8.0))
-PLACES = {"bore": INNER, "r = 5.43 in": INSIDE, "mid-wall": MIDDLE, "outside": OUTER}
+INNER, INSIDE, OUTER = 4.0 * INCH, 5.43 * INCH, 8.0 * INCH
+PLACES = {"bore": INNER, "r = 5.43 in": INSIDE, "mid-wall": 6.0 * INCH, "outside": OUTER}
 SECTOR = 0.2617993877991494  # rad: 15 degrees, between planes of symmetry
 STEEL = Material(youngs_modulus=30e6 * PSI, poisson_ratio=0.3, density=0.0)
 PLANE = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)
@@ -31,8 +31,9 @@ PRESSED = {
     "hoop stress, outside [MPa]": 1e-6 * (20000.0 * PSI),
 }
 DISC = {key: 1e-6 * (p * PSI) for key, p in zip(ROTATED, (40588.0, 4753.0, 29436.0), strict=True)}
-HOOP, RADIAL = (1e-6 * of(np.array([INNER, INSIDE])) for of in (LONG.hoop, LONG.radial))
-CYLINDER = dict(zip(ROTATED, map(float, (HOOP[0], RADIAL[1], HOOP[1])), strict=True))
+BORE, WALL = np.array(INNER), np.array(INSIDE)
+CLOSED_FORMS = LONG.hoop(BORE), LONG.radial(WALL), LONG.hoop(WALL)
+CYLINDER = {key: 1e-6 * float(s) for key, s in zip(ROTATED, CLOSED_FORMS, strict=True)}
 MANUAL = "Ansys Mechanical APDL verification manual, VM25, targets as in PyMAPDL's example"
 CLOSED = "Timoshenko and Goodier 1970, art 32, with the constants of plane strain"
 COUNT = "elements through the wall"

@@ -206,6 +206,32 @@ def harmonics(
     return Harmonics(orders, solved, inner, outer)
 
 
+def inextensible_ring(
+    orders: Ints, inner: float, outer: float, pressure: float, plane: Plane
+) -> Floats:
+    """Radial amplitudes of a thin ring that does not stretch, p R^4 / (E I (n^2 - 1)^2), inwards.
+
+    Parameters
+    ----------
+    orders : Ints
+        (m,) n, each 2 or more.
+    inner, outer : float
+        Radii [m].
+    pressure : float
+        Amplitude on the outside of the pressure that varies as cos(n t) [Pa].
+    plane : Plane
+        Elastic constants.
+
+    Returns
+    -------
+    amplitudes : Floats
+        (m,) [m], negative where the pressure is positive.
+    """
+    middle = 0.5 * (inner + outer)
+    stiffness = plane.E * (outer - inner) ** 3 / 12.0 * (np.asarray(orders) ** 2 - 1.0) ** 2
+    return np.asarray(-pressure * middle**4 / stiffness)
+
+
 def _powers(orders: Ints, inner: float, outer: float, r: float) -> tuple[Floats, Floats]:
     """(m, 4) exponents k of the stress function, and r^(k - 2) scaled."""
     n = np.asarray(orders, dtype=float)

@@ -1,6 +1,6 @@
 """Slices of a ring between planes of symmetry: of a long cylinder, or of a thin disc."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -32,6 +32,45 @@ def divided_sector(
     ]
     edges: Floats = np.concatenate([[0.0], *parts])
     return ring_sector(inner, outer, width, angle, (n, n // 4, 1), edges=(edges, None, None))
+
+
+def half_wave(inner: float, outer: float, n: int, level: int) -> Block:
+    """A sector of a ring over half a wave of cos(n t), one element wide.
+
+    Its elements are no longer than the wall is thick on the first level, and there is a node in the
+    middle.
+
+    Parameters
+    ----------
+    inner, outer : float
+        Radii [m].
+    n : int
+        Waves round the ring.
+    level : int
+        Half of the elements through the wall; elements are as wide as they are thick.
+    """
+    angle, wall = np.pi / n, outer - inner
+    pairs = max(2, int(np.ceil(angle * 0.5 * (inner + outer) / (2.0 * wall))))
+    divisions = (2 * level, 2 * pairs * level, 1)
+    return ring_sector(inner, outer, wall / (2 * level), angle, divisions)
+
+
+def wave_pressure(amplitude: float, n: int) -> Callable[[Floats, Floats], Floats]:
+    """Traction of a pressure that varies as cos(n t) round the x axis, as `face_loads` takes it.
+
+    Parameters
+    ----------
+    amplitude : float
+        [Pa].
+    n : int
+        Waves round the ring.
+    """
+
+    def traction(x: Floats, normal: Floats) -> Floats:
+        wave = np.cos(n * np.arctan2(x[:, 2], x[:, 1]))
+        return np.asarray(-amplitude * wave[:, None] * normal)
+
+    return traction
 
 
 def slice_supports(block: Block, angle: float, plane_end: bool) -> list[Constraint]:
