@@ -2,6 +2,7 @@ from . import bar_sections as bar_sections
 from . import bracket_plane as bracket_plane
 from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
+from . import curved_bars as curved_bars
 from . import distorted_blocks as distorted_blocks
 from . import elliptic_plate as elliptic_plate
 from . import exact_blocks as exact_blocks
