@@ -71,6 +71,9 @@ def test_a_bar_between_planes_of_symmetry_is_stretched_uniformly(bar: Block) -> 
     np.testing.assert_allclose(found.stress[:, 1:], 0.0, atol=1.0)
     # along x only: nothing in the plane of the polar components
     np.testing.assert_allclose(found.polar.hoop, 0.0, atol=1.0)
+    # the corner is on the diagonal: both transverse displacements point to the axis
+    transverse = -0.3 * strain * 0.5 * np.sqrt(2.0)
+    assert found.polar_u[far] == pytest.approx([2.0 * strain, transverse, 0.0], rel=1e-9, abs=1e-12)
     assert found.energy == pytest.approx(0.5 * 1e8 * strain * 0.5, rel=1e-9)
     with pytest.raises(ValueError, match="no node"):
         found.node(0.1, 0.0, 0.0)

@@ -10,6 +10,7 @@ from fe_drivetrain.validation.plane_rings import (
     Rotating,
     even_amplitudes,
     harmonics,
+    inextensible_ring,
     interference_pressure,
     plane_strain,
 )
@@ -149,3 +150,16 @@ def test_end_force_of_a_curved_bar_balances_is_compatible_and_has_its_resultant(
         assert (float(radial), float(shear)) == pytest.approx((0.0, 0.0), abs=1e-12)
     # towards the centre on the end at t = 0, whose outward normal is against t
     assert integral(lambda r: bar.end_force(r, 0.0, 5.0)[2]) == pytest.approx(5.0, rel=1e-12)
+
+
+def test_a_thin_ring_hardly_stretches_under_waves_of_pressure():
+    """The thinner the ring, the less is left out: as the wall over the radius, or faster."""
+    n = np.array([2, 3])
+    errors = []
+    for wall in (0.02, 0.01):
+        inner, outer = 1.0 - 0.5 * wall, 1.0 + 0.5 * wall
+        exact = harmonics(n, inner, outer, np.zeros(2), np.ones(2))
+        thin = inextensible_ring(n, inner, outer, 1.0, PLANE)
+        errors.append(np.abs(exact.displacement_amplitudes(1.0, PLANE)[0] / thin - 1.0))
+    assert np.all(errors[0] < 0.03)
+    assert np.all(errors[1] < 0.6 * errors[0])

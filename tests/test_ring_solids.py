@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import held_nodes
 from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.operator.loads import pressure, traction_loads
+from fe_drivetrain.operator.loads import body_loads, pressure, traction_loads
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.solve.solid import solve_solid
 from fe_drivetrain.validation.bar_sections import (
@@ -18,9 +19,16 @@ from fe_drivetrain.validation.bar_sections import (
 from fe_drivetrain.validation.plane_rings import (
     Lame,
     Plane,
+    Rotating,
 )
 from fe_drivetrain.validation.quarter_disc import (
     quarter_disc,
+)
+from fe_drivetrain.validation.ring_slices import (
+    divided_sector,
+    half_wave,
+    slice_supports,
+    wave_pressure,
 )
 from fe_drivetrain.validation.ring_solids import (
     facets_where,
@@ -85,6 +93,36 @@ def test_polar_components_of_a_uniform_stress():
     normal = np.array([[0.0, 0.6, 0.8]] * 3)
     found = polar_traction(field)(points, normal)
     np.testing.assert_allclose(found, [[0.0, 0.6, 0.0]] * 3, atol=1e-15)
+
+
+def test_a_slice_has_nodes_on_the_radii_that_it_is_divided_at_and_a_plane_end():
+    block = divided_sector((1.0, 1.2, 1.5, 2.0), (1, 2, 1), 0.5, 1.0)
+    for r in (1.0, 1.2, 1.35, 1.5, 2.0):
+        node_at(block.points, [0.0, r, 0.0])
+    F = body_loads(block.points, block.cells, Rotating(1.0, 2.0, 1.0, Plane(E, NU)).body_force)
+    ends = {}
+    for plane_end in (True, False):
+        held = slice_supports(block, 1.0, plane_end)
+        u = solve_solid(block.points, block.cells, LAME, held, F).u[:, 0]
+        assert np.abs(u[3 * block.face_nodes("z0")]).max() < 1e-12
+        ends[plane_end] = u[3 * block.face_nodes("z1")]
+    assert np.ptp(ends[True]) < 1e-9 * abs(ends[True][0])
+    # a disc in rotation becomes thinner, and most where it is stretched most
+    assert ends[False].max() < 0.0
+    assert np.ptp(ends[False]) > 0.1 * abs(ends[True][0])
+
+
+def test_half_a_wave_of_pressure_pushes_and_pulls_equally():
+    block = half_wave(1.0, 1.2, 3, 1)
+    x, y, z = block.points.T
+    assert np.arctan2(z, y).max() == pytest.approx(np.pi / 3)
+    assert np.ptp(x) == pytest.approx(0.1)
+    F = traction_loads(block.points, block.faces["x1"], wave_pressure(2.0, 3)).reshape(-1, 3)
+    # positive pressure at t = 0 pushes inwards: the integral of p cos(3t) e_r over half a wave
+    t = np.linspace(0.0, np.pi / 3, 20001)
+    along_y = -2.0 * 1.2 * 0.1 * trapezoid(np.cos(3 * t) * np.cos(t), t)
+    assert F[:, 1].sum() == pytest.approx(along_y, rel=1e-3)
+    assert F[block.face_nodes("y0"), 1].sum() < 0.0
 
 
 def test_node_at_wants_a_node():

@@ -3,18 +3,16 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import brick
 from fe_drivetrain.operator import pressure
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped
+from fe_drivetrain.validation.elliptic_plate import EllipticPlate
 from fe_drivetrain.validation.loaded_blocks import face_loads, graded, solve_block, supports
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=0.0)
-INNER, OUTER = (2.0, 1.0), (3.25, 2.75)  # m, half axes of the ellipses
-THICKNESS = 0.6  # m
+PLATE = EllipticPlate(inner=(2.0, 1.0), outer=(3.25, 2.75), thickness=0.6)  # m
+POINT_D = (2.0, 0.0, 0.3)  # m
 PRESSURE = 1e6  # Pa
-LOAD = PRESSURE * 0.25 * np.pi * (OUTER[0] * OUTER[1] - INNER[0] * INNER[1])  # N
 TARGET = -5.38  # MPa
 NAFEMS = "NAFEMS, The Standard NAFEMS Benchmarks, TNSB rev. 3, 1990, LE10"
 
@@ -25,17 +23,10 @@ NAMES = {10: "curved tetrahedra of 10 nodes"} | {n: f"hexahedra of {n} nodes" fo
 STRESS, PRESSED = "sigma_yy at D [MPa]", "load on the plate [MN]"
 
 
-def quarter_plate(unit: Floats) -> Floats:
-    """Straight rays between points of the two ellipses with the same parameter."""
-    s, t = unit[:, :1], 0.5 * np.pi * unit[:, 1]
-    inner, outer = (np.column_stack([a * np.cos(t), b * np.sin(t)]) for a, b in (INNER, OUTER))
-    return np.column_stack([(1.0 - s) * inner + s * outer, THICKNESS * (unit[:, 2] - 0.5)])
-
-
 def solve(nodes: int, divisions: tuple[int, int, int]) -> Record:
     """One mesh, with elements finer towards D and towards both faces of the plate."""
     edges = graded(divisions, 1.5, "x0", "y0", "z0", "z1")
-    plate = brick(divisions, nodes, quarter_plate, edges)
+    plate = PLATE.quarter(divisions, nodes, edges)
     outer = plate.face_nodes("x1")
     middle_line = outer[np.abs(plate.points[outer, 2]) < 1e-9]
     held = supports(plate, (middle_line, "z"), y0="y", y1="x", x1="xy")
@@ -46,7 +37,7 @@ def solve(nodes: int, divisions: tuple[int, int, int]) -> Record:
     return {
         "element": NAMES[nodes],
         "unknowns": plate.points.size - len(held.pivots),
-        STRESS: float(found.stress[found.node(INNER[0], 0.0, 0.5 * THICKNESS), 1]) / 1e6,
+        STRESS: float(found.stress[found.node(*POINT_D), 1]) / 1e6,
         PRESSED: -load / 1e6,
         "imbalance": (float(reaction) + load) / load,
     }
@@ -79,7 +70,7 @@ def run(run: Run, page: Page) -> None:
     )
     edges = "quadratic edges follow the ellipses to the fourth power of their length"
     area = "pressure times the area between the ellipses, pi/4 (3.25 2.75 - 2 1)"
-    load = Target(PRESSED, LOAD / 1e6, 1e-4, edges, area)
+    load = Target(PRESSED, PRESSURE * PLATE.quarter_area / 1e6, 1e-4, edges, area)
     page.finest(MeshSeries(rows[-3:], "unknowns", dimension=3), load)
     page.answer(
         f"sigma_yy at D is {rows[-1][STRESS]:.3f} MPa with {rows[-1]['unknowns']:,} unknowns of "

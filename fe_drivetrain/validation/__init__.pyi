@@ -2,7 +2,9 @@ from . import bar_sections as bar_sections
 from . import bracket_plane as bracket_plane
 from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
+from . import curved_bars as curved_bars
 from . import distorted_blocks as distorted_blocks
+from . import elliptic_plate as elliptic_plate
 from . import exact_blocks as exact_blocks
 from . import extreme_parts as extreme_parts
 from . import faulty_meshes as faulty_meshes
@@ -22,10 +24,12 @@ from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
+from . import pressed_plate as pressed_plate
 from . import published_drivetrains as published_drivetrains
 from . import quarter_disc as quarter_disc
 from . import random_shafts as random_shafts
 from . import rigid_ended_shafts as rigid_ended_shafts
+from . import ring_slices as ring_slices
 from . import ring_solids as ring_solids
 from . import round_shafts as round_shafts
 from . import seat_couplings as seat_couplings

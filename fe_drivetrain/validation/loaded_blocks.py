@@ -139,6 +139,15 @@ class LoadedBlock:
         """The same stresses in polar components about the x axis."""
         return polar_stresses(self.stress, self.block.points)
 
+    @cached_property
+    def polar_u(self) -> Floats:
+        """(n, 3) displacements along the x axis, the radius and the angle about it [m]."""
+        _, y, z = self.block.points.T
+        t = np.arctan2(z, y)
+        axial, along_y, along_z = self.u.T
+        radial = along_y * np.cos(t) + along_z * np.sin(t)
+        return np.column_stack([axial, radial, along_z * np.cos(t) - along_y * np.sin(t)])
+
     def node(self, *position: float) -> int:
         """The node at x, y and z [m]; raises ValueError where there is none."""
         return node_at(self.block.points, position)

@@ -122,6 +122,10 @@ class Rotating:
     force: float
     plane: Plane
 
+    def body_force(self, x: Floats) -> Floats:
+        """Force per volume [N/m^3] at (..., 3) positions; the axis of rotation is x."""
+        return self.force * x * [0.0, 1.0, 1.0]
+
     def radial(self, r: Floats) -> Floats:
         """Radial stress [Pa]."""
         a2, b2, r2 = self.inner**2, self.outer**2, np.asarray(r) ** 2
@@ -200,6 +204,32 @@ def harmonics(
     right[:, 0], right[:, 2] = -inside, -outside
     solved = np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], dtype=float)
     return Harmonics(orders, solved, inner, outer)
+
+
+def inextensible_ring(
+    orders: Ints, inner: float, outer: float, pressure: float, plane: Plane
+) -> Floats:
+    """Radial amplitudes of a thin ring that does not stretch, p R^4 / (E I (n^2 - 1)^2), inwards.
+
+    Parameters
+    ----------
+    orders : Ints
+        (m,) n, each 2 or more.
+    inner, outer : float
+        Radii [m].
+    pressure : float
+        Amplitude on the outside of the pressure that varies as cos(n t) [Pa].
+    plane : Plane
+        Elastic constants.
+
+    Returns
+    -------
+    amplitudes : Floats
+        (m,) [m], negative where the pressure is positive.
+    """
+    middle = 0.5 * (inner + outer)
+    stiffness = plane.E * (outer - inner) ** 3 / 12.0 * (np.asarray(orders) ** 2 - 1.0) ** 2
+    return np.asarray(-pressure * middle**4 / stiffness)
 
 
 def _powers(orders: Ints, inner: float, outer: float, r: float) -> tuple[Floats, Floats]:
