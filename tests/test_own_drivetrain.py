@@ -262,13 +262,19 @@ def test_check_of_a_file_that_is_not_there(invoke: Callable[..., Result]) -> Non
     assert "mine.yaml" in err
 
 
-#: Two bearings on a stepped shaft, the mesh as coarse as its walls allow.
+#: Two bearings on a stepped shaft: short, and solid, for elements are as small as the bore asks.
 TWO_BEARINGS = [
     word
     for change in (
-        "mesh.shaft=0.25",
+        "shaft.front=-0.6",
+        "shaft.sections.0.length=1.4",
+        "shaft.sections.1.length=1.1",
+        "shaft.sections.0.inner_diameter=0",
+        "shaft.sections.1.inner_diameter=0",
+        "bearing_units.rear.bearing.x=1.2",
+        "mesh.shaft=0.4",
         "mesh.bearing=0.12",
-        "mesh.housing=0.12",
+        "mesh.housing=0.15",
         "mesh.bearing_edge=0.12",
         "mesh.elements_per_turn=8",
     )
