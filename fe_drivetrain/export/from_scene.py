@@ -77,7 +77,7 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
 
 
 def _beam_band(scene: Scene, body: Condensed, at: Sequence[str] | None) -> float | None:
-    """How far the beam is from the shaft's limit, relative; None where the meridian is too large."""
+    """How far the beam is from its limit, relative; None where the meridian is too large."""
     if len(scene.shaft.pieces) > MOST_BANDED:
         return None
     meridian, band = banded_meridian(scene, at)
