@@ -1,7 +1,6 @@
 """Main-bearing cases on a user's scene: the page is about that scene, and says what is not."""
 
 import re
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from conftest import COARSE, coarse_scene
 from fe_drivetrain.cases.main_bearing import loads, study
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import CORES_VARIABLE
-from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity
 from fe_drivetrain.geometry.fits import check_parts
 from fe_drivetrain.geometry.walls import check_sizes
 from fe_drivetrain.hub_loads.surrogate import Condition
@@ -132,14 +130,6 @@ def test_several_bearings_are_sent_to_the_study(tmp_path):
     run = Run({"scene": str(file)}, False, tmp_path)
     with pytest.raises(InputError, match=r"2 bearing units.*fe-drivetrain study"):
         study.given_scene(run, "bonded")
-
-
-def test_advice_without_a_band_says_why():
-    model = SimpleNamespace(level=4, title="assembly of solids")
-    result = LevelResult(model, np.ones(1), 1.0, float("nan"))
-    sentence = Advice(Quantity("main_bearing.My"), 0.05, [result], None).sentence()
-    assert "walls are too thin" in sentence
-    assert "nan" not in sentence
 
 
 def test_errors_of_round_off_are_a_sentence_and_not_a_chart(rng):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain import export
+from fe_drivetrain.commands import QUICK_BAND
 from fe_drivetrain.common import (
     Floats,
     largest_difference,
@@ -149,11 +150,13 @@ class Quantity:
     of: Callable[[LevelModel], float]
 
 
-def show_ladder(page: Page, ladder: Ladder, quantities: Sequence[Quantity]) -> None:
+def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quantity]) -> None:
     """Levels compared: value, error against the solid, its band, time, what is neglected.
 
     Parameters
     ----------
+    run : Run
+        Whether the mesh is the component's own, or a quick run's.
     page : Page
         Takes the answer, the check whether some level is known to be within `TOLERANCE` in the
         first quantity, and the section.
@@ -189,13 +192,16 @@ def show_ladder(page: Page, ladder: Ladder, quantities: Sequence[Quantity]) -> N
             f"{times[-1] / times[chosen]:.3g} times faster"
         )
     page.answer(f"{_capital(sentence)}.")
-    page.at_most(
-        f"{first.name}: error of level {model.level}, {model.title}, and band of the solid",
-        known_errors[chosen],
-        TOLERANCE,
-        why="the tolerance that was requested",
-        source="the solid and its grid convergence",
-    )
+    if run.quick:
+        page.answer(QUICK_BAND)
+    else:
+        page.at_most(
+            f"{first.name}: error of level {model.level}, {model.title}, and band of the solid",
+            known_errors[chosen],
+            TOLERANCE,
+            why="the tolerance that was requested",
+            source="the solid and its grid convergence",
+        )
     page.section("The ladder")
     page.text(_capital(sentence))
     page.add(_against_time(ladder, first.name, errors_of[0], own))

@@ -80,6 +80,7 @@ def run(run: Run, page: Page) -> None:
     ladder = all_levels(run, component)
     torsion = ring_stiffness(3)
     show_ladder(
+        run,
         page,
         ladder,
         [

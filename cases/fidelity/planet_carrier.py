@@ -80,6 +80,7 @@ def run(run: Run, page: Page) -> None:
         return 1e12 * pin_motions(component, model).tilt if model.points else float("nan")
 
     show_ladder(
+        run,
         page,
         ladder,
         [

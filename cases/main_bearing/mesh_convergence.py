@@ -1,10 +1,13 @@
 """Mesh convergence of reactions, stiffness and deflection of the bonded main bearing."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Solved, Tilt
+from fe_drivetrain.common import InputError
 from fe_drivetrain.compare import grid_convergence, richardson
 from fe_drivetrain.mesh import mean_size
 from fe_drivetrain.report import trace
@@ -58,6 +61,12 @@ def run(run: Run, page: Page) -> None:
     by_level = [quantities(solved, tilt) for solved, tilt in levels.values()]
     values = {q: [level[q] for level in by_level] for q in by_level[0]}
     sizes = [mean_size(solved.model.mesh) for solved in solutions.values()]
+    if not all(fine < coarse for coarse, fine in pairwise(sizes)):
+        means = ", ".join(f"{size:.3g} m" for size in sizes)
+        raise InputError(
+            f"sizes x {', '.join(f'{f:g}' for f in factors)} give elements of {means} on average, "
+            "which are to descend: use smaller mesh sizes, or more elements a turn, in the scene"
+        )
     found = {
         q: grid_convergence(sizes, v, least_order=bands.LEAST_ORDER) for q, v in values.items()
     }

@@ -1,3 +1,4 @@
+from .advice_page import QUICK_BAND as QUICK_BAND
 from .advice_page import advised as advised
 from .app import main as main
 from .app import main_of_case as main_of_case

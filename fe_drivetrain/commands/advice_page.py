@@ -15,6 +15,8 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
 
+QUICK_BAND = "A quick run's mesh is coarser than what was asked for: its band is not judged."
+
 _LEAST = 1e-6  # in percent; statics has no error, but a logarithmic axis needs one
 
 
@@ -214,15 +216,19 @@ def advised(
     if chosen is not None and chosen.model.neglects:
         page.answer(f"It neglects {', '.join(chosen.model.neglects)}.")
     known = advice.top if chosen is None else chosen
-    page.at_most(
-        f"{quantity.name}: error of level {known.model.level}, {known.model.title}",
-        known.estimate
-        if known.estimate == 0.0 or known is advice.top
-        else known.error + advice.top.estimate,
-        tolerance,
-        why="the tolerance that was requested",
-        source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error band",
-    )
+    if run.quick:
+        page.answer(QUICK_BAND)
+    else:
+        page.at_most(
+            f"{quantity.name}: error of level {known.model.level}, {known.model.title}",
+            known.estimate
+            if known.estimate == 0.0 or known is advice.top
+            else known.error + advice.top.estimate,
+            tolerance,
+            why="the tolerance that was requested",
+            source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error "
+            "band",
+        )
     page.data(
         "levels",
         [
