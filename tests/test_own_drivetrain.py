@@ -24,6 +24,7 @@ from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.compare.cycles import damage_equivalent_load, rainflow_cycles
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
 from fe_drivetrain.export.formats.summary import read_summary
+from fe_drivetrain.export.from_scene import unit_superelement
 from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance, relative_errors
@@ -262,13 +263,19 @@ def test_check_of_a_file_that_is_not_there(invoke: Callable[..., Result]) -> Non
     assert "mine.yaml" in err
 
 
-#: Two bearings on a stepped shaft, the mesh as coarse as its walls allow.
+#: Two bearings on a stepped shaft: short, and solid, for elements are as small as the bore asks.
 TWO_BEARINGS = [
     word
     for change in (
-        "mesh.shaft=0.25",
+        "shaft.front=-0.6",
+        "shaft.sections.0.length=1.4",
+        "shaft.sections.1.length=1.1",
+        "shaft.sections.0.inner_diameter=0",
+        "shaft.sections.1.inner_diameter=0",
+        "bearing_units.rear.bearing.x=1.2",
+        "mesh.shaft=0.4",
         "mesh.bearing=0.12",
-        "mesh.housing=0.12",
+        "mesh.housing=0.15",
         "mesh.bearing_edge=0.12",
         "mesh.elements_per_turn=12",
     )
@@ -568,12 +575,21 @@ def test_a_bearing_free_along_x_leaves_the_axial_force_to_its_neighbour() -> Non
         {
             "bearing_units.rear.interface": "spring",
             "bearing_units.rear.stiffness": [0, "rigid", "rigid", 0, 0, 0],
+            "shaft.sections.0.inner_diameter": 0,
+            "shaft.sections.1.inner_diameter": 0,
+            "mesh.shaft": 0.4,
+            "mesh.bearing": 0.2,
+            "mesh.bearing_edge": 0.2,
+            "mesh.housing": 0.2,
+            "mesh.elements_per_turn": 8,
         },
     )
-    for model in (statics_level(scene), shaft_level(scene, 1), shaft_level(scene, 2)):
+    for model in (statics_level(scene), *(shaft_level(scene, level) for level in (1, 2, 3))):
         axial = {name: matrix[0] for name, matrix in model.reaction_matrices.items()}
         np.testing.assert_allclose(axial["rear"][:6], 0.0, atol=1e-9)
         np.testing.assert_allclose(axial["front"][0], 1.0, rtol=1e-9)
+    exported = unit_superelement(scene, "rear").stiffness
+    assert np.abs(exported[0]).max() < 1e-9 * exported[1, 1]
     with pytest.raises(InputError, match=r"shaft.* can move freely along x"):
         change_scene(
             scene,

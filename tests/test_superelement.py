@@ -16,7 +16,7 @@ from fe_drivetrain.export.from_scene import (
 )
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.ladder import shaft_level
-from fe_drivetrain.fidelity.shafts import meridian_shaft
+from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.solve.condensation import keep_points
 
@@ -142,6 +142,22 @@ def test_bands_hold_what_the_next_level_says() -> None:
     unit = unit_superelement(coarse_scene("bonded"), "main_bearing")
     assert unit.band is not None
     assert 0 < unit.band < 1
+
+
+def test_a_beam_of_a_thousand_sections_has_no_band_and_says_why() -> None:
+    """Cut into short sections of one diameter, it is the same beam."""
+    scene = library_scene("stepped_shaft")
+    whole = beam_shaft(scene)
+    cut = [
+        section.model_copy(update={"length": section.length / 500})
+        for section in scene.shaft.sections
+        for _ in range(500)
+    ]
+    shaft = scene.shaft.model_copy(update={"sections": tuple(cut)})
+    element = shaft_superelement(scene.model_copy(update={"shaft": shaft}), 1)
+    assert element.band is None
+    assert f"at most 100 sections and there are {len(cut)}" in element.origin.mesh
+    assert largest_difference(whole.stiffness, element.stiffness) < 1e-8
 
 
 def test_torsion_of_the_free_shaft_is_g_j_over_l() -> None:

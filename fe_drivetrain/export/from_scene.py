@@ -16,14 +16,18 @@ from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
 from fe_drivetrain.fidelity.shafts import beam_shaft
 from fe_drivetrain.scene.scene import Scene
-from fe_drivetrain.solve.condensation import keep_points
+from fe_drivetrain.solve.condensation import Condensed, keep_points
+
+#: Sections of a beam up to which the meridian is solved for its band.
+MOST_BANDED = 100
 
 
 def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None) -> Superelement:
     """The free shaft of a scene, condensed.
 
     Its band is, of a beam, the difference to the meridian and the meridian's own; of the meridian
-    and of a solid see `fe_drivetrain.fidelity.shaft_bands`.
+    and of a solid see `fe_drivetrain.fidelity.shaft_bands`. A beam of more than `MOST_BANDED`
+    sections has none: its meridian is graded to each step and takes gigabytes.
 
     Parameters
     ----------
@@ -40,11 +44,17 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
         There is no such level or point.
     """
     if level == 1:
+        band: float | None
         body = beam_shaft(scene)
         body = body if at is None else keep_points(body, at)
-        meridian, band = banded_meridian(scene, at)
-        band += largest_difference(meridian.stiffness, body.stiffness)
-        level_and_mesh = "1 Timoshenko beam", "none"
+        band = _beam_band(scene, body, at)
+        mesh = "none"
+        if band is None:
+            mesh += (
+                "; the band is not known, for the meridian that it rests on is solved for at most "
+                f"{MOST_BANDED} sections and there are {len(scene.shaft.pieces)}"
+            )
+        level_and_mesh = "1 Timoshenko beam", mesh
     elif level == 2:
         body, band = banded_meridian(scene, at)
         order = meridian_order(scene)
@@ -64,6 +74,14 @@ def shaft_superelement(scene: Scene, level: int, at: Sequence[str] | None = None
         band=band,
         origin=scene_origin(scene, *level_and_mesh),
     )
+
+
+def _beam_band(scene: Scene, body: Condensed, at: Sequence[str] | None) -> float | None:
+    """How far the beam is from its limit, relative; None where the meridian is too large."""
+    if len(scene.shaft.pieces) > MOST_BANDED:
+        return None
+    meridian, band = banded_meridian(scene, at)
+    return band + largest_difference(meridian.stiffness, body.stiffness)
 
 
 def supported_superelement(
