@@ -18,9 +18,6 @@ def test_shape_is_continuous_and_as_long_as_its_parts():
         line = BRACKET.place(np.full_like(along, share), along)
         length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
         assert length == pytest.approx(5.0 + 0.5 * np.pi * radius, rel=1e-5)
-    inside = BRACKET.place(np.zeros_like(along), along)
-    assert np.diff(BRACKET.along_inside(inside)).min() > 0.0
-    assert BRACKET.along_inside(inside)[[0, -1]] == pytest.approx([0.0, 5.0 + 0.25 * np.pi])
 
 
 def test_shear_on_the_end_carries_the_force():

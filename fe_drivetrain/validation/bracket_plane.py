@@ -81,13 +81,6 @@ class Bracket:
         after = np.maximum(s - self.arm - turn, 0.0)
         return np.column_stack([r * np.cos(t) + before, r * np.sin(t) - after])
 
-    def along_inside(self, places: Floats) -> Floats:
-        """How far (n, 2) places on the inside are from the end of the arm, along it [m]."""
-        y, z = places.T
-        t = np.where(z < 0.0, np.pi, np.clip(np.arctan2(z, y), 0.5 * np.pi, np.pi))
-        before, after = self.arm - np.maximum(y, 0.0), np.maximum(-z, 0.0)
-        return np.asarray(before + self.fillet * (t - 0.5 * np.pi) + after)
-
     def end_shear(self, z: Floats, force: float) -> Floats:
         """Shear stress over the end of the arm: a parabola that carries the force [Pa]."""
         q = (z - self.fillet) / self.height
