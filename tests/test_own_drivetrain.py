@@ -277,7 +277,7 @@ TWO_BEARINGS = [
         "mesh.bearing=0.12",
         "mesh.housing=0.15",
         "mesh.bearing_edge=0.12",
-        "mesh.elements_per_turn=12",
+        "mesh.elements_per_turn=8",
     )
     for word in ("--set", change)
 ]
