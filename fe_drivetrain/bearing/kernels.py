@@ -10,6 +10,8 @@ K delta_+^(n+1) / (n+1) over all laminae is convex in the motion, and its gradie
 forces and tangent stiffness.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -23,6 +25,36 @@ N_DATA = 13
 #: Load cases that are taken in turn, each starting from the one before it. A fixed number, so that
 #: results do not depend on how many threads share the chunks.
 CHUNK = 512
+
+
+class Packed(NamedTuple):
+    """A bearing as these loops take it.
+
+    Attributes
+    ----------
+    data : Floats
+        (rows, N_DATA) numbers of each row.
+    first : Ints
+        (rows + 1,) where the rolling elements of each row begin.
+    sines, cosines : Floats
+        (total,) of the places of all rolling elements.
+    lam : Ints
+        (rows + 1,) where the laminae of each row begin.
+    xi, free : Floats
+        (laminae,) their places along the roller, and what each has to approach first [m].
+    tables : Floats
+        (rows, POWERS) of `power_table`.
+    """
+
+    data: Floats
+    first: Ints
+    sines: Floats
+    cosines: Floats
+    lam: Ints
+    xi: Floats
+    free: Floats
+    tables: Floats
+
 
 MAX_STEPS = 100
 MAX_TRIALS = 80
@@ -219,14 +251,7 @@ def _element(
 @njit(cache=True, error_model="numpy")
 def _evaluate(
     u: Floats,
-    data: Floats,
-    first: Ints,
-    sines: Floats,
-    cosines: Floats,
-    lam: Ints,
-    xi: Floats,
-    free: Floats,
-    tables: Floats,
+    bearing: Packed,
     F: Floats,
     K: Floats,
     work: Floats,
@@ -237,16 +262,17 @@ def _evaluate(
     F[:] = 0.0
     K[:] = 0.0
     total = 0.0
+    lam = bearing.lam
     a, uy, uz, ty, tz = u
-    for r in range(len(data)):
-        d = data[r]
-        x, g = xi[lam[r] : lam[r + 1]], free[lam[r] : lam[r + 1]]
-        for i in range(first[r], first[r + 1]):
-            co, si = cosines[i], sines[i]
+    for r in range(len(bearing.data)):
+        d, table = bearing.data[r], bearing.tables[r]
+        x, g = bearing.xi[lam[r] : lam[r + 1]], bearing.free[lam[r] : lam[r + 1]]
+        for i in range(bearing.first[r], bearing.first[r + 1]):
+            co, si = bearing.cosines[i], bearing.sines[i]
             # e_r = (-cos, sin) of (y, z), and the tangent e_x x e_r = (-sin, -cos)
             w = si * uz - co * uy
             t = -(si * ty + co * tz)
-            Q = _element(d, x, g, tables[r], a, w, t, work, s, f)
+            Q = _element(d, x, g, table, a, w, t, work, s, f)
             if Q <= 0.0:
                 continue
             total += Q
@@ -335,14 +361,7 @@ def _newton(
     start: Floats,
     soft: Floats,
     scale: float,
-    data: Floats,
-    first: Ints,
-    sines: Floats,
-    cosines: Floats,
-    lam: Ints,
-    xi: Floats,
-    free: Floats,
-    tables: Floats,
+    bearing: Packed,
     tolerance: float,
     damped: bool,
     known: float,
@@ -366,7 +385,7 @@ def _newton(
     evaluations, steps, total = 0, 0, known
     _expanded(B, w, u)
     if known < 0.0:
-        total = _evaluate(u, data, first, sines, cosines, lam, xi, free, tables, F, K, work, s, f)
+        total = _evaluate(u, bearing, F, K, work, s, f)
         evaluations += 1
     while True:
         _projected(B, F, g)
@@ -401,9 +420,7 @@ def _newton(
             for i in range(m):
                 w[i] = base[i] + step * d[i]
             _expanded(B, w, u)
-            total = _evaluate(
-                u, data, first, sines, cosines, lam, xi, free, tables, F, K, work, s, f
-            )
+            total = _evaluate(u, bearing, F, K, work, s, f)
             evaluations += 1
             _projected(B, F, g)
             here = 0.0
@@ -434,14 +451,7 @@ def solve_cases(
     guesses: Floats,
     soft: Floats,
     scales: Floats,
-    data: Floats,
-    first: Ints,
-    sines: Floats,
-    cosines: Floats,
-    lam: Ints,
-    xi: Floats,
-    free: Floats,
-    tables: Floats,
+    bearing: Packed,
     tolerance: float,
     warm: bool,
     damped: bool,
@@ -462,8 +472,8 @@ def solve_cases(
         (n, m) to start from where there is no case before.
     soft, scales : Floats
         (n or 1, m, m) stiffness by which singular tangents are held, and (n,) its factor.
-    data, first, sines, cosines, lam, xi, free, tables : arrays
-        The bearing, packed.
+    bearing : Packed
+        The bearing.
     tolerance : float
         Residual over load.
     warm, damped : bool
@@ -472,7 +482,12 @@ def solve_cases(
         (n, 5), (n,), (n,), (n,): filled.
     """
     m = bases.shape[2]
-    start, F, K, work = np.zeros(m), np.empty(5), np.empty((5, 5)), np.empty((3, len(xi) + 1))
+    start, F, K, work = (
+        np.zeros(m),
+        np.empty(5),
+        np.empty((5, 5)),
+        np.empty((3, len(bearing.xi) + 1)),
+    )
     total = -1.0
     for i in range(len(loads)):
         B = bases[i if len(bases) > 1 else 0]
@@ -498,14 +513,7 @@ def solve_cases(
             start,
             soft[i if len(soft) > 1 else 0],
             scales[i],
-            data,
-            first,
-            sines,
-            cosines,
-            lam,
-            xi,
-            free,
-            tables,
+            bearing,
             tolerance,
             damped,
             total if near else -1.0,
@@ -519,30 +527,16 @@ def solve_cases(
 @njit(cache=True, nogil=True, error_model="numpy")
 def forces_of(
     displacements: Floats,
-    data: Floats,
-    first: Ints,
-    sines: Floats,
-    cosines: Floats,
-    lam: Ints,
-    xi: Floats,
-    free: Floats,
-    tables: Floats,
+    bearing: Packed,
     loads: Floats,
     tangents: Floats,
 ) -> None:
     """Loads (n, 5) and tangent stiffness (n, 5, 5) at given displacements (n, 5), filled."""
-    work, s, f = np.empty((3, len(xi) + 1)), np.zeros(5), np.zeros(9)
+    work, s, f = np.empty((3, len(bearing.xi) + 1)), np.zeros(5), np.zeros(9)
     for i in range(len(displacements)):
         _evaluate(
             displacements[i],
-            data,
-            first,
-            sines,
-            cosines,
-            lam,
-            xi,
-            free,
-            tables,
+            bearing,
             loads[i],
             tangents[i],
             work,
@@ -554,29 +548,24 @@ def forces_of(
 @njit(cache=True, nogil=True, error_model="numpy")
 def elements_of(
     displacements: Floats,
-    data: Floats,
-    first: Ints,
-    sines: Floats,
-    cosines: Floats,
-    lam: Ints,
-    xi: Floats,
-    free: Floats,
-    tables: Floats,
+    bearing: Packed,
     loads: Floats,
     moments: Floats,
     angles: Floats,
 ) -> None:
     """Load, moment about its middle, and contact angle of each rolling element: (n, total)."""
-    work, s, f = np.empty((3, len(xi) + 1)), np.zeros(5), np.zeros(9)
+    work, s, f = np.empty((3, len(bearing.xi) + 1)), np.zeros(5), np.zeros(9)
+    lam = bearing.lam
     for i in range(len(displacements)):
         a, uy, uz, ty, tz = displacements[i]
-        for r in range(len(data)):
-            d = data[r]
-            x, g = xi[lam[r] : lam[r + 1]], free[lam[r] : lam[r + 1]]
-            for j in range(first[r], first[r + 1]):
-                w = sines[j] * uz - cosines[j] * uy
-                t = -(sines[j] * ty + cosines[j] * tz)
-                Q = _element(d, x, g, tables[r], a, w, t, work, s, f)
+        for r in range(len(bearing.data)):
+            d, table = bearing.data[r], bearing.tables[r]
+            x, g = bearing.xi[lam[r] : lam[r + 1]], bearing.free[lam[r] : lam[r + 1]]
+            for j in range(bearing.first[r], bearing.first[r + 1]):
+                co, si = bearing.cosines[j], bearing.sines[j]
+                w = si * uz - co * uy
+                t = -(si * ty + co * tz)
+                Q = _element(d, x, g, table, a, w, t, work, s, f)
                 loads[i, j] = Q
                 moments[i, j] = s[1] if Q > 0.0 and d[KIND] != BALLS else 0.0
                 angles[i, j] = np.arctan2(d[SIN], d[COS])

@@ -42,19 +42,6 @@ CARRIED = 1e-9
 """Share of a load that may act on a motion that nothing carries: round-off of who made it."""
 
 
-class Packed(NamedTuple):
-    """A bearing as the compiled loops take it."""
-
-    data: Floats
-    first: Ints
-    sines: Floats
-    cosines: Floats
-    lam: Ints
-    xi: Floats
-    free: Floats
-    tables: Floats
-
-
 @dataclass(frozen=True)
 class Equilibrium:
     """Where the inner ring comes to rest under each load case.
@@ -216,7 +203,7 @@ def forces(
     F, K = np.empty((len(u), 5)), np.empty((len(u), 5, 5))
     turned, pack = np.ascontiguousarray(turned), packed(bearing)
     in_threads(
-        lambda cases: kernels.forces_of(turned[cases], *pack, F[cases], K[cases]),
+        lambda cases: kernels.forces_of(turned[cases], pack, F[cases], K[cases]),
         len(u),
         kernels.CHUNK,
     )
@@ -273,7 +260,7 @@ def elements(
     found = tuple(np.empty((len(u), sum(bearing.counts))) for _ in range(3))
     u, pack = np.ascontiguousarray(u), packed(bearing)
     in_threads(
-        lambda cases: kernels.elements_of(u[cases], *pack, *(whole[cases] for whole in found)),
+        lambda cases: kernels.elements_of(u[cases], pack, *(whole[cases] for whole in found)),
         len(u),
         kernels.CHUNK,
     )
@@ -281,7 +268,7 @@ def elements(
 
 
 @lru_cache(maxsize=64)
-def packed(bearing: Bearing) -> Packed:
+def packed(bearing: Bearing) -> kernels.Packed:
     """The numbers of all rows in arrays.
 
     Parameters
@@ -291,7 +278,7 @@ def packed(bearing: Bearing) -> Packed:
 
     Returns
     -------
-    packed : Packed
+    packed : kernels.Packed
         For the compiled loops; not to be written to.
     """
     data = np.zeros((len(bearing.rows), kernels.N_DATA))
@@ -316,7 +303,7 @@ def packed(bearing: Bearing) -> Packed:
             xi.append(row.places)
             free.append(row.free)
     every = np.concatenate(psi)
-    return Packed(
+    return kernels.Packed(
         data,
         np.cumsum([0, *bearing.counts]),
         np.sin(every),
@@ -497,7 +484,7 @@ def _run(
             guesses[cases],
             soft[own],
             scales[cases],
-            *pack,
+            pack,
             tolerance,
             warm,
             damped,
