@@ -15,6 +15,14 @@ from fe_drivetrain.bearing.answers import (
     pressures,
     secant_stiffness,
 )
+from fe_drivetrain.bearing.arrangements import (
+    ball_row,
+    cylindrical,
+    double_row_tapered,
+    spherical_roller,
+    tapered_row,
+    toroidal,
+)
 from fe_drivetrain.bearing.contact import (
     ContactLaw,
     houpert,
@@ -24,32 +32,16 @@ from fe_drivetrain.bearing.contact import (
     point_contact,
     straight_roller,
 )
+from fe_drivetrain.bearing.contact_forces import elements, forces, roller_loads, turn
 from fe_drivetrain.bearing.distribution import (
     effective_centre,
     load_zone_share,
     sjovall,
     superposed_peak,
 )
-from fe_drivetrain.bearing.geometry import (
-    Bearing,
-    angles,
-    ball_row,
-    cylindrical,
-    double_row_tapered,
-    pitch_ratio,
-    spherical_roller,
-    tapered_row,
-    toroidal,
-)
+from fe_drivetrain.bearing.geometry import Bearing, angles, pitch_ratio
 from fe_drivetrain.bearing.rating import capacity_factor, ratings
-from fe_drivetrain.bearing.rolling import (
-    elements,
-    equilibrium,
-    forces,
-    roller_loads,
-    three_degrees,
-    turn,
-)
+from fe_drivetrain.bearing.rolling import equilibrium, three_degrees
 from fe_drivetrain.bearing.tables import reduced_table
 from fe_drivetrain.common.errors import InputError
 

@@ -16,15 +16,15 @@ from fe_drivetrain.beam.closed_forms import (
 from fe_drivetrain.beam.condensed import condensed_beam
 from fe_drivetrain.beam.sections import BeamSection
 from fe_drivetrain.beam.shaft import solve
-from fe_drivetrain.bearing.catalogue import catalogue_bearing
-from fe_drivetrain.bearing.contact import linear
-from fe_drivetrain.bearing.geometry import (
-    Bearing,
+from fe_drivetrain.bearing.arrangements import (
     double_row_tapered,
     spherical_roller,
     tapered_row,
     toroidal,
 )
+from fe_drivetrain.bearing.catalogue import catalogue_bearing
+from fe_drivetrain.bearing.contact import linear
+from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import FIVE, LinearBody, factors_of, in_housings, linear_body

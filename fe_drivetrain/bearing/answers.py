@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.contact import STEEL_E, PointContact, line_pressure, point_contact
+from fe_drivetrain.bearing.contact_forces import elements, forces
 from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, angles, pitch_ratio
-from fe_drivetrain.bearing.rolling import elements, forces
 from fe_drivetrain.common.arrays import Floats, Ints
 
 _GAUSS_POINTS = 32

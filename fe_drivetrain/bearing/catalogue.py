@@ -13,11 +13,8 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
-from fe_drivetrain.bearing.contact import ContactLaw, houpert, iso_line
-from fe_drivetrain.bearing.geometry import (
-    LAMINAE,
+from fe_drivetrain.bearing.arrangements import (
     Arrangement,
-    Bearing,
     ball_row,
     cylindrical,
     double_row_tapered,
@@ -25,6 +22,8 @@ from fe_drivetrain.bearing.geometry import (
     tapered_row,
     toroidal,
 )
+from fe_drivetrain.bearing.contact import ContactLaw, houpert, iso_line
+from fe_drivetrain.bearing.geometry import LAMINAE, Bearing
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.common.strict_yaml import no_truth_value

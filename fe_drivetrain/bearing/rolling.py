@@ -7,8 +7,6 @@ minimum of a convex energy, so that any start leads to it (`kernels`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -18,19 +16,20 @@ from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
 from fe_drivetrain.bearing import kernels
-from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, angles
-from fe_drivetrain.common.arrays import Bools, Floats, Ints, chunks
-from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.threads import cores
-
-COMPONENTS = ("Fx", "Fy", "Fz", "My", "Mz")
-MOTIONS = (
-    "axial displacement",
-    "displacement along y",
-    "displacement along z",
-    "tilt about y",
-    "tilt about z",
+from fe_drivetrain.bearing.contact_forces import (
+    COMPONENTS,
+    MOTIONS,
+    checked_loads,
+    checked_motions,
+    forces,
+    in_threads,
+    packed,
+    roller_loads,
+    turn,
 )
+from fe_drivetrain.bearing.geometry import Bearing, RollerRow, angles
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.common.errors import InputError
 
 TOLERANCE = 1e-8
 """Residual over load, moments over the pitch radius."""
@@ -177,179 +176,6 @@ def three_degrees(
     return _solved(bearing, F, B, tolerance, None, None, False, True)
 
 
-def forces(
-    bearing: Bearing, displacements: ArrayLike, *, phases: ArrayLike | None = None
-) -> tuple[Floats, Floats]:
-    """Loads that hold the inner ring at given displacements, and the tangent stiffness there.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    displacements : array_like
-        (n, 5) or (5,): u_x, u_y, u_z [m], theta_y, theta_z [rad].
-    phases : array_like, optional
-        (n,) angle by which the rolling elements have moved on with the cage [rad].
-
-    Returns
-    -------
-    loads : Floats
-        (n, 5) [N, N m].
-    tangents : Floats
-        (n, 5, 5) their derivatives, symmetric.
-    """
-    u = _five(bearing, displacements, "displacements", MOTIONS)
-    turned = u if phases is None else turn(u, -np.asarray(phases, dtype=float))
-    F, K = np.empty((len(u), 5)), np.empty((len(u), 5, 5))
-    turned, pack = np.ascontiguousarray(turned), packed(bearing)
-    in_threads(
-        lambda cases: kernels.forces_of(turned[cases], pack, F[cases], K[cases]),
-        len(u),
-        kernels.CHUNK,
-    )
-    if phases is not None:
-        R = _rotations(np.asarray(phases, dtype=float))
-        F, K = turn(F, np.asarray(phases, dtype=float)), R @ K @ np.swapaxes(R, 1, 2)
-    return F, K
-
-
-def roller_loads(
-    bearing: Bearing, displacements: ArrayLike, *, phases: ArrayLike | None = None
-) -> Floats:
-    """Load of each rolling element.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    displacements : array_like
-        (n, 5) or (5,) [m, rad].
-    phases : array_like, optional
-        (n,) angle by which the rolling elements have moved on with the cage [rad].
-
-    Returns
-    -------
-    loads : Floats
-        (n, total) [N], row by row.
-    """
-    return elements(bearing, displacements, phases=phases)[0]
-
-
-def elements(
-    bearing: Bearing, displacements: ArrayLike, *, phases: ArrayLike | None = None
-) -> tuple[Floats, Floats, Floats]:
-    """Load, moment about its middle, and contact angle of each rolling element.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    displacements : array_like
-        (n, 5) or (5,) [m, rad].
-    phases : array_like, optional
-        (n,) angle by which the rolling elements have moved on with the cage [rad].
-
-    Returns
-    -------
-    loads, moments, contact_angles : Floats
-        (n, total) each, row by row [N, N m, rad].
-    """
-    u = _five(bearing, displacements, "displacements", MOTIONS)
-    if phases is not None:
-        u = turn(u, -np.asarray(phases, dtype=float))
-    found = tuple(np.empty((len(u), sum(bearing.counts))) for _ in range(3))
-    u, pack = np.ascontiguousarray(u), packed(bearing)
-    in_threads(
-        lambda cases: kernels.elements_of(u[cases], pack, *(whole[cases] for whole in found)),
-        len(u),
-        kernels.CHUNK,
-    )
-    return found[0], found[1], found[2]
-
-
-@lru_cache(maxsize=64)
-def packed(bearing: Bearing) -> kernels.Packed:
-    """The numbers of all rows in arrays.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-
-    Returns
-    -------
-    packed : kernels.Packed
-        For the compiled loops; not to be written to.
-    """
-    data = np.zeros((len(bearing.rows), kernels.N_DATA))
-    xi, free, psi = [], [], []
-    for d, row in zip(data, bearing.rows, strict=True):
-        psi.append(angles(row))
-        d[kernels.SIN], d[kernels.COS] = np.sin(row.angle), np.cos(row.angle)
-        d[kernels.STIFF], d[kernels.EXPONENT] = row.law.stiffness, row.law.exponent
-        if isinstance(row, BallRow):
-            d[kernels.KIND] = kernels.BALLS
-            d[kernels.DISTANCE] = row.groove_distance
-            d[kernels.AXIAL] = (row.groove_distance - row.clearance) * np.sin(row.angle)
-            d[kernels.RADIAL] = (row.groove_distance - row.clearance) * np.cos(row.angle)
-            d[kernels.ARM], d[kernels.GROOVE] = row.groove_centre
-            xi.append(np.zeros(0))
-            free.append(np.zeros(0))
-        else:
-            d[kernels.KIND] = kernels.LAMINAE if row.laminae else kernels.CLOSED
-            d[kernels.ARM] = 0.0 if row.aligning else row.arm
-            d[kernels.LEAN] = 0.0 if row.aligning else 1.0
-            d[kernels.LENGTH], d[kernels.GAP] = row.length, row.clearance
-            xi.append(row.places)
-            free.append(row.free)
-    every = np.concatenate(psi)
-    return kernels.Packed(
-        data,
-        np.cumsum([0, *bearing.counts]),
-        np.sin(every),
-        np.cos(every),
-        np.cumsum([0, *(len(x) for x in xi)]),
-        np.concatenate(xi),
-        np.concatenate(free),
-        np.stack([kernels.power_table(row.law.exponent - 1.0) for row in bearing.rows]),
-    )
-
-
-def in_threads(work: Callable[[slice], None], n: int, size: int) -> None:
-    """Work on chunks of n cases, in as many threads as there are cores.
-
-    Parameters
-    ----------
-    work : callable
-        Takes the slice of a chunk; releases the interpreter while it computes.
-    n, size : int
-        Cases, and those of a chunk.
-    """
-    parts = list(chunks(n, size))
-    if len(parts) == 1:
-        work(parts[0])
-    else:
-        with ThreadPoolExecutor(cores()) as pool:
-            for _ in pool.map(work, parts):
-                pass
-
-
-def turn(vectors: Floats, phases: Floats) -> Floats:
-    """Loads or displacements (n, 5) turned about the axis by angles (n,) [rad], as psi grows."""
-    return np.asarray(np.einsum("nij,nj->ni", _rotations(phases), vectors))
-
-
-def _rotations(phases: Floats) -> Floats:
-    """(n, 5, 5): psi grows from -y to z."""
-    co, si = np.cos(phases), np.sin(phases)
-    R = np.zeros((len(phases), 5, 5))
-    R[:, 0, 0] = 1.0
-    for i in (1, 3):
-        R[:, i, i] = R[:, i + 1, i + 1] = co
-        R[:, i, i + 1], R[:, i + 1, i] = si, -si
-    return R
-
-
 @lru_cache(maxsize=64)
 def _free_motions(bearing: Bearing) -> tuple[Floats, Bools]:
     """Motions that some contact resists, as columns with tilts over the pitch radius; and which."""
@@ -416,7 +242,7 @@ def _solved(
     deflection = (np.linalg.norm(targets, axis=1) / total) ** (1.0 / row.law.exponent)
     scales = np.maximum(deflection, 1e-30) ** (row.law.exponent - 1.0)
     if start is not None:
-        u0 = _five(bearing, start, "start", MOTIONS)
+        u0 = checked_motions(bearing, start, "start")
         guesses = np.einsum(
             "nij,ni->nj",
             np.broadcast_to(np.linalg.pinv(B).swapaxes(1, 2), (n, 5, m)),
@@ -533,46 +359,6 @@ def _mean_diagonal(soft: Floats) -> Floats:
     """(n, m, m): the identity times the mean diagonal."""
     m = soft.shape[1]
     return np.asarray(np.trace(soft, axis1=1, axis2=2)[:, None, None] / m * np.eye(m))
-
-
-def _five(bearing: Bearing, values: ArrayLike, what: str, names: tuple[str, ...]) -> Floats:
-    """Five finite columns."""
-    found = np.atleast_2d(np.asarray(values, dtype=float))
-    if found.ndim != 2 or found.shape[1] != 5:
-        raise InputError(
-            f"{what} of {bearing.name} have the shape {np.shape(values)}: give (n, 5), the columns "
-            f"being {', '.join(names)}"
-        )
-    if not np.isfinite(found).all():
-        case, column = np.argwhere(~np.isfinite(found))[0]
-        raise InputError(
-            f"{names[column]} of case {case} on {bearing.name} is {found[case, column]}: give "
-            "finite numbers"
-        )
-    return found
-
-
-def checked_loads(bearing: Bearing, loads: ArrayLike) -> Floats:
-    """Loads as (n, 5) finite numbers.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        For messages.
-    loads : array_like
-        (n, 5) or (5,) [N, N m].
-
-    Returns
-    -------
-    loads : Floats
-        (n, 5).
-
-    Raises
-    ------
-    InputError
-        Another shape, or a value that is no number.
-    """
-    return _five(bearing, loads, "loads", COMPONENTS)
 
 
 def _refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools) -> None:

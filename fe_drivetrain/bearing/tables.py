@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import RegularGridInterpolator
 
+from fe_drivetrain.bearing.contact_forces import checked_loads, roller_loads, turn
 from fe_drivetrain.bearing.geometry import BallRow, Bearing
-from fe_drivetrain.bearing.rolling import checked_loads, equilibrium, roller_loads, turn
+from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_drivetrain.bearing.contact_forces import MOTIONS, forces, roller_loads
 from fe_drivetrain.bearing.geometry import Bearing
-from fe_drivetrain.bearing.rolling import MOTIONS, TOLERANCE, forces, roller_loads
+from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.common.arrays import Bools, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import LinearBody

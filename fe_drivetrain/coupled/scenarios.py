@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.bearing.contact_forces import forces
 from fe_drivetrain.bearing.geometry import Bearing
-from fe_drivetrain.bearing.rolling import forces
 from fe_drivetrain.common.arrays import Floats
 
 #: Names of the eight scenarios: axial and radial displacement.

@@ -9,8 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.bearing.contact_forces import forces
 from fe_drivetrain.bearing.geometry import Bearing
-from fe_drivetrain.bearing.rolling import equilibrium, forces
+from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import LinearBody
