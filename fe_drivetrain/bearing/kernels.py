@@ -1,4 +1,4 @@
-"""Compiled loops over rollers and laminae, and Newton's method on them, case by case.
+"""Compiled loops over rollers and laminae.
 
 A rolling element at the angle psi sees three numbers of the inner ring's motion: a along the axis,
 w = e_r . (u_y, u_z) along its radius, and the tilt t about its tangent. Its laminae approach by
@@ -55,9 +55,6 @@ class Packed(NamedTuple):
     free: Floats
     tables: Floats
 
-
-MAX_STEPS = 100
-MAX_TRIALS = 80
 
 # Gauss points of [-1, 1], for straight rollers that are nearly parallel to the race.
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(10)
@@ -249,7 +246,7 @@ def _element(
 
 
 @njit(cache=True, error_model="numpy")
-def _evaluate(
+def evaluate(
     u: Floats,
     bearing: Packed,
     F: Floats,
@@ -303,227 +300,6 @@ def _evaluate(
     return total
 
 
-@njit(cache=True, error_model="numpy")
-def _solve(A: Floats, b: Floats, m: int, x: Floats) -> bool:
-    """x = A^-1 b of a positive definite m x m system by Cholesky, A overwritten; whether it is."""
-    for j in range(m):
-        for k in range(j):
-            A[j, j] -= A[j, k] * A[j, k]
-        if not A[j, j] > 0.0:
-            return False
-        A[j, j] = np.sqrt(A[j, j])
-        for i in range(j + 1, m):
-            for k in range(j):
-                A[i, j] -= A[i, k] * A[j, k]
-            A[i, j] /= A[j, j]
-    for i in range(m):
-        x[i] = b[i]
-        for k in range(i):
-            x[i] -= A[i, k] * x[k]
-        x[i] /= A[i, i]
-    for i in range(m - 1, -1, -1):
-        for k in range(i + 1, m):
-            x[i] -= A[k, i] * x[k]
-        x[i] /= A[i, i]
-    return True
-
-
-@njit(cache=True, error_model="numpy")
-def _projected(B: Floats, F: Floats, g: Floats) -> None:
-    """g = B^T F."""
-    for j in range(len(g)):
-        g[j] = 0.0
-        for k in range(5):
-            g[j] += B[k, j] * F[k]
-
-
-@njit(cache=True, error_model="numpy")
-def _expanded(B: Floats, w: Floats, u: Floats) -> None:
-    """u = B w."""
-    for k in range(5):
-        u[k] = 0.0
-        for j in range(len(w)):
-            u[k] += B[k, j] * w[j]
-
-
-@njit(cache=True, error_model="numpy")
-def _norm(g: Floats) -> float:
-    total = 0.0
-    for value in g:
-        total += value * value
-    return float(np.sqrt(total))
-
-
-@njit(cache=True, error_model="numpy")
-def _newton(
-    load: Floats,
-    B: Floats,
-    start: Floats,
-    soft: Floats,
-    scale: float,
-    bearing: Packed,
-    tolerance: float,
-    damped: bool,
-    known: float,
-    F: Floats,
-    K: Floats,
-    work: Floats,
-    u: Floats,
-) -> tuple[int, int, float, float]:
-    """Minimise energy minus work over u = B w, from ``start``; u becomes the minimum.
-
-    F and K are forces and tangent at the start where ``known``, the sum of all loads, is not
-    negative; at the end they are those of the minimum. Returns the steps, the evaluations, the
-    residual over what is allowed (at most 1 where it has converged), and the sum of all loads.
-    """
-    m = B.shape[1]
-    s, f = np.zeros(5), np.zeros(9)
-    g, d, A = np.empty(m), np.empty(m), np.empty((m, m))
-    w, base, target = start.copy(), np.empty(m), np.empty(m)
-    _projected(B, load, target)
-    size = _norm(target)
-    evaluations, steps, total = 0, 0, known
-    _expanded(B, w, u)
-    if known < 0.0:
-        total = _evaluate(u, bearing, F, K, work, s, f)
-        evaluations += 1
-    while True:
-        _projected(B, F, g)
-        for i in range(m):
-            g[i] -= target[i]
-        norm = _norm(g)
-        allowed = max(tolerance * size, 1e-14 * total)
-        if norm <= allowed or steps == MAX_STEPS:
-            over = norm / allowed if allowed > 0.0 else (0.0 if norm == 0.0 else np.inf)
-            return steps, evaluations, over, total
-        # Newton's direction; what no contact carries yet is as soft as a thousandth of all contacts
-        # and stiffens as the residual goes.
-        mu = scale * (1e-3 * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
-        for i in range(m):
-            for j in range(i + 1):
-                A[i, j] = mu * soft[i, j]
-                for k in range(5):
-                    part = 0.0
-                    for p in range(5):
-                        part += K[k, p] * B[p, j]
-                    A[i, j] += B[k, i] * part
-        if not _solve(A, g, m, d):
-            A[:] = scale * soft
-            _solve(A, g, m, d)
-        slope = 0.0
-        for i in range(m):
-            d[i], base[i] = -d[i], w[i]
-            slope += g[i] * d[i]
-        low, high, slope_low, slope_high = 0.0, -1.0, slope, 0.0
-        step = 1.0
-        for _trial in range(MAX_TRIALS):
-            for i in range(m):
-                w[i] = base[i] + step * d[i]
-            _expanded(B, w, u)
-            total = _evaluate(u, bearing, F, K, work, s, f)
-            evaluations += 1
-            _projected(B, F, g)
-            here = 0.0
-            for i in range(m):
-                g[i] -= target[i]
-                here += g[i] * d[i]
-            # Along a line the slope of a convex function only grows: its zero is bracketed.
-            if not damped or abs(here) <= 0.6 * abs(slope):
-                break
-            if here > 0.0:
-                high, slope_high = step, here
-            else:
-                low, slope_low = step, here
-            if high < 0.0:
-                step *= 4.0
-            else:
-                share = slope_low / (slope_low - slope_high)
-                step = low + (high - low) * min(max(share, 0.1), 0.9)
-            if step in (low, high):
-                break
-        steps += 1
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def solve_cases(
-    loads: Floats,
-    bases: Floats,
-    guesses: Floats,
-    soft: Floats,
-    scales: Floats,
-    bearing: Packed,
-    tolerance: float,
-    warm: bool,
-    damped: bool,
-    displacements: Floats,
-    steps: Ints,
-    evaluations: Ints,
-    residuals: Floats,
-) -> None:
-    """Equilibrium of many load cases, each started from the case before it where that is close.
-
-    Parameters
-    ----------
-    loads : Floats
-        (n, 5) on the inner ring.
-    bases : Floats
-        (1 or n, 5, m): the motions that are free, as columns.
-    guesses : Floats
-        (n, m) to start from where there is no case before.
-    soft, scales : Floats
-        (n or 1, m, m) stiffness by which singular tangents are held, and (n,) its factor.
-    bearing : Packed
-        The bearing.
-    tolerance : float
-        Residual over load.
-    warm, damped : bool
-        Start from the case before; damp the steps.
-    displacements, steps, evaluations, residuals : arrays
-        (n, 5), (n,), (n,), (n,): filled.
-    """
-    m = bases.shape[2]
-    start, F, K, work = (
-        np.zeros(m),
-        np.empty(5),
-        np.empty((5, 5)),
-        np.empty((3, len(bearing.xi) + 1)),
-    )
-    total = -1.0
-    for i in range(len(loads)):
-        B = bases[i if len(bases) > 1 else 0]
-        near = False
-        if warm and i > 0:
-            change, whole = 0.0, 0.0
-            for j in range(m):
-                for k in range(5):
-                    change += (B[k, j] * (loads[i, k] - loads[i - 1, k])) ** 2
-                    whole += (B[k, j] * loads[i, k]) ** 2
-            near = change < 0.25 * whole
-        for j in range(m):
-            start[j] = guesses[i, j]
-            if near:
-                along, size = 0.0, 0.0
-                for k in range(5):
-                    along += B[k, j] * displacements[i - 1, k]
-                    size += B[k, j] ** 2
-                start[j] = along / size
-        steps[i], evaluations[i], residuals[i], total = _newton(
-            loads[i],
-            B,
-            start,
-            soft[i if len(soft) > 1 else 0],
-            scales[i],
-            bearing,
-            tolerance,
-            damped,
-            total if near else -1.0,
-            F,
-            K,
-            work,
-            displacements[i],
-        )
-
-
 @njit(cache=True, nogil=True, error_model="numpy")
 def forces_of(
     displacements: Floats,
@@ -534,7 +310,7 @@ def forces_of(
     """Loads (n, 5) and tangent stiffness (n, 5, 5) at given displacements (n, 5), filled."""
     work, s, f = np.empty((3, len(bearing.xi) + 1)), np.zeros(5), np.zeros(9)
     for i in range(len(displacements)):
-        _evaluate(
+        evaluate(
             displacements[i],
             bearing,
             loads[i],

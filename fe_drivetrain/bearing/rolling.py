@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
-from fe_drivetrain.bearing import kernels
+from fe_drivetrain.bearing import kernels, newton
 from fe_drivetrain.bearing.contact_forces import (
     COMPONENTS,
     MOTIONS,
@@ -304,7 +304,7 @@ def _run(
 
     def solve(cases: slice) -> None:
         own = cases if len(B) > 1 else slice(None)
-        kernels.solve_cases(
+        newton.solve_cases(
             loads[cases],
             B[own],
             guesses[cases],
