@@ -52,6 +52,38 @@ def check_parts(
     return bores
 
 
+def check_bands(
+    shaft: Shaft, bands: Mapping[str, tuple[float, float]], bearings: Sequence[Bearing]
+) -> None:
+    """Refuse bands on the shaft, where loads enter, that lie off it or on something else.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        The shaft.
+    bands : Mapping[str, tuple[float, float]]
+        x of both ends of each, by name, m.
+    bearings : Sequence[Bearing]
+        The bearings on the shaft.
+
+    Raises
+    ------
+    InputError
+        A band does not lie on one cylindrical length, or touches a bearing or another band.
+    """
+    for name, (low, high) in bands.items():
+        shaft.seat_diameter((low + high) / 2, high - low, name, "load point")
+    spans = [(f"bearing {b.name!r}", b.span) for b in bearings]
+    spans += [(f"load point {name!r}", span) for name, span in bands.items()]
+    for (one, first), (two, second) in combinations(spans, 2):
+        if _gap(first, second) <= LENGTH_TOLERANCE and "load point" in two:
+            raise InputError(
+                f"{two} is on the shaft at x = {second[0]:g} to {second[1]:g} m and touches "
+                f"{one} at x = {first[0]:g} to {first[1]:g} m, but must be apart: move it or make "
+                "it narrower"
+            )
+
+
 def _check_names(
     shaft: Shaft | None,
     bearings: Sequence[Bearing],

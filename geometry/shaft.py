@@ -218,8 +218,8 @@ class Shaft(Part):
                 radii.append((piece.outer_diameter * (1 - share) + piece.end_diameter * share) / 2)
         return max(radii, default=0.0)
 
-    def seat_diameter(self, x: float, width: float, name: str) -> float:
-        """Diameter of the shaft under a bearing.
+    def seat_diameter(self, x: float, width: float, name: str, what: str = "bearing") -> float:
+        """Diameter of the shaft under a bearing, or where a load enters.
 
         Parameters
         ----------
@@ -227,6 +227,8 @@ class Shaft(Part):
             Centre and width of the seat, m.
         name : str
             Name of the bearing, for the message.
+        what : str
+            What it is, where it is no bearing.
 
         Returns
         -------
@@ -254,9 +256,9 @@ class Shaft(Part):
         nearest.sort(key=lambda s: s.start[0])
         allowed = ", ".join(f"{s.start[0]:g} to {s.end[0]:g}" for s in nearest) or "none"
         raise InputError(
-            f"bearing {name!r}: its seat on the shaft is x = {low:g} to {high:g} m but must lie on "
+            f"{what} {name!r}: its seat on the shaft is x = {low:g} to {high:g} m but must lie on "
             f"one cylindrical length clear of steps, tapers and fillets ({allowed} m): move the "
-            "bearing, make it narrower, or lengthen that section"
+            f"{what}, make it narrower, or lengthen that section"
         )
 
     def cut(self, stations: Iterable[float]) -> Shaft:

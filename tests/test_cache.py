@@ -48,9 +48,9 @@ def meshings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     made: list[int] = []
     generate = cached.generate
 
-    def counted(*arguments: Any) -> Mesh:
+    def counted(*arguments: Any, **named: Any) -> Mesh:
         made.append(len(made))
-        return generate(*arguments)
+        return generate(*arguments, **named)
 
     monkeypatch.setattr(cached, "generate", counted)
     return made

@@ -53,7 +53,7 @@ class Quantity:
         "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
         "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
     load : Floats or None
-        (10,) factors of `model.LOADS`; None for a reaction to all hub loads, one at a time.
+        (n,) factors of `model.scene_loads`; None for a reaction to all hub loads, one at a time.
     """
 
     name: str
@@ -81,19 +81,19 @@ class Quantity:
             return "N/m" if component[0] == "u" else "N m/rad"
         return "N" if component[0] == "F" else "N m"
 
-    def columns(self, length: float) -> Floats:
-        """(10, k) factors of `model.LOADS` that each value is of, see `of`."""
+    def columns(self, length: float, n: int) -> Floats:
+        """(n, k) factors of the n unit loads of the scene that each value is of, see `of`."""
         if self.name.startswith("hub.stiffness"):
-            return np.eye(10)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
+            return np.eye(n)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
         if self.load is not None:
             return self.load[:, None]
         scale = np.array([1.0, 1.0, 1.0, length, length, length])
-        return np.asarray(np.eye(10)[:, :6] * scale)
+        return np.asarray(np.eye(n)[:, :6] * scale)
 
     def recovered(self, model: Model, response: Response, length: float) -> Floats:
         """(k,) errors of the values of an assembly, estimated from recovered stresses."""
         owner, _, component = self.name.partition(".")
-        columns = self.columns(length)
+        columns = self.columns(length, len(model.loads))
         if owner == "hub":
             motion = MOTIONS.index(component.rpartition(".")[2])
             given = response.motions["hub"][motion, motion]

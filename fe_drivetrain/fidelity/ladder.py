@@ -27,7 +27,7 @@ from fe_drivetrain.fidelity.shafts import (
 )
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
+from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene, scene_loads
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
@@ -60,7 +60,9 @@ class Cost:
 
 @dataclass(frozen=True)
 class LevelModel:
-    """A scene at one level, solved for the unit loads of `model.LOADS`, or a component for its own.
+    """A scene at one level, solved for its n unit loads, or a component for its own.
+
+    The loads are those of `model.scene_loads`.
 
     Attributes
     ----------
@@ -73,7 +75,7 @@ class LevelModel:
     cost : Cost
         What it took.
     reaction_matrices : Mapping[str, Floats]
-        (6, 10) by bearing, and "gearbox": what the drivetrain puts on its surroundings, moments
+        (6, n) by bearing, and "gearbox": what the drivetrain puts on its surroundings, moments
         about the bearing's centre; NaN where the level cannot tell.
     points, compliance : tuple[str, ...], Floats
         Names of n points, and (6 n, 6 n) motions of each for unit forces and moments at each, on
@@ -89,7 +91,7 @@ class LevelModel:
     compliance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
     def reactions(self, load: Floats) -> dict[str, Floats]:
-        """Reactions (..., 6) [N, N m] to loads (..., 10), factors of `model.LOADS`."""
+        """Reactions (..., 6) [N, N m] to loads (..., n), factors of `model.scene_loads`."""
         return {name: load @ matrix.T for name, matrix in self.reaction_matrices.items()}
 
     def stiffness(self, at: Sequence[str]) -> Floats:
@@ -141,9 +143,10 @@ def statics_level(scene: Scene) -> LevelModel:
     _, values, vectors = np.linalg.svd(A / scale[:, None])
     null = vectors[(values > 1e-9 * values[0]).sum() :]
     decided = np.abs(null).max(axis=0, initial=0.0) < 1e-9
-    loads = _applied(beam_shaft(scene), positions)
+    loads = _applied(scene, beam_shaft(scene), positions)
     found = np.linalg.lstsq(A / scale[:, None], loads / scale[:, None], rcond=1e-12)[0]
-    matrices = {name: np.zeros((6, len(LOADS))) for name in (*names[1:-1], "gearbox")}
+    held = [*(unit.bearing.name for unit in scene.bearing_units), "gearbox"]
+    matrices = {name: np.zeros(loads.shape) for name in held}
     for (name, c), row, sure in zip(carried, found, decided, strict=True):
         matrices[name][c] = row if sure else np.nan
     unknown = [
@@ -198,9 +201,9 @@ def shaft_level(
         title = f"{TITLES[level]}, housings as springs"
     found = supported(body, scene_supports(scene, housings))
     n = len(body.names)
-    columns = _unit_loads(body)
+    columns = _unit_loads(scene, body)
     reactions = {name: R @ columns for name, R in found.reactions.items()}
-    reactions.setdefault("gearbox", np.zeros((6, len(LOADS))))
+    reactions.setdefault("gearbox", np.zeros((6, columns.shape[1])))
     _add_weights(reactions, scene, on_shaft)
     cost = Cost(time.perf_counter() - start, 6 * n)
     motions = found.motions[:, : 6 * n]
@@ -282,18 +285,21 @@ def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozen
             reactions[bearing.name][:, 6:9] += mass * wrench_transport(arm)[:, :3]
 
 
-def _unit_loads(body: Condensed) -> Floats:
-    """(6 n + 3, 10) factors that make `model.LOADS` of unit loads at points and of gravity."""
+def _unit_loads(scene: Scene, body: Condensed) -> Floats:
+    """(6 n + 3, n_loads): a scene's unit loads, of those at n points and of gravity."""
     n = len(body.names)
-    columns = np.zeros((6 * n + 3, len(LOADS)))
+    columns = np.zeros((6 * n + 3, len(scene_loads(scene))))
+    for k, name in enumerate(scene.bands):
+        first = len(LOADS) + 6 * k
+        columns[body.rows(name), first : first + 6] = np.eye(6)
     columns[body.rows("hub"), :6] = np.eye(6)
     columns[6 * n :, 6:9] = np.eye(3)
     columns[6 * body.names.index("gearbox") + 2, 9] = -1.0
     return columns
 
 
-def _applied(body: Condensed, positions: Floats) -> Floats:
-    """(6, 10) resultants of `model.LOADS` about the hub."""
+def _applied(scene: Scene, body: Condensed, positions: Floats) -> Floats:
+    """(6, n_loads) resultants of a scene's unit loads about the hub."""
     n = len(body.names)
     carry = point_motions(positions, positions[0]).T
-    return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(body)
+    return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(scene, body)

@@ -26,9 +26,10 @@ from fe_drivetrain.solve.coupled_solid import CondensedSolid, condensed_solid
 
 
 def reference_points(scene: Scene) -> tuple[tuple[str, ...], Floats]:
-    """Hub, bearings and gearbox of a scene: names, and (n, 3) positions on the shaft's axis [m]."""
+    """Hub, bearings, load points, gearbox of a scene: names, (n, 3) positions on the axis [m]."""
     units = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
-    stations = {"hub": scene.shaft.front, **units, "gearbox": scene.shaft.rear}
+    loaded = {point.name: point.x for point in scene.load_points}
+    stations = {"hub": scene.shaft.front, **units, **loaded, "gearbox": scene.shaft.rear}
     positions = np.zeros((len(stations), 3))
     positions[:, 0] = list(stations.values())
     return tuple(stations), positions
@@ -95,7 +96,7 @@ def shaft_meridian(
     For the arguments see `meridian_shaft`.
     """
     shaft = ringed_shaft(scene)[0] if rings else scene.shaft
-    spans = [unit.bearing.span for unit in scene.bearing_units]
+    spans = [*(unit.bearing.span for unit in scene.bearing_units), *scene.bands.values()]
     ends = [end for span in spans for end in span]
     corners = [(x, shaft.outer_radius(sum(span) / 2)) for span in spans for x in span]
     widest = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
@@ -179,8 +180,9 @@ def shaft_solid(scene: Scene, method: str = "auto") -> CondensedSolid:
     """
     names, positions = reference_points(scene)
     bearings = [unit.bearing for unit in scene.bearing_units]
-    mesh = cached_mesh(scene.shaft, bearings, {}, scene.mesh, frozenset())
-    faces = ["shaft.front", *(f"{b.name}.outer" for b in bearings), "shaft.rear"]
+    mesh = cached_mesh(scene.shaft, bearings, {}, scene.mesh, frozenset(), bands=scene.bands)
+    loaded = [f"shaft.band.{name}" for name in scene.bands]
+    faces = ["shaft.front", *(f"{b.name}.outer" for b in bearings), *loaded, "shaft.rear"]
     attachments = [
         Attachment(name, face, position, "averaged")
         for name, face, position in zip(names, faces, positions, strict=True)

@@ -25,6 +25,7 @@ from .reading import read_scene as read_scene
 from .scene import Coupling as Coupling
 from .scene import Gearbox as Gearbox
 from .scene import Hub as Hub
+from .scene import LoadPoint as LoadPoint
 from .scene import Scene as Scene
 from .scene import Spread as Spread
 from .scene import coarser_scene as coarser_scene

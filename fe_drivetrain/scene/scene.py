@@ -9,7 +9,7 @@ from pydantic import (
 )
 
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.geometry import MeshSizes, Shaft, check_parts, within_walls
+from fe_drivetrain.geometry import MeshSizes, Shaft, check_bands, check_parts, within_walls
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Keys, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import Material, known_materials
@@ -20,6 +20,9 @@ Coupling = Literal["averaged", "rigid"]
 
 #: Largest weight of a part [N]: a hundred times the nacelle of the largest turbines.
 HEAVIEST = 1e9
+
+#: Names that load points cannot have: loads and points of every scene.
+_RESERVED = ("hub", "gearbox", "gravity", "shaft")
 
 
 def check_material(name: str, defined: Mapping[str, Material], of: str = "") -> None:
@@ -75,6 +78,25 @@ class Gearbox(Keys):
         return [c for c, k in enumerate(self.stiffness) if k == "rigid"]
 
 
+class LoadPoint(Keys):
+    """Another point of the shaft where loads enter: a gear, a brake disc, a coupling, a mass.
+
+    Forces and moments act on average on the outer surface of the shaft, over a width.
+    """
+
+    name: str = Field(
+        pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", description="name: letters, digits, '_' and '-'"
+    )
+    x: float = Field(ge=-1e3, le=1e3, description="x of the middle of its width [m]")
+    width: float = Field(gt=0, le=1e3, description="over which the shaft takes its loads [m]")
+    weight: float = Field(default=0.0, ge=0, le=HEAVIEST, description="weight [N], along -z")
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """x of both ends of its width [m]."""
+        return self.x - self.width / 2, self.x + self.width / 2
+
+
 class Spread(Keys):
     """How certain a value is, relative to it: half the width of an even distribution, the standard
     deviation of a normal one, or the coefficient of variation of a lognormal one about its median.
@@ -106,6 +128,7 @@ class Scene(Keys):
     bearing_units: tuple[BearingUnit, ...] = Field(min_length=1)
     hub: Hub = Hub()
     gearbox: Gearbox
+    load_points: tuple[LoadPoint, ...] = ()
     materials: Mapping[str, Material] = {}
     mesh: MeshSizes = MeshSizes()
     uncertainty: Mapping[str, Spread] = {}
@@ -115,6 +138,14 @@ class Scene(Keys):
         names = [unit.bearing.name for unit in self.bearing_units]
         if len(set(names)) < len(names):
             raise ValueError(f"bearing names {names} must differ from each other")
+        taken = {*names, *_RESERVED}
+        for point in self.load_points:
+            if point.name in taken:
+                raise ValueError(
+                    f"load point {point.name!r} has the name of another point of the scene "
+                    f"({', '.join(sorted(taken))}): rename it"
+                )
+            taken.add(point.name)
         used = [("shaft", self.shaft.material)]
         for unit in self.bearing_units:
             used.append((unit.bearing.name, unit.bearing.material))
@@ -132,6 +163,7 @@ class Scene(Keys):
             [unit.bearing for unit in self.bearing_units],
             {unit.bearing.name: unit.housing for unit in self.bearing_units},
         )
+        check_bands(self.shaft, self.bands, [unit.bearing for unit in self.bearing_units])
         gearbox = as_numbers(self.gearbox.stiffness)
         modulus = self.material_of("shaft").youngs_modulus
         check_standing(self.shaft, self.bearing_units, gearbox, modulus)
@@ -145,6 +177,11 @@ class Scene(Keys):
         name, _, housing = part.partition(".")
         unit = self.bearing_unit(name)
         return known[unit.housing.material if housing else unit.bearing.material]
+
+    @property
+    def bands(self) -> dict[str, tuple[float, float]]:
+        """Where on the shaft each load point's loads enter, by its name: x of both ends [m]."""
+        return {point.name: point.span for point in self.load_points}
 
     @property
     def loads_at(self) -> float:
