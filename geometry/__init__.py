@@ -4,7 +4,7 @@ from .assembly import NO_BANDS, build
 from .bearing import Bearing
 from .body import BodySizes
 from .element_sizes import MeshSizes, size_name
-from .fits import WIDEST, check_bands, check_parts, refuse_millimetres
+from .fits import WIDEST, Band, check_bands, check_parts, refuse_millimetres
 from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
@@ -20,6 +20,7 @@ __all__ = [
     "NO_BANDS",
     "WIDEST",
     "Assumption",
+    "Band",
     "Bearing",
     "BodySizes",
     "Flange",

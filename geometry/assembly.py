@@ -13,12 +13,12 @@ from fe_drivetrain.common.errors import InputError
 from .bearing import Bearing
 from .element_sizes import MeshSizes, apply_sizes
 from .faces import CAD_TOLERANCE, at_radius, boundary, in_plane, middle, shared
-from .fits import check_bands, check_parts
+from .fits import Band, check_bands, check_parts
 from .housing import Housing
 from .shaft import Shaft
 from .walls import check_sizes
 
-NO_BANDS: Mapping[str, tuple[float, float]] = MappingProxyType({})
+NO_BANDS: Mapping[str, Band] = MappingProxyType({})
 """Where loads enter the shaft at its ends and seats alone."""
 
 
@@ -28,7 +28,7 @@ def build(
     housings: Mapping[str, Housing],
     sizes: MeshSizes,
     bonded: frozenset[str] = frozenset(),
-    bands: Mapping[str, tuple[float, float]] = NO_BANDS,
+    bands: Mapping[str, Band] = NO_BANDS,
 ) -> None:
     """Build the assembly in the open gmsh model, with physical groups and element sizes.
 
@@ -49,9 +49,8 @@ def build(
     bonded : frozenset[str]
         Names of the bearings whose outer face is bonded to the housing. It does not change the
         CAD model; it is checked here and used when the mesh is read.
-    bands : Mapping[str, tuple[float, float]]
-        Where else loads enter the shaft: x of both ends of a part of its outer face, by name, m.
-        Each becomes a face, "shaft.band.NAME".
+    bands : Mapping[str, Band]
+        Where else loads enter the shaft, by name. Each becomes a face, "shaft.band.NAME".
 
     Raises
     ------
@@ -67,7 +66,9 @@ def build(
     washers: list[tuple[str, int]] = []
     points: dict[str, int] = {}
     if shaft is not None:
-        solids["shaft"] = shaft.build([*(b.span for b in bearings), *bands.values()])
+        outside = [band[:2] for band in bands.values() if not band.inside]
+        inside = [band[:2] for band in bands.values() if band.inside]
+        solids["shaft"] = shaft.build([*(b.span for b in bearings), *outside], inside)
     for bearing in bearings:
         solids[bearing.name] = bearing.build(bores[bearing.name])
         if bearing.name in housings:
@@ -147,15 +148,13 @@ def _name_faces(
             name_faces(f"{owner}.base", in_plane(faces[owner], 2, -housings[name].centre_height))
 
 
-def _name_bands(shaft: Shaft, bands: Mapping[str, tuple[float, float]], faces: set[int]) -> None:
-    """Give the parts of the outer face where loads enter their names."""
-    for name, (low, high) in bands.items():
-        around = at_radius(faces, shaft.outer_radius((low + high) / 2))
-        gmsh.model.addPhysicalGroup(
-            2,
-            sorted(tag for tag in around if low < middle(tag)[0] < high),
-            name=f"shaft.band.{name}",
-        )
+def _name_bands(shaft: Shaft, bands: Mapping[str, Band], faces: set[int]) -> None:
+    """Give the parts of the shaft's faces where loads enter their names."""
+    for name, (low, high, inside) in bands.items():
+        x = (low + high) / 2
+        around = at_radius(faces, shaft.inner_radius(x) if inside else shaft.outer_radius(x))
+        here = sorted(tag for tag in around if low < middle(tag)[0] < high)
+        gmsh.model.addPhysicalGroup(2, here, name=f"shaft.band.{name}")
 
 
 def _volumes(names: Sequence[str], pieces: Sequence[Sequence[tuple[int, int]]]) -> dict[str, int]:

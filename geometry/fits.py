@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import combinations, permutations
+from typing import NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 
@@ -52,17 +53,23 @@ def check_parts(
     return bores
 
 
-def check_bands(
-    shaft: Shaft, bands: Mapping[str, tuple[float, float]], bearings: Sequence[Bearing]
-) -> None:
+class Band(NamedTuple):
+    """A part of the shaft's outer face where loads enter, or of its bore: x of both ends, m."""
+
+    low: float
+    high: float
+    inside: bool = False
+
+
+def check_bands(shaft: Shaft, bands: Mapping[str, Band], bearings: Sequence[Bearing]) -> None:
     """Refuse bands on the shaft, where loads enter, that lie off it or on something else.
 
     Parameters
     ----------
     shaft : Shaft
         The shaft.
-    bands : Mapping[str, tuple[float, float]]
-        x of both ends of each, by name, m.
+    bands : Mapping[str, Band]
+        By name.
     bearings : Sequence[Bearing]
         The bearings on the shaft.
 
@@ -71,10 +78,13 @@ def check_bands(
     InputError
         A band does not lie on one cylindrical length, or touches a bearing or another band.
     """
-    for name, (low, high) in bands.items():
-        shaft.seat_diameter((low + high) / 2, high - low, name, "load point")
     spans = [(f"bearing {b.name!r}", b.span) for b in bearings]
-    spans += [(f"load point {name!r}", span) for name, span in bands.items()]
+    for name, (low, high, inside) in bands.items():
+        if inside:
+            shaft.bore_diameter((low + high) / 2, high - low, name)
+        else:
+            shaft.seat_diameter((low + high) / 2, high - low, name, "load point")
+            spans.append((f"load point {name!r}", (low, high)))
     for (one, first), (two, second) in combinations(spans, 2):
         if _gap(first, second) <= LENGTH_TOLERANCE and "load point" in two:
             raise InputError(

@@ -95,6 +95,11 @@ def any_scene(run: Run, kind: str) -> Scene:
         scene = read_scene(str(run.settings["scene"]), changes)
     else:
         scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
+    if scene.nose is not None:
+        raise InputError(
+            f"scene {scene.title!r} has a nose: the main-bearing cases compare solids on bearing "
+            "units; run fe-drivetrain advise, which takes both"
+        )
     if scene.load_points:
         raise InputError(
             f"scene {scene.title!r} has loads at {', '.join(scene.bands)}: the main-bearing cases "

@@ -36,8 +36,13 @@ def scene_body(
     Raises
     ------
     InputError
-        The scene has load points.
+        The scene has load points or a nose.
     """
+    if scene.nose is not None:
+        raise InputError(
+            f"scene {scene.title!r} has a nose, which a shaft on rolling bearings does not: give a "
+            "scene with bearing units alone"
+        )
     if scene.load_points:
         raise InputError(
             f"scene {scene.title!r} has loads at {', '.join(scene.bands)}, which a shaft on "

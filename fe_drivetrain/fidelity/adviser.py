@@ -67,7 +67,7 @@ class Quantity:
         InputError
             The name is none of the scene's.
         """
-        names = [unit.bearing.name for unit in scene.bearing_units] + ["gearbox"]
+        names = [*scene.bearing_names, "gearbox"]
         known = [f"{name}.{c}" for name in names for c in FORCES]
         known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
         if self.name not in known:
@@ -232,7 +232,8 @@ def advise(
     tolerance : float
         Allowed error, relative.
     to_the_top : bool
-        Whether to go on to the assembly where a cheaper level is known to be enough.
+        Whether to go on to the assembly where a cheaper level is known to be enough. With a nose
+        the ladder ends at the solid shaft.
     report : callable
         Called with what is being done.
 
@@ -270,7 +271,7 @@ def advise(
     springs: Mapping[str, Floats] = {}
     if not done:
         springs, done = _run_on_springs(scene, quantity, to_the_top, add, report)
-    if not done:
+    if not done and scene.nose is None:
         model, seconds, (band,) = banded_assembly(scene, [quantity], report)
         add(model, seconds, band.half_width, band)
     return _judged(quantity, tolerance, results, springs)
@@ -294,7 +295,8 @@ def _run_on_springs(
     report("housings, faces on average")
     soft = housing_springs(scene, coupling="averaged", cache=UNCACHED)[0]
     previous = None
-    for level in (1, 2, 3) if to_the_top else (1, 2):
+    # with a nose there is no assembly above the solid shaft
+    for level in (1, 2, 3) if to_the_top or scene.nose is not None else (1, 2):
         report(f"level {level}: {TITLES[level]}, housings as springs")
         start = time.perf_counter()
         body = condensed_shaft(scene, level)

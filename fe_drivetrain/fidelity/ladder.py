@@ -19,6 +19,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.bearing_units import scene_supports, unit_stiffness
+from fe_drivetrain.fidelity.nose import on_nose
 from fe_drivetrain.fidelity.shafts import (
     beam_shaft,
     condensed_shaft,
@@ -135,6 +136,8 @@ def statics_level(scene: Scene) -> LevelModel:
     for unit in scene.bearing_units:
         stiffness = joint_stiffness(unit)
         carried += [(unit.bearing.name, c) for c in range(6) if stiffness[c].any()]
+    for bearing in scene.nose_bearings:
+        carried += [(bearing.name, c) for c, k in enumerate(bearing.stiffness) if k != 0]
     carried += [("gearbox", c) for c, k in enumerate(scene.gearbox.stiffness) if k != 0]
     at = dict(zip(names, positions, strict=True))
     A = np.column_stack([wrench_transport(at[name] - first)[:, c] for name, c in carried])
@@ -145,8 +148,7 @@ def statics_level(scene: Scene) -> LevelModel:
     decided = np.abs(null).max(axis=0, initial=0.0) < 1e-9
     loads = _applied(scene, beam_shaft(scene), positions)
     found = np.linalg.lstsq(A / scale[:, None], loads / scale[:, None], rcond=1e-12)[0]
-    held = [*(unit.bearing.name for unit in scene.bearing_units), "gearbox"]
-    matrices = {name: np.zeros(loads.shape) for name in held}
+    matrices = {name: np.zeros(loads.shape) for name in (*scene.bearing_names, "gearbox")}
     for (name, c), row, sure in zip(carried, found, decided, strict=True):
         matrices[name][c] = row if sure else np.nan
     unknown = [
@@ -190,7 +192,11 @@ def shaft_level(
         if any(piece.fillet > 0 for piece in scene.shaft.pieces):
             neglects.append("fillets")
         neglects.append("sections that do not stay plane near steps and seats")
-    if housings is None:
+    if scene.nose is not None:
+        neglects.append("rings of bearings on the nose, and the bedplate that holds it")
+    if not scene.bearing_units:
+        housings, title = {}, TITLES[level]
+    elif housings is None:
         neglects.append("housings and bedplates that give: they are rigid")
         housings = {unit.bearing.name: joint_stiffness(unit) for unit in scene.bearing_units}
         title = f"{TITLES[level]}, rigid housings"
@@ -199,10 +205,15 @@ def shaft_level(
         if any(unit.bedplate is not None for unit in scene.bearing_units):
             neglects.append("what a bedplate gives under the weight of its housing")
         title = f"{TITLES[level]}, housings as springs"
+    standing = None if scene.nose is None else on_nose(scene, scene.nose, level, body)
+    body = body if standing is None else standing.body
     found = supported(body, scene_supports(scene, housings))
     n = len(body.names)
     columns = _unit_loads(scene, body)
     reactions = {name: R @ columns for name, R in found.reactions.items()}
+    if standing is not None:
+        on_bearings = standing.reactions(found.motions)
+        reactions |= {name: R @ columns for name, R in on_bearings.items()}
     reactions.setdefault("gearbox", np.zeros((6, columns.shape[1])))
     _add_weights(reactions, scene, on_shaft)
     cost = Cost(time.perf_counter() - start, 6 * n)

@@ -114,8 +114,7 @@ def _resisted(stiffness: Floats) -> tuple[Floats, Floats, Floats]:
 
 def known_names(scene: Scene) -> list[str]:
     """All that can be asked of a scene."""
-    units = [unit.bearing.name for unit in scene.bearing_units]
-    names = [f"{name}.{c}" for name in (*units, "gearbox") for c in FORCES]
+    names = [f"{name}.{c}" for name in (*scene.bearing_names, "gearbox") for c in FORCES]
     return names + stiffness_names(scene)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.made_by import machine, source_hash
-from fe_drivetrain.geometry import NO_BANDS, Bearing, Housing, MeshSizes, Shaft
+from fe_drivetrain.geometry import NO_BANDS, Band, Bearing, Housing, MeshSizes, Shaft
 from fe_drivetrain.mesh.generation import generate
 from fe_drivetrain.mesh.mesh import Mesh
 
@@ -29,7 +29,7 @@ def cached_mesh(
     sizes: MeshSizes,
     bonded: frozenset[str],
     cache: Cache | None = None,
-    bands: Mapping[str, tuple[float, float]] = NO_BANDS,
+    bands: Mapping[str, Band] = NO_BANDS,
 ) -> Mesh:
     """The mesh of these parts, taken from the cache where it was generated before.
 
@@ -70,7 +70,7 @@ def _content(
     housings: Mapping[str, Housing],
     sizes: MeshSizes,
     bonded: frozenset[str],
-    bands: Mapping[str, tuple[float, float]],
+    bands: Mapping[str, Band],
 ) -> dict[str, Any]:
     """All that a mesh depends on; the material is not among it."""
     return {

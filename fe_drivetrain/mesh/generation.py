@@ -14,6 +14,7 @@ from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import (
     NO_BANDS,
+    Band,
     Bearing,
     Housing,
     LocalSizes,
@@ -46,7 +47,7 @@ def generate(
     sizes: MeshSizes = DEFAULT_SIZES,
     bonded: frozenset[str] = frozenset(),
     local: LocalSizes | None = None,
-    bands: Mapping[str, tuple[float, float]] = NO_BANDS,
+    bands: Mapping[str, Band] = NO_BANDS,
 ) -> Mesh:
     """Build the parts and mesh them.
 

@@ -132,7 +132,18 @@ def mesh_scene(scene: Scene) -> Mesh:
     """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
 
     A mesh that was generated before comes from the cache, see `fe_drivetrain.common.cache`.
+
+    Raises
+    ------
+    InputError
+        The scene has a nose, whose bearings have no solids.
     """
+    if scene.nose is not None:
+        raise InputError(
+            f"scene {scene.title!r} has a nose, which the assembly of solids (level 4) does not: "
+            "use levels 0 to 3 (fe-drivetrain advise, uncertainty --level 2, export --level 3), "
+            "which have shaft and nose"
+        )
     return cached_mesh(
         scene.shaft,
         [unit.bearing for unit in scene.bearing_units],

@@ -59,7 +59,7 @@ _OPTIONAL = {
     "hub": "hub: {coupling: averaged}   # how loads enter the front face: averaged or rigid\n",
     "load_points": (
         "load_points:   # where else loads enter the shaft: columns brake.Fz [kN] of a CSV file\n"
-        "  - {name: brake, x: 1.0, width: 0.1, weight: 5000}\n"
+        "  - {name: brake, x: -0.23, width: 0.03, weight: 5000}\n"
     ),
     "materials": (
         "materials:   # steel and ductile_iron are there; name others here\n"
