@@ -90,7 +90,7 @@ def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
     if own is not None:
         histories, statement = own
         steps = [history.step for history in histories]
-        weights = sample_weights([len(history) for history in histories], steps)
+        weights: Floats | None = sample_weights([len(history) for history in histories], steps)
         if np.ptp(steps) <= 1e-9 * max(steps):
             weights = None
         return Cases(np.concatenate([h.loads for h in histories]), weights, statement)
