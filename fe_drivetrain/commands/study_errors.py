@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.compare.time_weighted import weighted_rms
@@ -54,7 +54,7 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
     """
     page.section("Beams against FE")
     others = list(levels.models)[:-1]
-    hub = np.concatenate([history.loads for history in loads.histories])
+    hub = np.concatenate([entering(scene, history) for history in loads.histories])
     weights = loads.weights
     weight, length = scene.gearbox.weight, scene.shaft.length
     absolute: list[Record] = []
