@@ -1,3 +1,4 @@
+from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
 from .csv_table import write_csv as write_csv
 from .files import hub_load_files as hub_load_files
