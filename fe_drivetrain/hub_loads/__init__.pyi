@@ -13,6 +13,7 @@ from .loops import time_on_loops as time_on_loops
 from .surrogate import SHEARS as SHEARS
 from .surrogate import WIND_SPEEDS as WIND_SPEEDS
 from .surrogate import Condition as Condition
+from .surrogate import HubLoadSet as HubLoadSet
 from .surrogate import hub_load_set as hub_load_set
 from .surrogate import hub_loads as hub_loads
 from .surrogate import not_kept as not_kept

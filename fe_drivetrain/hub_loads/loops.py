@@ -242,11 +242,13 @@ def _closed_parts(t: Floats, z: Plane, longest: float, excursion: float) -> list
         if number <= capacity:
             break
         capacity = number
+    steps, values = steps[:number], values[:number]
+    kept = _innermost(values[:, 0], values[:, 1])
     parts = [
         _Part(int(i), int(j), complex(v[_AT_X], v[_AT_Y]), tuple(map(float, v[:_AT_X])))
-        for (i, j), v in zip(steps[:number], values[:number], strict=True)
+        for (i, j), v in zip(steps[kept], values[kept], strict=True)
     ]
-    return _one_after_another(_innermost(parts), _TOUCH * longest)
+    return _one_after_another(parts, _TOUCH * longest)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -322,13 +324,11 @@ def _crossings(
     return number
 
 
-def _innermost(parts: list[_Part]) -> list[_Part]:
+def _innermost(start: Floats, end: Floats) -> Ints:
     """Those that contain no other, in order of start and end."""
-    kept: list[_Part] = []
-    for part in sorted(parts, key=lambda p: (-p.start, p.end)):
-        if not kept or part.end < kept[-1].end:
-            kept.append(part)
-    return kept[::-1]
+    order = np.lexsort((end, -start))
+    reached = np.minimum.accumulate(np.concatenate([[np.inf], end[order]]))
+    return np.asarray(order[end[order] < reached[:-1]][::-1])
 
 
 def _one_after_another(parts: list[_Part], touch: float) -> list[_Part]:
