@@ -230,9 +230,13 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
         )
     page.section("Load zones and edge loading")
     page.table(
-        "Rollers over each wind file; the end difference is that of two laminae of thirty, and a "
-        "thirtieth of the load is 3.3 %",
+        "Rollers over each wind file; the end difference is that of two laminae of thirty, of "
+        "rollers with more than a fiftieth of the largest load",
         rows,
+    )
+    page.text(
+        "The thesis reads 2 to 3 % off one row and up to 20 % off the other; both are here, the "
+        "larger share at rollers that are hardly loaded. An even load is 3.3 % on each lamina."
     )
     page.data("rollers", rows)
     least = min(row["zones of the rows opposite [% of time]"] for row in rows)

@@ -182,8 +182,8 @@ def statistics(page: Page, hub: HubLoadSet, loops: dict[str, list[Loops]]) -> No
     whole = {name: averaged(hub, of, range(len(of))) for name, of in loops.items()}
     moment, force = whole["DTRB, moment"], whole["DTRB, force"]
     page.answer(
-        f"Moment loops take {moment['share of time [%]']:.0f} % of the time, "
-        f"{moment['rate over 3P']:.1f} of them a blade passing; force loops "
+        f"{moment['share of time [%]']:.0f} % of the time the moment is on a loop, and it makes "
+        f"{moment['rate over 3P']:.1f} of them from one blade's passing to the next; the force "
         f"{force['share of time [%]']:.0f} % and {force['rate over 3P']:.1f}.",
         "They are there at every wind speed, turbulence and shear, as the thesis says.",
     )
