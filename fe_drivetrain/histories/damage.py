@@ -49,7 +49,8 @@ class SNCurve:
         below = self.slope if self.slope_below is None else self.slope_below
         ratio = np.asarray(loads, dtype=float) / self.load
         with np.errstate(divide="ignore", over="ignore"):
-            return self.cycles * ratio ** -np.where(ratio >= 1.0, self.slope, below)
+            power = ratio ** -np.where(ratio >= 1.0, self.slope, below)
+            return np.asarray(self.cycles * power)
 
 
 def miner_damage(loads: Floats, counts: Floats, curve: SNCurve) -> float:
