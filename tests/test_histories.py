@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.histories.classes import added, in_classes
 from fe_drivetrain.histories.levels import (
     equivalent_level,
     even_levels,
@@ -167,3 +170,22 @@ def test_a_line_of_the_campbell_diagram_follows_the_speed(rng: np.random.Generat
     assert found.frequency[-1] == pytest.approx(5.0)
     with pytest.raises(InputError, match="no history holds a segment of 500 s"):
         campbell(parts, [0.0, 10.0], segment=500.0)
+
+
+@given(
+    st.lists(
+        st.lists(st.floats(-1e9, 1e9, width=32), min_size=1, max_size=20), min_size=1, max_size=5
+    )
+)
+def test_classes_of_many_histories_add_up_exactly(histories: list[list[float]]) -> None:
+    parts = [in_classes(h, np.square(h), weights=np.ones(len(h))) for h in histories]
+    found = added(parts)
+    assert found.amount.sum() == sum(map(len, histories))
+    values = np.concatenate([np.asarray(h) for h in histories])
+    # no sample has left its class, whatever the order
+    expected, _, _ = np.histogram2d(values, values**2, bins=[found.edges(0), found.edges(1)])
+    np.testing.assert_array_equal(found.amount, expected)
+    np.testing.assert_array_equal(added(parts[::-1]).amount, found.amount)
+    assert max(found.amount.shape) <= 1024
+    widest = max(np.ptp(h) or np.abs(h).max() for h in histories)
+    assert np.diff(found.edges()).max() <= max(widest / 64, 2 * np.ptp(values) / 1022, 2.0**-60)

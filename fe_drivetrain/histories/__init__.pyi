@@ -1,3 +1,6 @@
+from .classes import Classes as Classes
+from .classes import added as added
+from .classes import in_classes as in_classes
 from .cycles import RESIDUES as RESIDUES
 from .cycles import Cycles as Cycles
 from .cycles import exceedance as exceedance
