@@ -66,5 +66,7 @@ def polar_density(
     right, up = -np.asarray(y, dtype=float), np.asarray(z, dtype=float)
     far = reach or float(max(np.abs(right).max(), np.abs(up).max())) or 1.0
     edges = np.linspace(-far, far, cells + 1)
-    share, _, _ = np.histogram2d(up, right, bins=[edges, edges], weights=weights)
+    time = np.ones_like(up) if weights is None else np.asarray(weights, dtype=float)
+    limits: list[Floats] = [edges, edges]
+    share, _, _ = np.histogram2d(up, right, bins=limits, weights=time)
     return Density(edges, edges, np.asarray(share / share.sum()))
