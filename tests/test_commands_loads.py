@@ -57,7 +57,9 @@ def rows_of(file: Path) -> list[dict[str, str]]:
 
 def test_the_page_of_own_files(invoke: Callable[..., Result], histories: Path) -> None:
     out = histories.parent / "out"
-    status, printed, _ = invoke("loads", str(histories), "--out", str(out), *COLUMNS)
+    status, printed, _ = invoke(
+        "loads", str(histories), "--out", str(out), *COLUMNS, "--site", "IIB"
+    )
     assert status == 0, printed
     assert "2 files, 1,522 samples over 140.3 s" in printed
     assert "half cycles of the residue count as halves" in printed
@@ -79,6 +81,11 @@ def test_the_page_of_own_files(invoke: Callable[..., Result], histories: Path) -
     for word, total in (("seconds", 140.3), ("turns", 140.3 * HERTZ)):
         amounts = [float(r["amount"]) for r in levels if (r["channel"], r["of"]) == ("Mx", word)]
         assert sum(amounts) == pytest.approx(total)
+    site = rows_of(out / "site.csv")
+    assert [float(row["mean wind speed [m/s]"]) for row in site] == [8.0, 12.0]
+    reach = np.exp(-np.pi / 4 * (np.array([6.0, 14.0]) / 8.5) ** 2)  # Rayleigh's, of 6 to 14 m/s
+    hours = sum(float(row["hours"]) for row in site)
+    assert hours == pytest.approx(-float(np.diff(reach)[0]) * 175200, rel=1e-6)
     results = read_results(out / "results.json")
     assert results.figures["capture"]["counts"]
     # 9P is 2.25 Hz, and half the sampling rate of b is 2 Hz
@@ -146,6 +153,7 @@ def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Pat
         (["--residue", "full"], "choose one of half, closed, repeated"),
         (["--gate", "150%"], "from 0 to below 1"),
         (["--skip", "100"], "skip less"),
+        (["--site", "VII"], "choose I, II, III"),
         (["--slope", "50"], "must be from 1 to 20"),
     ):
         status, _, err = invoke("loads", str(histories), *arguments)

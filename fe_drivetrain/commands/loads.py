@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +14,9 @@ from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
+
+if TYPE_CHECKING:
+    from fe_drivetrain.histories.sites import Site
 
 _KEPT = "files that are done are kept: run again with --resume"
 
@@ -87,6 +90,15 @@ def loads_command(
             "--target", metavar="COUNT", min=1, help="Windows that each wind speed should have."
         ),
     ] = 6,
+    site: Annotated[
+        str | None,
+        typer.Option(
+            "--site",
+            metavar="CLASS",
+            help="Weight winds over 20 years: a class of IEC 61400-1 (I, II, III), or the mean "
+            "wind speed of a Rayleigh distribution in m/s.",
+        ),
+    ] = None,
     parquet: Annotated[
         bool, typer.Option("--parquet", help="Write each table as Parquet, too (needs pyarrow).")
     ] = False,
@@ -132,6 +144,7 @@ def loads_command(
             _share(gate),
             None if rotor_speed is None else rotor_speed * 3.141592653589793 / 30.0,
         )
+        place = None if site is None else _site(site)
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)
         count = len(found)
@@ -139,7 +152,7 @@ def loads_command(
             "loads/histories",
             f"Load histories of {count} file{'s' * (count > 1)}",
             "the user's files",
-            lambda run, page: loaded(run, page, found, options, target, resume, writer),
+            lambda run, page: loaded(run, page, found, options, target, place, resume, writer),
         )
         with show_steps() as report:
             results = run_case(case, out.resolve(), report=report)
@@ -171,6 +184,17 @@ def parse_channels(texts: Iterable[str]) -> dict[str, str]:
             raise InputError(f"--channel {text}: write NAME=COLUMN, NAME one of {', '.join(NAMES)}")
         found[name] = column
     return found
+
+
+def _site(text: str) -> Site:
+    """The site of a class, or of a mean wind speed."""
+    from fe_drivetrain.histories.sites import Site, site_of_class
+
+    try:
+        mean = float(text)
+    except ValueError:
+        return site_of_class(text)
+    return Site(mean)
 
 
 def _share(text: str) -> float:

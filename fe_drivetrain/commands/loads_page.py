@@ -10,12 +10,14 @@ import numpy as np
 
 from fe_drivetrain.commands.loads_counts import counts
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options, digest
+from fe_drivetrain.commands.loads_lifetime import lifetime
 from fe_drivetrain.commands.loads_shape import shape
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import Together, windows_table
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.cycles import Cycles
+from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.histories.windows import COLUMNS, CaptureMatrix, capture_matrix
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.report.charts import trace
@@ -37,6 +39,7 @@ def loaded(
     files: Sequence[Path],
     options: Options,
     target: int,
+    site: Site | None = None,
     resume: bool = False,
     parquet: ModuleType | None = None,
 ) -> None:
@@ -54,6 +57,8 @@ def loaded(
         How they are counted.
     target : int
         Windows that each mean wind speed should have.
+    site : Site, optional
+        Whose winds a lifetime has.
     resume : bool
         Take digests that an earlier run kept.
     parquet : module, optional
@@ -83,6 +88,8 @@ def loaded(
     tables["capture_matrix"] = _capture(page, found, target)
     tables |= shape(page, found)
     tables |= counts(page, found, options, rule)
+    if site is not None:
+        tables |= lifetime(page, found, options, site)
     _checks(page, found)
     facts = {
         "frame": "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor",

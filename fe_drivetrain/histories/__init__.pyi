@@ -24,6 +24,15 @@ from .levels import torque_reversals as torque_reversals
 from .polar import Density as Density
 from .polar import direction as direction
 from .polar import polar_density as polar_density
+from .sites import MEAN_WIND as MEAN_WIND
+from .sites import TURBULENCE as TURBULENCE
+from .sites import Site as Site
+from .sites import Transient as Transient
+from .sites import lifetime_damage as lifetime_damage
+from .sites import midpoint_edges as midpoint_edges
+from .sites import site_life as site_life
+from .sites import site_of_class as site_of_class
+from .sites import time_factors as time_factors
 from .spectra import MULTIPLES as MULTIPLES
 from .spectra import Campbell as Campbell
 from .spectra import Multiple as Multiple
