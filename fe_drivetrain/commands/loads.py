@@ -99,6 +99,15 @@ def loads_command(
             "wind speed of a Rayleigh distribution in m/s.",
         ),
     ] = None,
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--against",
+            metavar="FILES",
+            help="Another set of histories: says what differs by more than the scatter of seeds. "
+            "May be repeated.",
+        ),
+    ] = None,
     parquet: Annotated[
         bool, typer.Option("--parquet", help="Write each table as Parquet, too (needs pyarrow).")
     ] = False,
@@ -147,12 +156,15 @@ def loads_command(
         place = None if site is None else _site(site)
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)
+        others = recorded_files(against or [])
         count = len(found)
         case = Case(
             "loads/histories",
             f"Load histories of {count} file{'s' * (count > 1)}",
             "the user's files",
-            lambda run, page: loaded(run, page, found, options, target, place, resume, writer),
+            lambda run, page: loaded(
+                run, page, found, options, target, place, others, resume, writer
+            ),
         )
         with show_steps() as report:
             results = run_case(case, out.resolve(), report=report)

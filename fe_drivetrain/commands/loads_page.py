@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 
+from fe_drivetrain.commands.loads_against import beside
 from fe_drivetrain.commands.loads_counts import counts
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options, digest
 from fe_drivetrain.commands.loads_lifetime import lifetime
@@ -40,6 +41,7 @@ def loaded(
     options: Options,
     target: int,
     site: Site | None = None,
+    against: Sequence[Path] = (),
     resume: bool = False,
     parquet: ModuleType | None = None,
 ) -> None:
@@ -59,6 +61,8 @@ def loaded(
         Windows that each mean wind speed should have.
     site : Site, optional
         Whose winds a lifetime has.
+    against : sequence of Path
+        Another set of histories, to be compared.
     resume : bool
         Take digests that an earlier run kept.
     parquet : module, optional
@@ -70,8 +74,14 @@ def loaded(
         A file cannot be read, or holds no loads.
     """
     page.seed = None
+    found = Together()
+    own: list[Digest] = []
     with run.step("files"):
-        found = _digests(run, files, options, resume)
+        for file, one in _digests(run, files, options, resume, "files"):
+            found.add(_name(file, files), one)
+            if against:
+                own.append(one)
+    _require_loads(found)
     rule = Cycles(np.zeros(0), np.zeros(0), np.zeros(0), options.residue).rule
     if options.gate:
         rule += (
@@ -90,6 +100,10 @@ def loaded(
     tables |= counts(page, found, options, rule)
     if site is not None:
         tables |= lifetime(page, found, options, site)
+    if against:
+        with run.step("the others"):
+            others = [d for _, d in _digests(run, against, options, resume, "the others")]
+        tables["beside"] = beside(page, own, others, options)
     _checks(page, found)
     facts = {
         "frame": "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor",
@@ -113,22 +127,27 @@ def loaded(
     )
 
 
-def _digests(run: Run, files: Sequence[Path], options: Options, resume: bool) -> Together:
+def _digests(
+    run: Run, files: Sequence[Path], options: Options, resume: bool, step: str
+) -> Iterator[tuple[Path, Digest]]:
     """One file at a time: kept as soon as it is done."""
-    cache, found = user_cache(), Together()
+    cache = user_cache()
     for number, file in enumerate(files, 1):
-        run.report(f"files ({number} of {len(files)})")
+        run.report(f"{step} ({number} of {len(files)})")
         content = options.content(file)
         one: Digest | None = cache.load("load-digests", content) if resume else None
         if one is None:
             one = digest(read_recorded(file, options.columns, options.skip), options)
             cache.keep("load-digests", content, one)
-        found.add(_name(file, files), one)
+        yield file, one
+
+
+def _require_loads(found: Together) -> None:
+    """Refuse files that hold zeros alone."""
     if found.cycles is None or not found.cycles[:, 0].any():
         values = found.values[:, : len(LOADS)] if found.windows else np.zeros(1)
         if not np.abs(values).max() > 0.0:
             raise InputError("all hub loads of all files are zero: give histories with loads")
-    return found
 
 
 def _name(file: Path, files: Sequence[Path]) -> str:

@@ -24,6 +24,8 @@ from .levels import torque_reversals as torque_reversals
 from .polar import Density as Density
 from .polar import direction as direction
 from .polar import polar_density as polar_density
+from .sets import Difference as Difference
+from .sets import differences as differences
 from .sites import MEAN_WIND as MEAN_WIND
 from .sites import TURBULENCE as TURBULENCE
 from .sites import Site as Site
