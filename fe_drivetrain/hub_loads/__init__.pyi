@@ -1,3 +1,4 @@
+from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
 from .csv_table import write_csv as write_csv
 from .files import hub_load_files as hub_load_files
@@ -15,6 +16,7 @@ from .recorded import recorded_files as recorded_files
 from .surrogate import SHEARS as SHEARS
 from .surrogate import WIND_SPEEDS as WIND_SPEEDS
 from .surrogate import Condition as Condition
+from .surrogate import HubLoadSet as HubLoadSet
 from .surrogate import hub_load_set as hub_load_set
 from .surrogate import hub_loads as hub_loads
 from .surrogate import not_kept as not_kept

@@ -22,6 +22,7 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats, Ints
@@ -41,6 +42,8 @@ Plane = NDArray[np.complex128]
 
 _TOUCH = 1e-9
 """Of a step: a path that repeats itself touches its own vertices up to round-off."""
+
+_AT_X, _AT_Y = 7, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,44 +211,8 @@ def _checked(time: ArrayLike, x: ArrayLike, y: ArrayLike) -> tuple[Floats, Plane
     return t, a + 1j * b
 
 
-def _cross(a: Plane, b: Plane) -> Floats:
-    """Product of two vectors of the plane, a_x b_y - a_y b_x."""
-    return np.asarray((np.conj(a) * b).imag)
-
-
-def _crossings(t: Floats, z: Plane, longest: float) -> tuple[Ints, Ints, Floats, Floats]:
-    """Pairs of steps i < j that cross, and where on each, from 0 to 1."""
-    step = np.diff(z)
-    low = np.minimum(z.real[:-1], z.real[1:]) + 1j * np.minimum(z.imag[:-1], z.imag[1:])
-    high = np.maximum(z.real[:-1], z.real[1:]) + 1j * np.maximum(z.imag[:-1], z.imag[1:])
-    # Steps within round-off of each other touch.
-    slack = _TOUCH * (high - low)
-    low, high = low - slack, high + slack
-    parts: list[tuple[Ints, Ints, Floats, Floats]] = []
-    for apart in range(2, len(step)):
-        i = np.flatnonzero(t[apart:-1] - t[1:-apart] <= longest)
-        if not len(i):
-            break
-        j = i + apart
-        near = (low.real[i] <= high.real[j]) & (low.real[j] <= high.real[i])
-        near &= (low.imag[i] <= high.imag[j]) & (low.imag[j] <= high.imag[i])
-        i, j = i[near], j[near]
-        across = _cross(step[i], step[j])
-        crossing = across != 0.0
-        i, j, across = i[crossing], j[crossing], across[crossing]
-        between = z[j] - z[i]
-        on_i, on_j = _cross(between, step[j]) / across, _cross(between, step[i]) / across
-        met = np.abs(on_i - 0.5) <= 0.5 + _TOUCH
-        met &= np.abs(on_j - 0.5) <= 0.5 + _TOUCH
-        parts.append((i[met], j[met], np.clip(on_i[met], 0, 1), np.clip(on_j[met], 0, 1)))
-    if not parts:
-        return np.empty(0, int), np.empty(0, int), np.empty(0), np.empty(0)
-    i, j, on_i, on_j = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return i, j, on_i, on_j
-
-
 class _Part(NamedTuple):
-    """A loop, and where the path enters and leaves it."""
+    """A loop; the steps in which the path enters and leaves it, and where they cross."""
 
     first: int
     last: int
@@ -267,35 +234,101 @@ class _Part(NamedTuple):
 
 def _closed_parts(t: Floats, z: Plane, longest: float, excursion: float) -> list[_Part]:
     """Loops that do not overlap."""
-    if len(z) < 4:
-        return []
-    i, j, on_i, on_j = _crossings(t, z, longest)
-    start = t[i] + on_i * (t[i + 1] - t[i])
-    end = t[j] + on_j * (t[j + 1] - t[j])
-    at = z[i] + on_i * (z[i + 1] - z[i])
-    # About a middle, so that an origin far away costs no digits.
-    about, here = z - z.mean(), at - z.mean()
-    sums = np.concatenate([[0.0], np.cumsum(_cross(about[:-1], about[1:]))])
-    area = 0.5 * (sums[j] - sums[i + 1] + _cross(here, about[i + 1]) + _cross(about[j], here))
-    possible = (end - start <= longest) & (np.abs(area) >= ROUNDNESS * excursion**2)
-    parts: list[_Part] = []
-    for k in np.flatnonzero(possible):
-        on = np.concatenate([[at[k]], z[i[k] + 1 : j[k] + 1], [at[k]]])
-        far = float(np.abs(on - at[k]).max())
-        if far >= excursion and abs(area[k]) >= ROUNDNESS * far**2:
-            size, swept = np.abs(on), float(np.ptp(np.unwrap(np.angle(on))))
-            loop = (start[k], end[k], far, area[k], size.min(), size.max(), swept)
-            parts.append(_Part(int(i[k]), int(j[k]), complex(at[k]), loop))
-    return _one_after_another(_innermost(parts), _TOUCH * longest)
+    capacity = len(t)
+    while True:
+        steps = np.empty((capacity, 2), np.int64)
+        values = np.empty((capacity, _AT_Y + 1))
+        number = _crossings(t, z.real.copy(), z.imag.copy(), longest, excursion, steps, values)
+        if number <= capacity:
+            break
+        capacity = number
+    steps, values = steps[:number], values[:number]
+    kept = _innermost(values[:, 0], values[:, 1])
+    parts = [
+        _Part(int(i), int(j), complex(v[_AT_X], v[_AT_Y]), tuple(map(float, v[:_AT_X])))
+        for (i, j), v in zip(steps[kept], values[kept], strict=True)
+    ]
+    return _one_after_another(parts, _TOUCH * longest)
 
 
-def _innermost(parts: list[_Part]) -> list[_Part]:
+@njit(cache=True, nogil=True, error_model="numpy")
+def _crossings(
+    t: Floats,
+    x: Floats,
+    y: Floats,
+    longest: float,
+    excursion: float,
+    steps: Ints,
+    values: Floats,
+) -> int:
+    """Closed parts of the path that are loops, overlapping or not; how many there are.
+
+    Fills the steps (m, 2) that cross and what `Loops` has of each, then the crossing's place; what
+    exceeds m is counted alone.
+    """
+    number, n = 0, len(t) - 1
+    for i in range(n):
+        ax, ay = x[i + 1] - x[i], y[i + 1] - y[i]
+        # Steps within round-off of each other touch.
+        mx, my = _TOUCH * abs(ax), _TOUCH * abs(ay)
+        left, right = min(x[i], x[i + 1]) - mx, max(x[i], x[i + 1]) + mx
+        low, high = min(y[i], y[i + 1]) - my, max(y[i], y[i + 1]) + my
+        for j in range(i + 2, n):
+            if t[j] - t[i + 1] > longest:
+                break
+            if (x[j] > right and x[j + 1] > right) or (x[j] < left and x[j + 1] < left):
+                continue
+            if (y[j] > high and y[j + 1] > high) or (y[j] < low and y[j + 1] < low):
+                continue
+            bx, by = x[j + 1] - x[j], y[j + 1] - y[j]
+            across = ax * by - ay * bx
+            if across == 0.0:
+                continue
+            dx, dy = x[j] - x[i], y[j] - y[i]
+            on_i, on_j = (dx * by - dy * bx) / across, (dx * ay - dy * ax) / across
+            if abs(on_i - 0.5) > 0.5 + _TOUCH or abs(on_j - 0.5) > 0.5 + _TOUCH:
+                continue
+            on_i, on_j = min(max(on_i, 0.0), 1.0), min(max(on_j, 0.0), 1.0)
+            start = t[i] + on_i * (t[i + 1] - t[i])
+            end = t[j] + on_j * (t[j + 1] - t[j])
+            if end - start > longest:
+                continue
+            px, py = x[i] + on_i * ax, y[i] + on_i * ay
+            far, twice = 0.0, 0.0
+            for k in range(i + 1, j + 1):
+                ux, uy = x[k] - px, y[k] - py
+                far = max(far, ux * ux + uy * uy)
+                if k < j:
+                    twice += ux * (y[k + 1] - py) - uy * (x[k + 1] - px)
+            if far < excursion * excursion or 0.5 * abs(twice) < ROUNDNESS * far:
+                continue
+            if number < len(steps):
+                steps[number, 0], steps[number, 1] = i, j
+                before = np.arctan2(py, px)
+                turned, least, most = 0.0, 0.0, 0.0
+                lowest = highest = np.hypot(px, py)
+                for k in range(i + 1, j + 1):
+                    size, here = np.hypot(x[k], y[k]), np.arctan2(y[k], x[k])
+                    lowest, highest = min(lowest, size), max(highest, size)
+                    change = here - before
+                    turned += change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
+                    least, most, before = min(least, turned), max(most, turned), here
+                change = np.arctan2(py, px) - before
+                turned += change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
+                found = values[number]
+                found[0], found[1], found[2] = start, end, np.sqrt(far)
+                found[3], found[4], found[5] = 0.5 * twice, lowest, highest
+                found[6] = max(most, turned) - min(least, turned)
+                found[_AT_X], found[_AT_Y] = px, py
+            number += 1
+    return number
+
+
+def _innermost(start: Floats, end: Floats) -> Ints:
     """Those that contain no other, in order of start and end."""
-    kept: list[_Part] = []
-    for part in sorted(parts, key=lambda p: (-p.start, p.end)):
-        if not kept or part.end < kept[-1].end:
-            kept.append(part)
-    return kept[::-1]
+    order = np.lexsort((end, -start))
+    reached = np.minimum.accumulate(np.concatenate([[np.inf], end[order]]))
+    return np.asarray(order[end[order] < reached[:-1]][::-1])
 
 
 def _one_after_another(parts: list[_Part], touch: float) -> list[_Part]:
