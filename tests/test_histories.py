@@ -14,7 +14,7 @@ from fe_drivetrain.histories.levels import (
     time_at_level,
     torque_reversals,
 )
-from fe_drivetrain.histories.polar import direction, polar_density
+from fe_drivetrain.histories.polar import direction
 from fe_drivetrain.histories.spectra import alias, campbell, multiples, spectrum
 from fe_drivetrain.histories.windows import capture_matrix, window_statistics
 
@@ -118,11 +118,6 @@ def test_directions_are_seen_looking_downwind() -> None:
     assert np.degrees(direction([0.0], [-1.0])) == pytest.approx([270.0])
     assert np.degrees(direction([-1.0], [0.0])) == pytest.approx([0.0])
     assert np.degrees(direction([1.0], [0.0])) == pytest.approx([180.0])
-    found = polar_density([0.0, 0.0, -1.0], [-1.0, -1.0, 0.5], cells=4)
-    assert found.share.sum() == pytest.approx(1.0)
-    assert found.share[0, 2] == pytest.approx(2 / 3)  # down, at the middle
-    assert found.share[3, 3] == pytest.approx(1 / 3)  # up and right
-    assert polar_density([0.0], [0.0]).share.sum() == 1.0
 
 
 def test_sines_are_found_at_their_multiples_with_their_amplitudes() -> None:

@@ -63,6 +63,7 @@ def _planes(page: Page, found: Together) -> None:
             plane.middles(1) / 1e3,
             share.T,
             (f"right [{unit}]", f"up [{unit}]", "log10 of % of the time"),
+            xaxis={"constrain": "domain"},
             yaxis={"scaleanchor": "x"},
             height=560,
         )

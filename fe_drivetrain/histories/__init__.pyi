@@ -21,9 +21,7 @@ from .levels import even_levels as even_levels
 from .levels import revolutions_at_level as revolutions_at_level
 from .levels import time_at_level as time_at_level
 from .levels import torque_reversals as torque_reversals
-from .polar import Density as Density
 from .polar import direction as direction
-from .polar import polar_density as polar_density
 from .sets import Difference as Difference
 from .sets import differences as differences
 from .sites import MEAN_WIND as MEAN_WIND
