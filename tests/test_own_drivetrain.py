@@ -529,9 +529,12 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
     (tmp_path / "outputs").mkdir()
     write_outb(tmp_path / "outputs" / "run.outb", rotating_columns())
     commands = commands_of_the_readme()
-    assert [words[0] for words in commands] == ["new", "check", "study", "advise"] + 2 * ["export"]
+    assert [words[0] for words in commands] == [
+        *("new", "check", "study", "advise", "loads"),
+        *2 * ["export"],
+    ]
     for words in commands:
-        coarse = [] if words[0] == "new" else QUICK
+        coarse = [] if words[0] in ("new", "loads") else QUICK
         status, out, err = invoke(*words, *coarse)
         assert status == 0, (words, err)
         assert out
@@ -540,6 +543,7 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
             documented.write_text(example, "utf-8")
     for made in (
         "reports/check/mine/report.html",
+        "reports/loads/report.html",
         "reports/study/mine/reactions_run.csv",
         "reports/advise/mine/report.html",
         "mine.inp",

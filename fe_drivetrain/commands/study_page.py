@@ -99,7 +99,7 @@ def studied(
     with run.step("reactions of all load steps"):
         reactions(run, page, model, loads, levels, slopes)
     with run.step("beams against FE"):
-        level = errors(page, scene, levels, loads)
+        level = errors(page, scene, levels, loads, slopes)
         _series(page, scene, loads, levels)
     if scene.uncertainty:
         _uncertainty(run, page, scene, level, mean[:, 1])

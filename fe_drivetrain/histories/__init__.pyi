@@ -21,6 +21,11 @@ from .levels import even_levels as even_levels
 from .levels import revolutions_at_level as revolutions_at_level
 from .levels import time_at_level as time_at_level
 from .levels import torque_reversals as torque_reversals
+from .model_errors import Measured as Measured
+from .model_errors import damage_ratio as damage_ratio
+from .model_errors import good_enough_for as good_enough_for
+from .model_errors import measured as measured
+from .model_errors import model_errors as model_errors
 from .polar import direction as direction
 from .sets import Difference as Difference
 from .sets import differences as differences
