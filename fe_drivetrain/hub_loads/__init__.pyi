@@ -11,6 +11,9 @@ from .loops import Loops as Loops
 from .loops import find_loops as find_loops
 from .loops import loop_statistics as loop_statistics
 from .loops import time_on_loops as time_on_loops
+from .recorded import Recorded as Recorded
+from .recorded import read_recorded as read_recorded
+from .recorded import recorded_files as recorded_files
 from .surrogate import SHEARS as SHEARS
 from .surrogate import WIND_SPEEDS as WIND_SPEEDS
 from .surrogate import Condition as Condition
