@@ -25,6 +25,7 @@ from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.solid import Assembly
 from fe_drivetrain.solve.solvers import solve
 
 #: Of a raceway in the bore, over the pitch diameter: others are another bearing's.
@@ -97,6 +98,7 @@ def contact_compliance(
     contacts: Floats,
     fixed: str,
     method: str = "auto",
+    assembly: Assembly = assemble_unlocked,
 ) -> Floats:
     """Compliance of a part that stands on a fixed face, at contacts.
 
@@ -112,6 +114,8 @@ def contact_compliance(
         The face that does not move.
     method : str
         Solver, see `fe_drivetrain.solve.solvers.solve`.
+    assembly : Assembly
+        Of the stiffness.
 
     Returns
     -------
@@ -120,7 +124,7 @@ def contact_compliance(
     """
     n_dofs = len(contacts)
     cells = mesh.cells[mesh.part_cells(part)]
-    K = assemble_unlocked(mesh.points, cells, material.lame, n_dofs)
+    K = assembly(mesh.points, cells, material.lame, n_dofs)
     left_out = np.setdiff1d(np.arange(len(mesh.points)), cells)
     held = [
         constraints.fixed("fixed", mesh.face_nodes(fixed), n_dofs),
@@ -192,8 +196,9 @@ def contact_rows(mesh: Mesh, face: str, centre: float, bearing: Bearing) -> Floa
     at = facet_points(mesh.points, facets, _DEGREE)
     x, y, z = np.moveaxis(at.positions, -1, 0)
     psi, radius = np.arctan2(z, -y), np.hypot(y, z)
-    ends = mesh.points[np.unique(facets), 0]
-    low, high = ends.min(), ends.max()
+    on_face = mesh.points[np.unique(facets)]
+    low, high = on_face[:, 0].min(), on_face[:, 0].max()
+    bore = float(np.hypot(on_face[:, 1], on_face[:, 2]).max())
     loads: list[Floats] = []
     moments: list[Floats] = []
     for number, row in enumerate(bearing.rows, 1):
@@ -201,7 +206,6 @@ def contact_rows(mesh: Mesh, face: str, centre: float, bearing: Bearing) -> Floa
             raise InputError(f"row {number} of {bearing.name} has balls: give rows of rollers")
         sin, cos = np.sin(row.angle), np.cos(row.angle)
         # where the contact line of a roller meets the bore
-        bore = float(radius.max())
         if not row.radius < bore < LARGEST_BORE * row.radius:
             raise InputError(
                 f"{bearing.name} has a pitch diameter of {2e3 * row.radius:g} mm, but the bore of "
