@@ -43,7 +43,7 @@ LOADS = {
     "moment about z": (0.0, 0.0, 0.0, 0.0, 8e5),
     "combined": (2e5, 0.0, -4e5, 8e5, 0.0),
 }
-SHOWN = ("radial, down", "radial, up", "moment about y", "combined")
+SHOWN = ("radial, down", "radial, up", "radial, sideways", "moment about y", "combined")
 CHANGE = "flexible over rigid [%]"
 
 #: Scenes, bearing and catalogue entry of spherical and toroidal bearings that fill their bore.

@@ -132,8 +132,8 @@ class RacesEquilibrium:
         (n, 5) on the inner ring [N, N m], and its motions [m, rad].
     rollers, moments : Floats
         (n, total) load of each roller [N], and its moment about the roller's middle [N m].
-    recession : Floats
-        (n, 2 total) of the races at each roller [m], then their lean [rad].
+    shapes, amplitudes : Floats
+        (2 total, k) shapes of the races that were taken, and (n, k) how much of each [m].
     residuals : Floats
         (n,) what is left of the balance, over what `converged` allows.
     converged : Bools
@@ -147,11 +147,17 @@ class RacesEquilibrium:
     displacements: Floats
     rollers: Floats
     moments: Floats
-    recession: Floats
+    shapes: Floats
+    amplitudes: Floats
     residuals: Floats
     converged: Bools
     iterations: Ints
     evaluations: Ints
+
+    @property
+    def recession(self) -> Floats:
+        """(n, 2 total) of the races at each roller [m], then their lean [rad]."""
+        return np.asarray(self.amplitudes @ self.shapes.T)
 
     @property
     def unbalanced(self) -> Floats:
@@ -264,7 +270,8 @@ def equilibrium_on_races(
         found.unknowns[:, :m] @ B.T,
         found.rollers,
         found.moments,
-        found.unknowns[:, m:] @ G.T,
+        G,
+        found.unknowns[:, m:],
         found.residuals,
         found.residuals <= 1.0,
         found.steps,
