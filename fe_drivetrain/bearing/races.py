@@ -111,7 +111,7 @@ class Races:
         values, vectors = np.linalg.eigh(self._scaled)
         values, vectors = values[::-1], vectors[:, ::-1]
         if count is None:
-            count = int((values > SOFTEST_LEFT_OUT * _contact_softness(self.bearing)).sum())
+            count = int((values > SOFTEST_LEFT_OUT * contact_softness(self.bearing)).sum())
         count = min(count, int((values > 0.0).sum()))
         return vectors[:, :count] / self.lengths[:, None], values[:count]
 
@@ -393,8 +393,19 @@ def _scales(bearing: Bearing, targets: Floats) -> Floats:
     return np.asarray(np.maximum(_deflections(bearing, targets), 1e-30) ** (row.law.exponent - 1.0))
 
 
-def _contact_softness(bearing: Bearing) -> float:
-    """Of the stiffest contact at a typical approach [m/N]."""
+def contact_softness(bearing: Bearing) -> float:
+    """Softness of the stiffest contact at a typical approach, with which races are compared.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+
+    Returns
+    -------
+    softness : float
+        [m/N].
+    """
     stiffest = max(
         r.law.stiffness * r.law.exponent * TYPICAL_APPROACH ** (r.law.exponent - 1.0)
         for r in bearing.rows
