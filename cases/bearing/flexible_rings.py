@@ -317,15 +317,15 @@ def _show(page: Page, housed: Housed, name: str) -> None:
     traces, first = [], 0
     for row, of in zip(bearing.rows, ("upwind", "downwind"), strict=True):
         psi, n = angles(row), len(angles(row))
-        for rings, loads, more in (
-            ("rigid rings", housed.rigid[k], {"line": {"dash": "dot"}}),
-            ("flexible housing", housed.flexible.rollers[k], {}),
+        for rings, loads, dash in (
+            ("rigid rings", housed.rigid[k], "dot"),
+            ("flexible housing", housed.flexible.rollers[k], "solid"),
         ):
             Q = loads[first : first + n] / 1e3
             if Q.max() > 0.0:
                 closed = np.r_[np.arange(n), 0]
                 right, up = (Q * np.cos(psi))[closed], (Q * np.sin(psi))[closed]
-                traces.append(trace(f"{of}, {rings}", right, up, **more))
+                traces.append(trace(f"{of}, {rings}", right, up, line={"dash": dash}))
         first += n
     page.add(
         _square(

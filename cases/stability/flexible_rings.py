@@ -163,7 +163,8 @@ def low(wall: float, count: int, n: int) -> Record:
 @lru_cache(maxsize=16)
 def _whole(wall: float, n: int) -> Floats:
     races = Races(bearing(), ring(wall))
-    return equilibrium_on_races(races, random_loads(n), shapes=ALL).rollers.max(axis=1)
+    found = equilibrium_on_races(races, random_loads(n), shapes=ALL)
+    return np.asarray(found.rollers.max(axis=1))
 
 
 def _error(wall: float, compliance: Floats, count: int, n: int) -> Record:
