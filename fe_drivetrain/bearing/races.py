@@ -79,19 +79,9 @@ class Races:
             )
 
     @property
-    def lengths(self) -> Floats:
-        """(2 total,) what makes recessions of leans: the root mean square place on a roller [m]."""
-        rows = self.bearing.rows
-        along = [
-            np.full(n, row.length / np.sqrt(12.0))
-            for n, row in zip(self.bearing.counts, rows, strict=True)
-            if isinstance(row, RollerRow)
-        ]
-        return np.concatenate([np.ones(sum(self.bearing.counts)), *along])
-
-    @property
     def _scaled(self) -> Floats:
-        return _symmetric(self.compliance * np.outer(self.lengths, self.lengths))
+        lengths = roller_lengths(self.bearing)
+        return _symmetric(self.compliance * np.outer(lengths, lengths))
 
     def shapes(self, count: int | None = None) -> tuple[Floats, Floats]:
         """The softest shapes of the races, orthogonal to each other.
@@ -113,7 +103,7 @@ class Races:
         if count is None:
             count = int((values > SOFTEST_LEFT_OUT * contact_softness(self.bearing)).sum())
         count = min(count, int((values > 0.0).sum()))
-        return vectors[:, :count] / self.lengths[:, None], values[:count]
+        return vectors[:, :count] / roller_lengths(self.bearing)[:, None], values[:count]
 
     def stiffened(self, factor: float) -> Races:
         """Races of a modulus that is larger by a factor."""
@@ -181,6 +171,27 @@ def rigid_races(bearing: Bearing) -> Races:
     """
     size = 2 * sum(bearing.counts)
     return Races(bearing, np.zeros((size, size)))
+
+
+def roller_lengths(bearing: Bearing) -> Floats:
+    """What makes recessions of leans: the root mean square place on each roller.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Of rows of rollers.
+
+    Returns
+    -------
+    lengths : Floats
+        (2 total,) 1 for each roller, then these [m].
+    """
+    along = [
+        np.full(n, row.length / np.sqrt(12.0))
+        for n, row in zip(bearing.counts, bearing.rows, strict=True)
+        if isinstance(row, RollerRow)
+    ]
+    return np.concatenate([np.ones(sum(bearing.counts)), *along])
 
 
 def roller_motions(bearing: Bearing) -> tuple[Floats, Floats]:
@@ -255,14 +266,10 @@ def equilibrium_on_races(
     G, compliances = races.shapes(shapes)
     body = _body(bearing, B, G, compliances)
     targets = np.hstack([F @ B, np.zeros((len(F), len(compliances)))])
-    found = _run(body, bearing, targets, tolerance, warm=warm, damped=damped)
-    lost = np.flatnonzero(found.residuals > 1.0)
-    if damped and len(lost):
-        again = _continued(body, bearing, targets[lost], tolerance)
-        for whole, part in zip(found, again, strict=True):
-            whole[lost] = part
-        still = np.flatnonzero(found.residuals > 1.0)
-        refuse_lifted(bearing, F[still], still)
+    found = solve_on_body(body, bearing, targets, tolerance, warm=warm, damped=damped)
+    if damped:
+        lost = np.flatnonzero(found.residuals > 1.0)
+        refuse_lifted(bearing, F[lost], lost)
     m = B.shape[1]
     return RacesEquilibrium(
         races,
@@ -279,7 +286,9 @@ def equilibrium_on_races(
     )
 
 
-class _Found(NamedTuple):
+class Solved(NamedTuple):
+    """What the compiled loops have found, see `race_newton.solve_cases`."""
+
     unknowns: Floats
     rollers: Floats
     moments: Floats
@@ -298,14 +307,71 @@ def _body(bearing: Bearing, B: Floats, shapes: Floats, compliances: Floats) -> r
     leans = np.where(aligning[:, None], 0.0, -shapes[total:])
     P = np.ascontiguousarray(np.hstack([approach @ B, -shapes[:total]]))
     C = np.ascontiguousarray(np.hstack([lean @ B, leans]))
-    k = np.repeat([r.law.stiffness * r.law.exponent for r in bearing.rows], bearing.counts)
-    k_lean = k * np.repeat([_length(r) ** 2 / 12.0 for r in bearing.rows], bearing.counts)
     return race_newton.Body(
         P,
         C,
         np.concatenate([np.zeros(B.shape[1]), 1.0 / compliances]),
-        P.T @ (k[:, None] * P) + C.T @ (k_lean[:, None] * C),
+        soft_springs(bearing, P, C),
     )
+
+
+def soft_springs(bearing: Bearing, approach: Floats, lean: Floats) -> Floats:
+    """Stiffness of all rollers as springs of K n, over unknowns.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Of rows of rollers.
+    approach, lean : Floats
+        (total, m) of each roller for a unit of each unknown.
+
+    Returns
+    -------
+    stiffness : Floats
+        (m, m) for an approach of 1 m.
+    """
+    k = np.repeat([r.law.stiffness * r.law.exponent for r in bearing.rows], bearing.counts)
+    turning = k * np.repeat([_length(r) ** 2 / 12.0 for r in bearing.rows], bearing.counts)
+    return np.asarray(approach.T @ (k[:, None] * approach) + lean.T @ (turning[:, None] * lean))
+
+
+def solve_on_body(
+    body: race_newton.Body,
+    bearing: Bearing,
+    targets: Floats,
+    tolerance: float = TOLERANCE,
+    *,
+    warm: bool = True,
+    damped: bool = True,
+) -> Solved:
+    """Rollers on any body that is linear but for them.
+
+    Parameters
+    ----------
+    body : Body
+        What the rollers touch.
+    bearing : Bearing
+        All rows of rollers.
+    targets : Floats
+        (n, m) loads on the unknowns [N].
+    tolerance : float
+        Largest residual over the load.
+    warm, damped : bool
+        As for `equilibrium_on_races`.
+
+    Returns
+    -------
+    found : Solved
+        Unknowns, rollers and residuals of each case; what does not converge is followed down from
+        larger loads, and has a residual above 1 if that fails.
+    """
+    found = _run(body, bearing, targets, tolerance, warm=warm, damped=damped)
+    lost = np.flatnonzero(found.residuals > 1.0)
+    if damped and len(lost):
+        again = _continued(body, bearing, targets[lost], tolerance)
+        for whole, part in zip(found, again, strict=True):
+            whole[lost] = part
+    return found
 
 
 def _run(
@@ -317,12 +383,12 @@ def _run(
     warm: bool,
     damped: bool,
     start: Floats | None = None,
-) -> _Found:
+) -> Solved:
     """The compiled Newton method over chunks of cases, in threads."""
     n, total = len(targets), sum(bearing.counts)
     # under the load of a preload alone rollers are no springs: start where the rings are concentric
     given = start is not None or all(r.clearance < 0.0 for r in bearing.rows)
-    found = _Found(
+    found = Solved(
         np.zeros(targets.shape) if start is None else start.copy(),
         np.empty((n, total)),
         np.empty((n, total)),
@@ -357,7 +423,7 @@ def _run(
 
 def _continued(
     body: race_newton.Body, bearing: Bearing, targets: Floats, tolerance: float
-) -> _Found:
+) -> Solved:
     """Down from larger loads, as of rigid rings: a clearance is small under them."""
     free = max(max(abs(r.clearance) for r in bearing.rows), 1e-6)
     exponent = max(r.law.exponent for r in bearing.rows)

@@ -1,3 +1,7 @@
+from .assembly import AssemblyEquilibrium as AssemblyEquilibrium
+from .assembly import RollerAssembly as RollerAssembly
+from .assembly import assembly_equilibrium as assembly_equilibrium
+from .assembly import roller_assembly as roller_assembly
 from .housing import HousingSolid as HousingSolid
 from .housing import contact_compliance as contact_compliance
 from .housing import contact_rows as contact_rows
