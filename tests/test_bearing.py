@@ -550,9 +550,22 @@ def test_a_moment_that_arms_of_zero_cannot_carry_is_refused() -> None:
 @pytest.mark.parametrize("exponent", [0.0, 0.1, 1 / 9, 0.5, 1.0])
 def test_powers_from_a_table_are_those_of_the_library(exponent: float) -> None:
     x = 10.0 ** np.random.default_rng(3).uniform(-30, 3, 2000)
-    spoilt, found = x.copy(), np.empty_like(x)
-    kernels.powers(spoilt, spoilt.view(np.int64), len(x), kernels.power_table(exponent), found)
-    assert_allclose(found, x**exponent, rtol=2e-15)
+    table = kernels.power_table(exponent)
+    assert_allclose([kernels.power(value, table) for value in x], x**exponent, rtol=2e-15)
+    assert kernels.power(0.0, table) == 0.0
+
+
+@pytest.mark.parametrize("count", [11, 30, 64, 0])
+def test_gauss_s_rule_stands_for_the_sum_over_laminae(count: int) -> None:
+    x, share = kernels.gauss_of_laminae(count)
+    places = (np.arange(count or 10**6) + 0.5) / (count or 10**6) - 0.5
+    assert_allclose(share.sum(), 1.0, rtol=1e-14)
+    for degree in range(2 * kernels.NODES):
+        exact = 0.0 if degree % 2 else np.mean(places**degree)
+        assert_allclose((share * x**degree).sum(), exact, rtol=1e-10, atol=1e-15)
+    for power in (0.1, 1.1, 1 / 9, 0.5):  # the steepest approach that it is used for
+        exact = np.mean((1.0 + places) ** power)
+        assert_allclose((share * (1.0 + x) ** power).sum(), exact, rtol=1e-12)
 
 
 def test_a_table_of_reduced_loads_interpolates_equilibrium() -> None:
