@@ -9,11 +9,14 @@ from numpy.testing import assert_allclose
 from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.answers import (
     approaches,
+    ball_contacts,
     end_loads,
     lamina_loads,
     load_zones,
     pressures,
     secant_stiffness,
+    toroidal_clearance_loss,
+    truncations,
 )
 from fe_drivetrain.bearing.arrangements import (
     ball_row,
@@ -373,6 +376,40 @@ def test_a_crown_relieves_the_ends_of_a_tilted_roller() -> None:
     assert ends[1] < 0.9
     even = end_loads(S.rows[1], solved(S, (1e5, 0, 0, 0, 0)).displacements)
     assert_allclose(even, 1.0, rtol=1e-9)
+
+
+def test_a_ball_under_thrust_climbs_until_its_ellipse_is_cut_off() -> None:
+    row = ball_row(7, 0.0115, 0.0435, radial_clearance=1e-5)
+    bearing = Bearing("ball", (row,))
+    u = solved(bearing, *[(F, 0, 0, 0, 0) for F in np.linspace(50.0, 6000.0, 60)]).displacements
+    inner, outer = truncations(row, u, (0.1, 0.1))
+    assert inner[0].max() == outer[0].max() == 0.0
+    assert (np.diff(inner.max(axis=1)) >= 0.0).all()
+    assert 0.05 < inner.max() < 0.5
+    assert_allclose(inner, inner[:, :1] @ np.ones((1, 7)), rtol=1e-9)
+    # where it begins, contact angle and half the ellipse reach the shoulder together
+    first = int(np.argmax(inner[:, 0] > 0.0))
+    load, _, angle = elements(bearing, u[first - 1 : first + 1])
+    half = ball_contacts(row)[0].half_axes[0] * np.cbrt(load[:, 0]) / (0.5 * row.diameter)
+    before, after = angle[:, 0] + half - np.arccos(1.0 - 0.1 * 0.0115 / row.inner_groove)
+    assert before < 0.02
+    assert after > -0.02
+    assert not truncations(row, np.zeros(5))[0].any()
+    assert not truncations(row, u, (0.45, 0.45))[0].any()
+    with pytest.raises(InputError, match="outer shoulder"):
+        truncations(row, u, (0.2, 0.6))
+
+
+def test_a_toroidal_bearing_loses_clearance_as_two_arcs_do() -> None:
+    """Profiles of races and rollers as circles: centres apart by B / k_2 leave this gap."""
+    width, factor = 0.104, 0.096
+    apart = width / factor
+    s = np.array([0.0, 1e-3, -6.5e-3, 12.7e-3])
+    gap = np.hypot(apart, s) - apart  # of one side, diametral is twice it
+    lost = toroidal_clearance_loss(width, s, factor)
+    assert_allclose(lost, 2.0 * gap, rtol=1e-4)
+    with pytest.raises(InputError, match="width"):
+        toroidal_clearance_loss(0.0, 1e-3)
 
 
 # contact laws
