@@ -125,6 +125,24 @@ def test_a_stopped_run_goes_on(
     assert (status, read[3:]) == (0, ["a.csv", "b.csv"])
 
 
+def test_another_set_is_compared_by_wind(invoke: Callable[..., Result], histories: Path) -> None:
+    others = histories.parent / "others"
+    others.mkdir()
+    command = ("loads", str(histories), "--out", "out", *COLUMNS, "--against", str(others))
+    write_history(others / "c.csv", 70.1, 0.1, 8.0)
+    status, _, err = invoke(*command)
+    assert status == 2
+    assert "three or more together" in err
+    write_history(others / "d.csv", 65.1, 0.1, 8.0)
+    status, printed, _ = invoke(*command)
+    assert status == 0
+    assert "8 m/s:" in printed
+    rows = rows_of(histories.parent / "out" / "beside.csv")
+    assert {row["wind"] for row in rows} == {"8 m/s"}
+    (torque,) = [row for row in rows if row["quantity"] == "Mx, largest [kN m]"]
+    assert float(torque["these files"]) == pytest.approx(float(torque["the others"]))
+
+
 def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:
     options = Options({}, 0.0, (3.0,), "half", 0.0, 1.5)
     walk = 1e5 * rng.standard_normal((2400, 6)).cumsum(axis=0)

@@ -35,14 +35,7 @@ def run(run: Run, page: Page) -> None:
     for size in sizes:
         load, other = noise(size, 1), noise(size, 2)
         at = np.arange(size) * STEP
-        tasks: dict[str, Callable[[], Any]] = {
-            "statistics of windows": lambda t=at, x=load: window_statistics(t, x[:, None]),
-            "time at level": lambda x=load: time_at_level(x, STEP, even_levels(x.min(), x.max())),
-            "spectrum": lambda x=load: spectrum(x, STEP),
-            "rainflow": lambda x=load: rainflow_cycles(x),
-            "load loops": lambda t=at, x=load, y=other: find_loops(t, x, y),
-            **peers(load),
-        }
+        tasks = steps(at, load, other) | peers(load)
         for name, task in tasks.items():
             if name == "load loops" and size > SIZES[1]:
                 continue
@@ -79,6 +72,18 @@ def run(run: Run, page: Page) -> None:
         source="what a user with a thousand files waits for",
         measure=None,
     )
+
+
+def steps(at: Floats, load: Floats, other: Floats) -> dict[str, Callable[[], Any]]:
+    """What `loads` does with each channel, or each pair of them."""
+    levels = even_levels(load.min(), load.max())
+    return {
+        "statistics of windows": lambda: window_statistics(at, load[:, None]),
+        "time at level": lambda: time_at_level(load, STEP, levels),
+        "spectrum": lambda: spectrum(load, STEP),
+        "rainflow": lambda: rainflow_cycles(load),
+        "load loops": lambda: find_loops(at, load, other),
+    }
 
 
 def noise(size: int, seed: int) -> Floats:

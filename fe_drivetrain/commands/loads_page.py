@@ -26,8 +26,8 @@ from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
 
-WIND_BIN, TURBULENCE_BIN = 2.0, 0.02
-"""Widths of the capture matrix [m/s, share]: columns about 4, 6, ... 24 m/s."""
+WIND_BIN, TURBULENCE_BIN = 1.0, 0.02
+"""Widths of the capture matrix [m/s, share]: columns about whole numbers of m/s."""
 
 _SHOWN = 20
 _SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN\u00a0m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}

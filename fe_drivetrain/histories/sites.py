@@ -71,7 +71,7 @@ class Site:
         ndarray, (n,)
             Their sum is below 1: calm and storm are outside.
         """
-        return np.diff(self.below(edges))
+        return np.asarray(np.diff(self.below(edges)))
 
     def hours(self, edges: ArrayLike) -> Floats:
         """Hours of the lifetime in each bin: (n,); see `shares`."""
