@@ -77,9 +77,9 @@ def test_what_else_a_scene_may_have_is_valid_once_its_comment_sign_is_gone(name:
     more = re.sub("^# ?", "", rest.partition("\n")[2], flags=re.MULTILINE)
     scene = parse_scene(text + more)
     assert faults(text + more) == []
-    assert without(scene, "materials", "mesh", "uncertainty") == without(
-        parse_scene(text), "materials", "mesh", "uncertainty"
-    )
+    shown = ("load_points", "materials", "mesh", "uncertainty")
+    assert without(scene, *shown) == without(parse_scene(text), *shown)
+    assert [point.name for point in scene.load_points] == ["brake"]
     assert scene.uncertainty["shaft.sections.0.outer_diameter"].uniform == 0.001
     assert scene.hub.coupling == "averaged"
     if "mesh" in more:

@@ -233,6 +233,16 @@ def test_figures_need_no_webgl_and_no_finite_numbers(tmp_path: Path) -> None:
     assert trace == {"type": "scatter", "y": [1.0, None, None]}
 
 
+def test_more_traces_than_colours_are_told_apart_by_their_lines(tmp_path: Path) -> None:
+    traces = [{"type": "scatter", "name": str(k), "x": [0], "y": [k]} for k in range(9)]
+    section = Section(title="s", items=[Chart(caption="c", figure={"data": traces})])
+    page = Page(page_of(tmp_path, results(sections=[section])))
+    ((_, text),) = [s for s in page.scripts if s[0].get("type") == "application/json"]
+    drawn = json.loads(text)["data"]
+    assert all("line" not in trace for trace in drawn[:7])
+    assert [trace["line"]["dash"] for trace in drawn[7:]] == ["dash", "dash"]
+
+
 def test_the_policy_allows_the_scripts_of_the_page_and_nothing_else(tmp_path: Path) -> None:
     page = Page(page_of(tmp_path, results(HOSTILE)))
     (policy,) = [m["content"] for m in page.all("meta") if "http-equiv" in m]

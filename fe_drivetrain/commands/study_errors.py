@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
@@ -59,7 +59,7 @@ def errors(
     """
     page.section("Beams against FE")
     others = list(levels.models)[:-1]
-    hub = np.concatenate([history.loads for history in loads.histories])
+    hub = np.concatenate([entering(scene, history) for history in loads.histories])
     weights = loads.weights
     weight, length = scene.gearbox.weight, scene.shaft.length
     absolute: list[Record] = []

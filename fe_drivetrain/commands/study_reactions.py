@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.compare.time_weighted import weighted_statistics
@@ -114,9 +114,10 @@ def _over_histories(
 ) -> Iterator[tuple[str, _Found]]:
     """All histories together, and then each."""
     weight = model.scene.gearbox.weight
+    driving = [entering(model.scene, history) for history in loads.histories]
 
     def of(level: LevelModel) -> list[Floats]:
-        return [reaction_history(level, name, h.loads, weight, GRAVITY) for h in loads.histories]
+        return [reaction_history(level, name, one, weight, GRAVITY) for one in driving]
 
     samples = of(levels.reference)
     coarse = None if levels.coarser is None else of(levels.coarser)
@@ -214,8 +215,9 @@ def _weights(model: Model) -> str:
         f"{part} {GRAVITY * float(mass.sum()) / 1e3:.4g} kN"
         for part, mass in model.part_mass.items()
     )
+    points = "".join(f", {p.name} {p.weight / 1e3:.4g} kN" for p in model.scene.load_points)
     return (
-        f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN; "
+        f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN{points}; "
         "that of the rotor as far as the hub loads have it"
     )
 
@@ -293,7 +295,11 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
         ]
         values = [
             reaction_history(
-                levels.reference, name, history.loads, model.scene.gearbox.weight, GRAVITY
+                levels.reference,
+                name,
+                entering(model.scene, history),
+                model.scene.gearbox.weight,
+                GRAVITY,
             )
             for name in names
         ]

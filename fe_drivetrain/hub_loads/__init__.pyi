@@ -4,6 +4,7 @@ from .csv_table import write_csv as write_csv
 from .files import hub_load_files as hub_load_files
 from .files import read_hub_load_files as read_hub_load_files
 from .files import read_hub_loads as read_hub_loads
+from .files import require_points as require_points
 from .histories import UNITS as UNITS
 from .histories import LoadHistory as LoadHistory
 from .loops import Loops as Loops
