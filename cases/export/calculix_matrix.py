@@ -63,14 +63,12 @@ def run(run: Run, page: Page) -> None:
         )
         last = len(expected) - 4
         page.equals(
-            f"{label}: uz of its last point under a unit force there",
+            f"{label}: uz of its last point under a unit force there [m/N]",
             found[last, last],
             expected[last, last],
             within=1e-6,
             why="ccx prints seven digits",
             source="the inverse of the stiffness",
-            unit="m/N",
-            measure="deflection",
         )
         if element.mass is None:
             continue
@@ -79,15 +77,13 @@ def run(run: Run, page: Page) -> None:
         exact = frequencies(stiffness, element.mass[start:, start:], COUNT)
         for k in range(COUNT):
             page.equals(
-                f"{label}, held at its first point: natural frequency {k + 1}",
+                f"{label}, held at its first point: natural frequency {k + 1} [Hz]",
                 computed[k],
                 exact[k],
                 within=1e-6,
                 why="ccx prints seven digits, of which its eigenvalue solver leaves the last "
                 "uncertain",
                 source="eigenvalues of stiffness and mass",
-                unit="Hz",
-                measure="frequency",
             )
     page.answer(
         "CalculiX moves under unit loads as the exported matrices say, to "

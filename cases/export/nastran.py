@@ -76,15 +76,13 @@ def run(run: Run, page: Page) -> None:
             computed, exact = (frequencies(m["stiffness"], m["mass"], 3) for m in (found, written))
             k = int(np.argmax(np.abs(computed / exact - 1.0)))
             page.equals(
-                f"{name}: natural frequency {k + 1} of the first three",
+                f"{name}: natural frequency {k + 1} of the first three [Hz]",
                 computed[k],
                 exact[k],
                 within=1e-6,
                 why="rounding by 1e-10, over the softest elastic motion's share in a unit "
                 "diagonal, which is above 1e-2",
                 source=WRITTEN,
-                unit="Hz",
-                measure="frequency",
             )
     worst_of = {name: max(column(of, DIFFERENCE)) for name, of in grouped(rows, "format")}
     page.answer(

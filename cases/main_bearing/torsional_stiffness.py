@@ -16,13 +16,12 @@ def check_energies(page: Page, free: Solved, series: bands.Series) -> None:
     for plane in PLANES:
         load = plane.moment
         page.equals(
-            f"{plane.name}: work of the hub moment against energy stored",
+            f"{plane.name}: work of the hub moment against energy stored [rad/(N m)]",
             sum(float(e[load, load]) for e in response.strain_energy.values()),
             float(response.motions["hub"][load, load]),
             within=1e-8,
             why="no spring and no constraint does work: solver accuracy",
             source="Clapeyron: U = M theta / 2",
-            unit="rad/(N m)",
             measure="energy",
             band=series.band(
                 lambda f, k=load: sum(

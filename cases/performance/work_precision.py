@@ -159,13 +159,12 @@ def check_growth(page: Page, grown: Sequence[Grown], judged: bool) -> None:
         )
     peak = max((g.peak_bytes for g in grown), default=0) or float("nan")
     page.at_most(
-        f"peak memory of the process at {largest:,} unknowns",
+        f"peak memory of the process at {largest:,} unknowns [GiB]",
         peak / 2**30,
         MEMORY_LIMIT,
         why="a million unknowns fit beside other programs in a computer of 16 GiB; interpreter and "
         "libraries included",
         source="goal of this project",
-        unit="GiB",
     )
 
 

@@ -179,10 +179,9 @@ def check(page: Page, found: Map, worst: float) -> None:
     )
     page.at_most(
         "rotation by a moment, beam and yielding plate in series: worst error of all flanges up "
-        f"to {PLATE:g} d thick",
+        f"to {PLATE:g} d thick [%]",
         np.abs(found.thin).max(),
         5.0,
-        unit="%",
         why="5 % is the second line of a map; one constant, from one flange, serves for all",
         source="Fourier harmonics in the meridian",
         measure="rotation",
@@ -211,11 +210,10 @@ def check_solid(run: Run, page: Page) -> None:
         estimate = recovery_estimate(mesh.points, bodies, found.u[:, 0]).relative
     exact = by_elements(t, SHOWN)
     page.equals(
-        f"flange {SHOWN:g} d, t = {t:g} d: rotation by a moment, {n:,} unknowns",
+        f"flange {SHOWN:g} d, t = {t:g} d: rotation by a moment, {n:,} unknowns [rad/(N m)]",
         found.u[n + 4, 0],
         exact,
         within=3 * estimate,
-        unit="rad/(N m)",
         why=f"three times the estimated error of the solid, {estimate:.1g}",
         source="Fourier harmonics in the meridian",
         measure="rotation",

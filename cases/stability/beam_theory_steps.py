@@ -175,25 +175,22 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
             bounds = torsion_bounds(shaft, maps.STEEL.shear_modulus, 0.12, 1 if run.quick else 4)
         k = 1 / maps.by_elements(shaft, ratio / 3)[3, 3]
         page.equals(
-            f"sharp step {ratio:g}, L = 2 d: torsional stiffness",
+            f"sharp step {ratio:g}, L = 2 d: torsional stiffness [N m/rad]",
             k,
             bounds.middle,
             within=bounds.half_width / bounds.middle + band,
-            unit="N m/rad",
             why=f"the truth lies between the bounds, and elements are too stiff by {band:.1g}",
             source="middle of two bounds by complementary energies (Michell 1899)",
-            measure="stiffness",
             band=band * k,
         )
     with run.step("Saint-Venant's ends"):
         direct = bent_by_tractions(AT, FILLETED)
     page.equals(
         f"sharp step {FILLETED:g}, L = {AT:g} d: rotation by a moment, ends taken out by those of "
-        "uniform shafts",
+        "uniform shafts [rad/(N m)]",
         sharp[OF["bending"]],
         direct,
         within=2e-4,
-        unit="rad/(N m)",
         why="what an end and the step feel of each other across the shorter half, 1 diameter of "
         "it: e^-5 (cylinder's slowest mode of bending) of an end's 1 %",
         source="the same shaft with linear tractions on both ends, which disturb nothing",
@@ -204,10 +201,9 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
     for name, percent in found.corrected.items():
         page.at_most(
             f"{name}: beam with the step's extra length, worst error of all steps where both "
-            "halves are as long as they are wide",
+            "halves are as long as they are wide [%]",
             np.abs(percent[usable]).max(),
             1.0,
-            unit="%",
             why="1 % is the first line of a map; Saint-Venant's principle keeps the step's field "
             "apart from the ends' a diameter away",
             source="Fourier harmonics in the meridian",
@@ -215,10 +211,10 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
             band=100 * band,
         )
     page.at_least(
-        "torsion: extra length of the largest step, against that of a rigid disc on a half-space",
+        "torsion: extra length of the largest step, against that of a rigid disc on a half-space "
+        "[d]",
         found.extra["torsion"][-1],
         3 * np.pi / 64 * (1 - found.ratios[-1] ** -3),
-        unit="d",
         why="a rigid disc on a half-space is stiffer than a shaft of any softness grown on to it",
         source="Reissner and Sagoci 1944, J. Appl. Phys. 15, 652-654: M = 16/3 G a^3 phi, so G J / "
         "M phi is 3 pi / 64 d; less what the half-space has beyond the larger shaft, which goes as "

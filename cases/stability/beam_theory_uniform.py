@@ -172,15 +172,13 @@ def check(run: Run, page: Page, found: Map, band: float) -> None:
             tip, rough = flexure_tip(tube, 6), flexure_tip(tube, 4)
         page.equals(
             f"bore {bore:g} D, L = D, loads as Saint-Venant has them: mean deflection of the tip "
-            "from the mean slope at the root",
+            "from the mean slope at the root [m/N]",
             tip,
             tube.length**3 / (3 * tube.EI) + tube.length / tube.kGA,
             within=1e-6,
-            unit="m/N",
             why="the field is a cubic, or with a bore smooth enough that sixth order has it to "
             "rounding",
             source="L^3 / 3EI + L / kGA, k of Cowper 1966, J. Appl. Mech. 33, 335-340",
-            measure="deflection",
             band=abs(tip - rough),
         )
     # longer than 3 D the fields of the two ends do not overlap
@@ -203,10 +201,9 @@ def check(run: Run, page: Page, found: Map, band: float) -> None:
     usable = found.lengths >= SHORTEST
     for name, percent in found.corrected.items():
         page.at_most(
-            f"{name}: beam corrected by its ends, worst error from L = {SHORTEST:g} D on",
+            f"{name}: beam corrected by its ends, worst error from L = {SHORTEST:g} D on [%]",
             np.abs(percent[:, usable]).max(),
             1.0,
-            unit="%",
             why="1 % is the first line of a map; the ends' fields overlap by e^-2.6 or so at "
             "L = D, of an end's share of ten percent",
             source="Fourier harmonics in the meridian",

@@ -96,10 +96,10 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
             band=band,
         )
         page.vanishes(
-            f"{joint} joint, {motion}: digits lost, less those that the program names, mean",
+            f"{joint} joint, {motion}: digits lost, less those that the program names, mean "
+            "[digits]",
             lost.mean(),
             within=2.0,
-            unit="digits",
             why="an estimate of round-off without constants: the two digits that the threshold of "
             "the warning has to spare",
             source="2e-16 over the ratio that the warning gives",

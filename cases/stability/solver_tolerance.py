@@ -130,10 +130,9 @@ def check_estimate(page: Page, name: str, steps: solver_steps.Steps) -> None:
     usable = (steps.energy_error > 1e-8) & (steps.estimate > 0)
     effectivity = steps.estimate[usable] / steps.energy_error[usable]
     page.vanishes(
-        f"{name}: estimated over true energy error, the least",
+        f"{name}: estimated over true energy error, the least [decades]",
         float(np.log10(effectivity.min())),
         within=0.5,
-        unit="decades",
         why="half a decade: the estimate is of use where the tolerance is known to that",
         source="true energy error, from the direct solution",
     )

@@ -168,15 +168,13 @@ def check_free(page: Page, name: str, tube: Tube, found: Pulled) -> None:
     """Stiffness, displacements and stress under uniform traction."""
     shortfall = 2 * parabola_shortfall(found.per_turn)
     page.equals(
-        f"{name}: axial stiffness",
+        f"{name}: axial stiffness [N/m]",
         found.stiffness.finest,
         tube.EA / tube.length,
         within=2 * shortfall,
         why=f"{found.per_turn} parabolic arcs round a turn: the area is {shortfall:.2g} too small "
         "by their formula; twice that is allowed",
         source="closed form E A / L",
-        unit="N/m",
-        measure="stiffness",
         band=found.stiffness.uncertainty,
     )
     page.vanishes(
@@ -217,7 +215,7 @@ def check_held(
     before, last = held[-2:]
     page.equals(
         f"{name}: length that held ends take off, L = {last[RATIO]:g} D against {before[RATIO]:g} "
-        "D",
+        "D [diameters]",
         last[SHORTER],
         before[SHORTER],
         within=1e-3,
@@ -227,6 +225,5 @@ def check_held(
         "2 (1 - nu) J1^2: 2e-5 over two diameters; and the meridian's own error at held edges",
         source="Saint-Venant's principle: the ends' disturbance dies out within a few diameters, "
         "and is then the same whatever the length",
-        unit="diameters",
         measure="deflection",
     )

@@ -214,15 +214,13 @@ def check_flexure(page: Page, name: str, tube: Tube, meshes: list[Bent]) -> Reco
     ratio = tube.inner / tube.outer
     cowper = float(cowper_shear_coefficient(STEEL.poisson_ratio, ratio))
     page.equals(
-        f"{name}: mean deflection of the tip from the tangent at the root",
+        f"{name}: mean deflection of the tip from the tangent at the root [m]",
         best.tip,
         closed,
         within=2 * shortfall,
         why=f"{best.per_turn} parabolic arcs round a turn: I is {shortfall:.2g} too low by their "
         "formula; twice that is allowed",
         source="F L^3 / 3EI + F L / kGA, k of Cowper 1966",
-        unit="m",
-        measure="deflection",
         band=band,
     )
     page.equals(
@@ -289,7 +287,7 @@ def clamp(run: Run, page: Page, ratio: float, in_solids: bool) -> Record:
     turn = mesh.per_turn
     edge = solid_shafts.SLICE / turn * solid_shafts.BASE_TURN * 0.3
     page.equals(
-        f"clamped, L = {ratio:g} D: deflection of a rigid tip",
+        f"clamped, L = {ratio:g} D: deflection of a rigid tip [m/N]",
         by_mesh[-1],
         compliance,
         within=2 * 4 * parabola_shortfall(turn) + 0.2 * edge**1.4 / ratio,
@@ -297,8 +295,6 @@ def clamp(run: Run, page: Page, ratio: float, in_solids: bool) -> Record:
         f"exponent 0.71: what elements there miss goes as their size of {edge:.2g} radii to the "
         "power 1.4, in a part of the shaft as long as it is wide",
         source="Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)",
-        unit="m/N",
-        measure="deflection",
         band=solid_shafts.mesh_band((1, 2), by_mesh, 1.4),
     )
     return {**row, HEXAHEDRA: 100 * (1 - by_mesh[-1] / beam)}

@@ -48,13 +48,12 @@ def run(run: Run, page: Page) -> None:
             band=response.diagnostics.energy_error,
         )
         page.equals(
-            f"{kind}: energy stored under a working load, gravity and gearbox weight",
+            f"{kind}: energy stored under a working load, gravity and gearbox weight [J]",
             float(kept),
             float(done),
             within=1e-9,
             why="the energy error at which the solver stops",
             source="Clapeyron: half the work of the loads is stored",
-            unit="J",
             measure="energy",
             band=response.diagnostics.energy_error * float(done),
         )

@@ -44,7 +44,7 @@ def run(run: Run, page: Page) -> None:
         fitted = abs(solid_fillet.fitted_peak(angle, factor, DEGREE) - f.peak.factor)
         band = DOUBTFUL * abs(limit - values[-1]) + fitted
         page.equals(
-            f"K_t in {load}",
+            f"K_t in {load} [-]",
             values[-1],
             f.peak.factor,
             within=(band + f.band) / f.peak.factor,
@@ -52,7 +52,6 @@ def run(run: Run, page: Page) -> None:
             f"factor 3, and what a polynomial of degree {DEGREE} along the arc leaves out "
             f"({fitted:.1g})",
             source=f"the same shoulder in its meridian, fifth order (band {f.band:.1g})",
-            unit="-",
             measure="stress",
             band=band,
         )

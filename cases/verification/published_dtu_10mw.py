@@ -35,15 +35,13 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     with_shaft = rod_frequency(stiffness, own, rotor, generator)
     for name, computed in (("free-free", free), ("free-fixed", fixed)):
         page.equals(
-            f"{name} frequency, two masses",
+            f"{name} frequency, two masses [Hz]",
             computed,
             given[name.replace("-", "_")],
             within=0.0005,
             relative=False,
             why=DIGITS,
             source=sources["stiffness"],
-            unit="Hz",
-            measure="frequency",
         )
     check_free_free(page, by_eigenvalues, free)
     page.vanishes(
@@ -73,14 +71,12 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         unit="m^4",
     )
     page.equals(
-        f"finite elements, solid shaft of {shaft.outer:g} m",
+        f"finite elements, solid shaft of {shaft.outer:g} m [N m/rad]",
         shaft.found.stiffness,
         stiffness,
         within=shaft.found.tolerance + 0.5e-4 / polar,
         why=f"{shaft.found.per_turn} parabolic arcs round a turn, and {DIGITS} of K",
         source=sources["stiffness"],
-        unit="N m/rad",
-        measure="stiffness",
         band=shaft.found.band,
     )
     page.answer(

@@ -53,24 +53,22 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         unit="m^4",
     )
     page.equals(
-        "I_p that the OpenFAST figure needs over the section file's length",
+        "I_p that the OpenFAST figure needs over the section file's length [m^4]",
         published * section / G,
         4.5008,
         within=0.5e-4 / 4.5008,
         why=DIGITS,
         source="a list of reference values (second-hand: its own source was not read)",
-        unit="m^4",
         measure="stiffness",
         basis="second-hand",
     )
     page.equals(
-        "HAWC2 shaft as filed over the OpenFAST figure",
+        "HAWC2 shaft as filed over the OpenFAST figure [-]",
         ratio,
         (shaft.length / 3.0) * (body / section),
         within=0.5e-4 / polar + 1e-8,
         why=f"{DIGITS} of I_p",
         source="2.2 m over 3.0 m, times 6.130 m over 5.118 m",
-        unit="-",
         measure="stiffness",
     )
     page.answer(

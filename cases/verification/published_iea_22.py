@@ -30,35 +30,29 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     by_meridian = float(end_stiffness(tube, material_of(G))[9, 9])
     low, high = shaft.closed * USUAL_G / G
     page.equals(
-        "G J / L of the tube",
+        "G J / L of the tube [N m/rad]",
         shaft.closed,
         earlier,
         within=1e-9,
         why="the same formula with the same inputs, all digits given: round-off",
         source=sources["earlier"],
-        unit="N m/rad",
-        measure="stiffness",
     )
     check_torsion(page, "finite elements", found, earlier, sources["earlier"])
     page.equals(
-        "Fourier harmonics in the meridian",
+        "Fourier harmonics in the meridian [N m/rad]",
         by_meridian,
         shaft.closed,
         within=1e-8,
         why="the angle of twist is linear, which the elements hold exactly: round-off",
         source=CLOSED_FORM,
-        unit="N m/rad",
-        measure="stiffness",
     )
     page.equals(
-        "thin-walled formula 2 pi G r^3 t / L",
+        "thin-walled formula 2 pi G r^3 t / L [N m/rad]",
         thin,
         shaft.closed,
         within=(wall / radius) ** 2,
         why="it leaves out terms of the square of wall over radius",
         source=CLOSED_FORM,
-        unit="N m/rad",
-        measure="stiffness",
     )
     page.answer(
         f"DTTorSpr for the main shaft alone: {found.stiffness:.5g} N m/rad (numerical band "

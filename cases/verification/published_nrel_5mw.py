@@ -35,7 +35,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     length_needed = G * polar_moment(shaft.outer) / stiffness
     diameter_needed = solid_diameter(stiffness * length / G)
     page.equals(
-        "damping ratio of the free-free mode",
+        "damping ratio of the free-free mode [-]",
         float(given["damping"] / (2 * np.sqrt(stiffness * both))),
         0.05,
         within=0.0005,
@@ -43,7 +43,6 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         why="the published 5 % to two figures",
         source="Jonkman et al. 2009, NREL/TP-500-38060, section 5: stiffness and damping for 5 % "
         "(second-hand: the section itself was not read)",
-        unit="-",
         measure="frequency",
         basis="second-hand",
     )

@@ -141,13 +141,12 @@ def check(page: Page, form: str, model: Model, response: Response) -> Record:
     loaded = size > 1e-6
     distance = float((moment[loaded] / size[loaded]).max())
     page.vanishes(
-        f"{form}: moment about the joint's centre, largest of six unit hub loads",
+        f"{form}: moment about the joint's centre, largest of six unit hub loads [N m]",
         worst,
         within=1e-9,
         why="each form passes its forces on through the centre exactly: round-off of a direct "
         "solver, of nodal forces of some 1 N",
         source="a sphere without friction carries no moment",
-        unit="N m",
         band=0.0,
     )
     page.vanishes(

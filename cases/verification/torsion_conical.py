@@ -122,15 +122,13 @@ def run(run: Run, page: Page) -> None:
         page, "excess of the upper bound over 1 / integral of dx / GJ", bounds, simple
     )
     page.equals(
-        f"1 / integral of dx / GJ at a half angle of {HALF_ANGLE:g} degrees",
+        f"1 / integral of dx / GJ at a half angle of {HALF_ANGLE:g} degrees [N m/rad]",
         simple,
         bounds.middle,
         within=float(np.tan(np.radians(HALF_ANGLE)) ** 2) * 5 / 3,
         why="of a complete cone between spheres the integral is 5/3 a^2 too stiff to first order "
         "in the half angle a; flat rigid ends stiffen the cone, so it is less",
         source="between two bounds from the meridian",
-        unit="N m/rad",
-        measure="stiffness",
     )
     excess = 100 * (simple / bounds.middle - 1)
     page.answer(

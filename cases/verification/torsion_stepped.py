@@ -67,7 +67,7 @@ def bored_or_solid(run: Run, page: Page, bore: float) -> Record:
     size = LARGE / 2 / 2 / refinements[-1] * 0.3
     corner = 0.1 * (2 * size / SMALL) ** (4 / 3)
     page.equals(
-        f"{name}: torsional stiffness in three dimensions",
+        f"{name}: torsional stiffness in three dimensions [N m/rad]",
         found[-1],
         bounds.middle,
         within=shortfall + corner + bounds.half_width / bounds.middle,
@@ -76,8 +76,6 @@ def bored_or_solid(run: Run, page: Page, bore: float) -> Record:
         "over the radius to the power 4/3, of the tenth that the step adds at most; and the "
         "bounds' own width",
         source=BOUNDS,
-        unit="N m/rad",
-        measure="stiffness",
         band=band,
     )
     page.at_most(

@@ -115,15 +115,13 @@ def check(page: Page, series: list[Record]) -> None:
     page.finest(MeshSeries(series, TURN), target)
     by_torque, by_energy = best[STIFFNESS], best["by energy [N m/rad]"]
     page.equals(
-        f"{name}: torsional stiffness of the meshed section",
+        f"{name}: torsional stiffness of the meshed section [N m/rad]",
         by_torque,
         best[MESHED],
         within=parabola_slope(turn) ** 2,
         why="the exact displacement is one of the element's; the meshed surface leans against the "
         f"circle by at most {parabola_slope(turn):.2g} rad, and what that warps is of second order",
         source="G / L^2 times the integral of y^2 + z^2 over the mesh",
-        unit="N m/rad",
-        measure="stiffness",
         band=abs(by_torque - by_energy) + 1e-9 * best[MESHED],
     )
     page.vanishes(
@@ -145,14 +143,12 @@ def check(page: Page, series: list[Record]) -> None:
     )
     stress, coarser = (row["shear stress on the surface [Pa]"] for row in (best, before))
     page.equals(
-        f"{name}: shear stress on the surface at mid length, mean round the turn",
+        f"{name}: shear stress on the surface at mid length, mean round the turn [Pa]",
         stress,
         STEEL.shear_modulus * ANGLE * OUTER / 2 / LENGTH,
         within=recovery_error(turn),
         why="stress is recovered linearly in each element: h^2 / 12 for the arc h of an element, "
         "and as much for the radius",
         source="G theta R / L",
-        unit="Pa",
-        measure="stress",
         band=abs(stress - coarser),
     )

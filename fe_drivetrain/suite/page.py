@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -22,59 +22,15 @@ from fe_drivetrain.report.results import (
     Verdict,
     judge,
 )
-from fe_drivetrain.suite.records import MeshSeries, Record, column, grouped
-
-UNITS_OF: Mapping[str, Measure] = {
-    "MPa": "stress",
-    "psi": "stress",
-    "m": "deflection",
-    "mm": "deflection",
-    "µm": "deflection",
-    "mrad": "rotation",
-    "rad": "rotation",
-    "N": "reaction",
-    "MN": "reaction",
-    "J/m": "energy",
-    "N/m": "stiffness",
-    "N m/rad": "stiffness",
-    "N m^2": "stiffness",
-    "kg": "mass",
-}
-"""Kind of quantity, for bias and scatter over all cases, of units that have but one."""
-
-
-class Target(NamedTuple):
-    """What a benchmark asks for; see `Page.equals`.
-
-    Attributes
-    ----------
-    key : str
-        The quantity with its unit: "deflection [mm]"; in the record of a mesh its key.
-    value : float
-        What it should be.
-    within : float
-        Allowed difference, relative to the value.
-    why, source : str
-        Why the tolerance is what it is, and where the value comes from.
-    name : str
-        What was computed, where the key does not state it alone.
-    relative : bool
-        False where `within` is in the unit.
-    measure : str or None
-        Kind of quantity; that of the unit where left out.
-    order : float or None
-        Expected order of convergence.
-    """
-
-    key: str
-    value: float
-    within: float
-    why: str
-    source: str
-    name: str = ""
-    relative: bool = True
-    measure: Measure | None = None
-    order: float | None = None
+from fe_drivetrain.suite.records import (
+    MeshSeries,
+    Record,
+    as_json,
+    column,
+    grouped,
+    plain_cells,
+)
+from fe_drivetrain.suite.targets import MEASURES, Target, split_unit
 
 
 class Page:
@@ -139,9 +95,9 @@ class Page:
         Parameters
         ----------
         quantity : str
-            What was computed.
+            What was computed, with its unit: "deflection [mm]"; a pure number has none.
         computed, reference : float
-            In `unit`.
+            In that unit.
         within : float
             Allowed difference, relative to the reference.
         why : str
@@ -149,11 +105,12 @@ class Page:
         source : str
             Where the reference comes from.
         unit : str
-            Of both; empty for a pure number.
+            Of both, where the quantity is stated without it.
         relative : bool
             False where `within` is in the unit.
         measure : str, optional
-            Kind of quantity, for bias and scatter over all cases.
+            Kind of quantity, for bias and scatter over all cases; that of the unit in brackets
+            where left out.
         basis : str
             "self-consistency" of what is true by construction, "second-hand" of a source that was
             not read itself: both are shown as such, and stay out of bias and scatter.
@@ -220,7 +177,7 @@ class Page:
 
     def meets(self, computed: float, target: Target, band: float | None = None) -> None:
         """The computed value meets a target; `band` as for `equals`."""
-        quantity, _, unit = target.key.removesuffix("]").partition(" [")
+        quantity, unit = split_unit(target.key)
         self.equals(
             target.name or quantity,
             computed,
@@ -230,7 +187,7 @@ class Page:
             source=target.source,
             unit=unit,
             relative=target.relative,
-            measure=target.measure or UNITS_OF.get(unit),
+            measure=target.measure or MEASURES.get(unit),
             band=band,
         )
 
@@ -287,8 +244,13 @@ class Page:
         source: str,
         tolerance: float = 0.0,
         relative: bool = False,
+        unit: str = "",
+        measure: Measure | None = None,
         **more: Any,
     ) -> None:
+        if not unit:
+            quantity, unit = split_unit(quantity)
+            measure = measure or MEASURES.get(unit)
         self.verdicts.append(
             judge(
                 quantity,
@@ -299,6 +261,8 @@ class Page:
                 relative=relative,
                 reason=why,
                 source=source,
+                unit=unit,
+                measure=measure,
                 **more,
             )
         )
@@ -356,7 +320,9 @@ class Page:
             [row.get(name) for name in columns] if isinstance(row, Mapping) else list(row)
             for row in rows
         ]
-        self.add(Table(caption=caption, columns=list(columns), rows=[_plain(c) for c in cells]))
+        self.add(
+            Table(caption=caption, columns=list(columns), rows=[plain_cells(c) for c in cells])
+        )
 
     def image(self, caption: str, file: str) -> None:
         """Add a PNG of the run's folder."""
@@ -487,7 +453,7 @@ class Page:
 
     def data(self, name: str, value: Any) -> None:
         """Keep numbers for other programs in results.json, under a name with its unit."""
-        self.figures[name] = _as_json(value)
+        self.figures[name] = as_json(value)
 
     # the atlas, and what was assumed
 
@@ -520,17 +486,3 @@ class Page:
     def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
         """State a value that the sources do not give, and where it comes from."""
         self.assumptions.append(AssumptionRow(name=name, value=value, unit=unit, source=source))
-
-
-def _plain(cells: Sequence[Any]) -> list[Cell]:
-    """Cells without NumPy's scalars."""
-    return [cell.item() if hasattr(cell, "item") else cell for cell in cells]
-
-
-def _as_json(value: Any) -> Any:
-    """The same data without NumPy's arrays and scalars."""
-    if isinstance(value, Mapping):
-        return {str(key): _as_json(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_as_json(inner) for inner in value]
-    return value.tolist() if hasattr(value, "tolist") else value
