@@ -162,18 +162,19 @@ class Page:
             band=band,
         )
 
-    def finest(self, series: MeshSeries, target: Target) -> None:
-        """The finest of several meshes meets a target; the band of its value is that of them all.
+    def finest(self, series: MeshSeries, *targets: Target) -> None:
+        """The finest of several meshes meets targets; the band of each value is that of them all.
 
         Parameters
         ----------
         series : MeshSeries
             What each mesh gave.
-        target : Target
+        *targets : Target
             What the finest should give.
         """
-        value, band = series.rows[-1][target.key], series.band(target.key, target.order)
-        self.meets(value, target, band)
+        for target in targets:
+            value, band = series.rows[-1][target.key], series.band(target.key, target.order)
+            self.meets(value, target, band)
 
     def meets(self, computed: float, target: Target, band: float | None = None) -> None:
         """The computed value meets a target; `band` as for `equals`."""
@@ -390,8 +391,7 @@ class Page:
         heading : str
             Of the targets' column.
         """
-        for target in targets:
-            self.finest(series, target)
+        self.finest(series, *targets)
         rows = []
         for target in targets:
             unit = target.key.partition(" [")[2]
@@ -404,7 +404,7 @@ class Page:
         caption: str,
         rows: Sequence[Record],
         x: str,
-        y: str,
+        y: str | Mapping[str, str],
         *,
         by: str | None = None,
         log: str = "",
@@ -412,6 +412,7 @@ class Page:
         safe: tuple[float | None, float | None] | None = None,
         points: bool = False,
         table: Sequence[str] | bool = True,
+        axis: str = "",
     ) -> None:
         """One list of records, of which chart, table and data are made.
 
@@ -422,10 +423,12 @@ class Page:
         rows : sequence of dict
             One for each point, the same keys in each, with units in the keys; table and data take
             the keys of numbers and words, not of arrays.
-        x, y : str
-            Keys of the chart's axes.
+        x : str
+            Key of the horizontal axis.
+        y : str or dict
+            Key of the vertical axis; or of several curves the key of each, and its name.
         by : str, optional
-            Key that tells the curves apart.
+            Key that tells the curves apart; of several `y` each has its own for every value.
         log : str
             Which axes are logarithmic: "", "x", "y" or "xy".
         reference : dict, optional
@@ -436,16 +439,24 @@ class Page:
             Points without lines.
         table : bool or sequence of str
             Whether there is a table, or which keys it shows.
+        axis : str
+            Title of the vertical axis, with its unit, where `y` names several curves.
         """
         mode = "markers" if points else "lines+markers"
-        curves = grouped(rows, by) if by else [(y, rows)]
-        traces = [trace(str(name), column(of, x), column(of, y), mode=mode) for name, of in curves]
+        keys = {y: ""} if isinstance(y, str) else y
+        traces = []
+        for group, of in grouped(rows, by) if by else [("", rows)]:
+            for key, name in keys.items():
+                # a record without that value has no point
+                at = [row for row in of if row[key] is not None]
+                title = ", ".join(str(part) for part in (group, name) if part != "") or key
+                traces.append(trace(title, column(at, x), column(at, key), mode=mode))
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
             trace(name, ends, [value, value], line={"dash": "dot"})
             for name, value in (reference or {}).items()
         ]
-        self.chart(caption, traces, x, y, tuple(log), safe)
+        self.chart(caption, traces, x, axis or next(iter(keys)), tuple(log), safe)
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
         if table is not False:
             self.table(caption, rows, plain if table is True else table)
