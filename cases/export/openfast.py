@@ -6,7 +6,6 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from fe_drivetrain.cases.export.samples import FACTOR, frequencies
 from fe_drivetrain.common import largest_difference
 from fe_drivetrain.export import (
@@ -19,6 +18,7 @@ from fe_drivetrain.export import (
 from fe_drivetrain.export.formats import elastodyn, extptfm, subdyn
 from fe_drivetrain.scene import Scene, library_scene
 from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation.sample_elastodyn import TEXT
 
 PUBLISHED = "OpenFAST r-test, SD_Spring_Case1"
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.cases.performance.choices import ELEMENTS, P1, STEPS, Outcome
-from fe_drivetrain.cases.performance.precision import pareto_front
 from fe_drivetrain.cases.performance.studies import Study
+from fe_drivetrain.compare import pareto_front
 from fe_drivetrain.report import Chart, rounded, trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.stiffness_choices import ELEMENTS, P1, STEPS, Outcome
 
 #: Errors that an engineer asks for.
 BOUNDS = (1e-2, 1e-3, 1e-4)

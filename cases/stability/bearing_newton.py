@@ -7,8 +7,8 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, RollerRow, catalogue_bearing, equilibrium, forces
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import decades
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.compare import decades
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Sizes of axial force, radial forces and moments of random loads [N, N m].

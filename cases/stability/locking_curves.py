@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.cases.stability.decades import last_within
+from fe_drivetrain.compare import last_within
 from fe_drivetrain.operator import elasticity, incompressible
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page

@@ -21,8 +21,8 @@ from fe_drivetrain.cases.stability.bent_shafts import (
     round_tetrahedra,
     shear_part,
 )
-from fe_drivetrain.cases.stability.decades import last_within
 from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, curve, limit
+from fe_drivetrain.compare import last_within
 from fe_drivetrain.operator import elasticity, incompatible, incompressible
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import recovery_estimate

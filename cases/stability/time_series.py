@@ -9,9 +9,8 @@ import numpy as np
 from scipy.special import erf
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import fitted_exponent
 from fe_drivetrain.common import FORCES, Floats, InputError
-from fe_drivetrain.compare import statistics
+from fe_drivetrain.compare import fitted_exponent, statistics
 from fe_drivetrain.hub_loads import UNITS, read_hub_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run

@@ -38,8 +38,8 @@ def pulled(tube: theory.Tube, refinement: int) -> Record:
     mesh = solid_shafts.solid(shaft, refinement, size=tube.length)
     nu = STEEL.poisson_ratio
     exact = SIGMA / STEEL.youngs_modulus * mesh.points * [1.0, -nu, -nu]
-    F = sum(end_loaded.end_forces(mesh, traction))
-    found = end_loaded.solve_loaded(mesh, STEEL, F, like=exact)
+    front, rear = end_loaded.end_forces(mesh, traction)
+    found = end_loaded.solve_loaded(mesh, STEEL, front + rear, like=exact)
     force = SIGMA * end_loaded.section_area(mesh, mesh.rear)
     uniform = SIGMA * np.array([1, 0, 0, 0, 0, 0])
     return {

@@ -18,8 +18,17 @@ from .cycles import Cycles as Cycles
 from .cycles import damage_equivalent_load as damage_equivalent_load
 from .cycles import rainflow_cycles as rainflow_cycles
 from .moments import moments as moments
+from .pareto import cheapest_within as cheapest_within
+from .pareto import growth_exponent as growth_exponent
+from .pareto import pareto_front as pareto_front
 from .statistics import model_uncertainty as model_uncertainty
 from .statistics import resultant as resultant
+from .sweeps import FOUR_DIGITS as FOUR_DIGITS
+from .sweeps import decades as decades
+from .sweeps import fitted_exponent as fitted_exponent
+from .sweeps import in_words as in_words
+from .sweeps import last_within as last_within
+from .sweeps import safe_range as safe_range
 from .time_weighted import sample_weights as sample_weights
 from .time_weighted import weighted_rms as weighted_rms
 from .time_weighted import weighted_statistics as weighted_statistics

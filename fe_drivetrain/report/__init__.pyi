@@ -1,4 +1,5 @@
 from .charts import chart as chart
+from .charts import crosses as crosses
 from .charts import rounded as rounded
 from .charts import trace as trace
 from .environment import environment as environment

@@ -21,6 +21,13 @@ def trace(name: str, x: ArrayLike, y: ArrayLike, points: bool = False, **more: A
     }
 
 
+def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
+    """Points without an answer, at 1 where there is not even a wrong one."""
+    at = np.asarray(x, dtype=float)
+    shown = np.ones(len(at)) if y is None else np.nan_to_num(np.asarray(y, dtype=float), nan=1.0)
+    return trace(name, at, shown, True, marker={"symbol": "x"})
+
+
 def chart(
     caption: str,
     traces: Sequence[Any],

@@ -10,7 +10,9 @@ from . import exact_blocks as exact_blocks
 from . import extreme_parts as extreme_parts
 from . import faulty_meshes as faulty_meshes
 from . import fillet_factors as fillet_factors
+from . import fingerprints as fingerprints
 from . import folded_meshes as folded_meshes
+from . import growing_shafts as growing_shafts
 from . import housing_nodes as housing_nodes
 from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
@@ -33,6 +35,7 @@ from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_slices as ring_slices
 from . import ring_solids as ring_solids
 from . import round_shafts as round_shafts
+from . import sample_elastodyn as sample_elastodyn
 from . import seat_couplings as seat_couplings
 from . import shaft_ends as shaft_ends
 from . import shaft_theory as shaft_theory
@@ -44,10 +47,13 @@ from . import solver_steps as solver_steps
 from . import solver_trials as solver_trials
 from . import spherical_shells as spherical_shells
 from . import squeezed_rings as squeezed_rings
+from . import stiffness_choices as stiffness_choices
+from . import streamed_series as streamed_series
 from . import thin_bodies as thin_bodies
 from . import tied_bars as tied_bars
 from . import tied_rings as tied_rings
 from . import tied_strips as tied_strips
+from . import tilt_choices as tilt_choices
 from . import torsion_meridian as torsion_meridian
 from . import turned_frames as turned_frames
 from . import twisted_tubes as twisted_tubes

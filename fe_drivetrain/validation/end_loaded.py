@@ -67,7 +67,7 @@ def skin_nodes(mesh: Solid, x: float) -> Ints:
     """Nodes of a section on the outer surface."""
     nodes = mesh.section_nodes(x)
     r = np.hypot(mesh.points[nodes, 1], mesh.points[nodes, 2])
-    return nodes[r > r.max() * (1 - 1e-9)]
+    return np.asarray(nodes[r > r.max() * (1 - 1e-9)])
 
 
 def end_forces(mesh: Solid, traction: Callable[[Floats, Floats], Floats]) -> tuple[Floats, Floats]:

@@ -1,16 +1,14 @@
 """Sweeps over decades: the range that is safe, and the slope of an error on logarithmic axes."""
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.common import Floats
-from fe_drivetrain.report import trace
+from fe_drivetrain.common.arrays import Floats
 
-#: Relative error of a stiffness that counts as safe: four digits.
 FOUR_DIGITS = 1e-4
+"""Relative error of a stiffness that counts as safe."""
 
 
 def decades(low: float, high: float, per_decade: float) -> Floats:
@@ -120,13 +118,6 @@ def fitted_exponent(
     return float(b), float(2.0 * np.sqrt(variance / ((log_x - log_x.mean()) ** 2).sum()))
 
 
-def shown(value: float | None) -> str:
-    """A bound in words."""
+def in_words(value: float | None) -> str:
+    """A bound of a safe range, or that there is none."""
     return "no bound" if value is None else f"{value:.2g}"
-
-
-def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
-    """Trace of points without an answer, at 1 where there is not even a wrong one."""
-    at = np.asarray(x, dtype=float)
-    shown_at = np.ones(len(at)) if y is None else np.nan_to_num(np.asarray(y, dtype=float), nan=1.0)
-    return trace(name, at, shown_at, True, marker={"symbol": "x"})
