@@ -16,6 +16,7 @@ from . import growing_shafts as growing_shafts
 from . import housing_nodes as housing_nodes
 from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
+from . import interference_fits as interference_fits
 from . import layers as layers
 from . import loaded_blocks as loaded_blocks
 from . import locking_bars as locking_bars
