@@ -1,6 +1,6 @@
 """Charts of lines, as Plotly's JSON."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -62,6 +62,49 @@ def chart(
     if safe is not None:
         axes["shapes"] = [_shaded(traces, safe)]
     return Chart(caption=caption, figure={"data": list(traces), "layout": axes})
+
+
+def bars(
+    caption: str,
+    groups: Mapping[str, Mapping[str, float]],
+    x: str,
+    least: float | None = None,
+    stacked: bool = False,
+) -> Chart:
+    """Horizontal bars, labels down the side in their order.
+
+    Parameters
+    ----------
+    caption : str
+        What they show.
+    groups : dict
+        Name of each colour, and its values by label.
+    x : str
+        Title of the axis of values, with its unit.
+    least : float or None
+        The axis is logarithmic, and this stands for all that is smaller.
+    stacked : bool
+        Bars of one label stand on one another, not side by side.
+    """
+    data = [
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": name,
+            "y": list(values),
+            "x": rounded([v if least is None else max(v, least) for v in values.values()]),
+        }
+        for name, values in groups.items()
+    ]
+    labels = {label for values in groups.values() for label in values}
+    count = len(labels) if stacked else sum(len(values) for values in groups.values())
+    figure = chart(caption, data, x, "", "" if least is None else "x")
+    figure.figure["layout"] |= {
+        "barmode": "stack" if stacked else "group",
+        "height": 160 + (34 if stacked else 24) * max(count, 4),
+        "yaxis": {"autorange": "reversed", "automargin": True},
+    }
+    return figure
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[float]:
