@@ -23,6 +23,7 @@ from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import low_speed_shaft as low_speed_shaft
 from . import manufactured as manufactured
+from . import moved_bodies as moved_bodies
 from . import one_norm as one_norm
 from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
