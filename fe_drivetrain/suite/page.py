@@ -341,40 +341,6 @@ class Page:
         """Add a chart of traces; see `fe_drivetrain.report.chart`."""
         self.add(chart(caption, traces, x, y, logarithmic, safe))
 
-    def meshes(
-        self,
-        caption: str,
-        series: MeshSeries,
-        references: Mapping[str, float],
-        heading: str = "reference",
-    ) -> None:
-        """Add a table of quantities on several meshes beside their references, and its data.
-
-        Parameters
-        ----------
-        caption : str
-            What it shows; the records stand under it among `figures`.
-        series : MeshSeries
-            What each mesh gave.
-        references : dict
-            Key of a quantity, with its unit, and its reference.
-        heading : str
-            Of the references' column.
-        """
-        rows = [(key, key, value) for key, value in references.items()]
-        self._meshes(caption, series, rows, heading)
-
-    def _meshes(
-        self, caption: str, series: MeshSeries, rows: list[tuple[str, str, float]], heading: str
-    ) -> None:
-        """The same with what is shown of a key in its row's first cell."""
-        meshes, by = series.rows, series.by
-        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
-        cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
-        self.table(caption, cells, columns)
-        keys = [by, *dict.fromkeys(key for _, key, _ in rows)]
-        self.data(caption, [{key: mesh[key] for key in keys} for mesh in meshes])
-
     def targets(
         self, caption: str, series: MeshSeries, targets: Sequence[Target], heading: str = "target"
     ) -> None:
@@ -397,7 +363,12 @@ class Page:
             unit = target.key.partition(" [")[2]
             shown = f"{target.name} [{unit}" if target.name and unit else target.name
             rows.append((shown or target.key, target.key, target.value))
-        self._meshes(caption, series, rows, heading)
+        meshes, by = series.rows, series.by
+        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
+        cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
+        self.table(caption, cells, columns)
+        keys = [by, *dict.fromkeys(target.key for target in targets)]
+        self.data(caption, [{key: mesh[key] for key in keys} for mesh in meshes])
 
     def sweep(
         self,

@@ -1,4 +1,5 @@
 from . import bar_sections as bar_sections
+from . import bent_blocks as bent_blocks
 from . import bracket_plane as bracket_plane
 from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
