@@ -86,6 +86,35 @@ def last_within(x: ArrayLike, error: ArrayLike, criterion: float) -> float | Non
     return float(np.asarray(x, dtype=float)[count - 1]) if count else None
 
 
+def least_safe(x: ArrayLike, error: ArrayLike, level: float) -> float | None:
+    """Least x from which on an error is below a level, to the end of the sweep.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Ascending.
+    error : (n,) array
+        With its sign, which does not count.
+    level : float
+        In the unit of the error.
+
+    Returns
+    -------
+    least : float or None
+        Between points by straight lines in logarithms; the first x where the error is below the
+        level everywhere, None where it is not even at the last.
+    """
+    x, size = np.asarray(x, dtype=float), np.abs(np.asarray(error, dtype=float))
+    above = np.flatnonzero(size >= level)
+    if not len(above):
+        return float(x[0])
+    k = int(above[-1])
+    if k == len(x) - 1:
+        return None
+    share = np.log(size[k] / level) / np.log(size[k] / size[k + 1])
+    return float(np.exp(np.log(x[k]) + share * np.log(x[k + 1] / x[k])))
+
+
 def fitted_exponent(
     x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)
 ) -> tuple[float, float | None]:

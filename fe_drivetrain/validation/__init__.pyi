@@ -6,6 +6,7 @@ from . import condensed_bodies as condensed_bodies
 from . import curved_bars as curved_bars
 from . import distorted_blocks as distorted_blocks
 from . import elliptic_plate as elliptic_plate
+from . import end_flexibilities as end_flexibilities
 from . import end_loaded as end_loaded
 from . import exact_blocks as exact_blocks
 from . import extreme_parts as extreme_parts
