@@ -173,7 +173,6 @@ def check(
             within=1e-9,
             why="exact in the discrete model, too, on each mesh: round-off of the solver",
             source="a sphere without friction carries no moment",
-            band=0.0,
         )
     values = [float(m.moments @ AXIS) / 1e6 for m in moved["bonded"]]
     page.equals(
