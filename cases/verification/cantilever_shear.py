@@ -119,7 +119,8 @@ def run(run: Run, page: Page) -> None:
         *steel_rows(STEEL),
     )
     page.table("Mean deflection of the tip, from the mean tangent at the root", table)
-    page.sweep(ERROR.capitalize(), meshes, UNKNOWNS, ERROR, by=SHAFT, log="xy", table=False)
+    title, axis = ERROR.capitalize(), "relative error"
+    page.sweep(title, meshes, UNKNOWNS, ERROR, by=SHAFT, log="xy", axis=axis, table=False)
     page.text(
         "Cowper's coefficient speaks of the mean deflection and of the least-squares rotation of a "
         "section. An averaged reference point moves by these very means, so a beam describes a "

@@ -411,7 +411,7 @@ class Page:
         table : bool or sequence of str
             Whether there is a table, or which keys it shows.
         axis : str
-            Title of the vertical axis, with its unit, where `y` names several curves.
+            Title of the vertical axis, with its unit; the key of the first curve where left out.
         """
         mode = "markers" if points else "lines+markers"
         keys = {y: ""} if isinstance(y, str) else y
