@@ -257,7 +257,6 @@ def rmse_charts(
 
     Where a beam and the FE model differ by round-off alone, a sentence says so instead.
     """
-    groups = [(c.wind_speed, c.turbulence, c.shear) for c in conditions]
     for label, (kind, model) in pairs.items():
         if is_round_off(fe[kind], model):
             page.text(
@@ -267,44 +266,69 @@ def rmse_charts(
             continue
         for plane, quantity, component in _PLANES:
             rmse = statistics.rmse(fe[kind][..., component], model[..., component]) / 1e3
-            by_group = statistics.by_group(rmse, groups)
-            traces = []
-            found: list[Any] = list(by_group.groups)
-            order = ("low", "medium", "high")
-            series = sorted({g[1:] for g in found}, key=lambda s: (s[1], order.index(s[0])))
-            for k, (turbulence, shear) in enumerate(series):
-                rows = [i for i, g in enumerate(found) if g[1:] == (turbulence, shear)]
-                # Staggered about the mean wind speed, as in the thesis, for clarity.
-                wind = [found[i][0] + 0.25 * (k - (len(series) - 1) / 2) for i in rows]
-                traces.append(
-                    trace(
-                        f"{turbulence} turbulence, shear {shear:g}",
-                        wind,
-                        by_group.mean[rows],
-                        mode="markers",
-                        marker={"symbol": "circle" if shear < 0.4 else "diamond", "size": 8},
-                        error_y={"type": "data", "array": rounded(by_group.std[rows])},
-                    )
-                )
-            page.add(
-                Chart(
-                    caption=f"RMSE, {label}, {plane} plane ({quantity}): mean and standard "
-                    "deviation over the seeds of each group, staggered about the mean wind speed",
-                    figure={
-                        "data": traces,
-                        "layout": {
-                            "xaxis": {
-                                "title": {"text": "mean wind speed [m/s]"},
-                                "tickvals": sorted({g[0] for g in groups}),
-                            },
-                            "yaxis": {
-                                "title": {"text": f"RMSE of {quantity} [kN]"},
-                                "rangemode": "tozero",
-                            },
-                        },
-                    },
-                )
+            group_chart(
+                page,
+                f"RMSE, {label}, {plane} plane ({quantity})",
+                conditions,
+                rmse,
+                f"RMSE of {quantity} [kN]",
             )
+
+
+def group_chart(
+    page: Page, caption: str, conditions: Sequence[Condition], values: Floats, y: str
+) -> None:
+    """A number of each history against mean wind speed, by turbulence and shear.
+
+    Parameters
+    ----------
+    page : Page
+        Where to.
+    caption : str
+        What it is; how it is shown is added.
+    conditions : Sequence[Condition]
+        (m,) of the histories.
+    values : Floats
+        (m,) numbers.
+    y : str
+        Their name, with the unit.
+    """
+    groups = [(c.wind_speed, c.turbulence, c.shear) for c in conditions]
+    by_group = statistics.by_group(values, groups)
+    traces = []
+    found: list[Any] = list(by_group.groups)
+    order = ("low", "medium", "high")
+    series = sorted({g[1:] for g in found}, key=lambda s: (s[1], order.index(s[0])))
+    for k, (turbulence, shear) in enumerate(series):
+        rows = [i for i, g in enumerate(found) if g[1:] == (turbulence, shear)]
+        # Staggered about the mean wind speed, as in the thesis, for clarity.
+        wind = [found[i][0] + 0.25 * (k - (len(series) - 1) / 2) for i in rows]
+        traces.append(
+            trace(
+                f"{turbulence} turbulence, shear {shear:g}",
+                wind,
+                by_group.mean[rows],
+                mode="markers",
+                marker={"symbol": "circle" if shear < 0.4 else "diamond", "size": 8},
+                error_y={"type": "data", "array": rounded(by_group.std[rows])},
+            )
+        )
+    page.add(
+        Chart(
+            caption=f"{caption}: mean and standard deviation over the seeds of each group, "
+            "staggered about the mean wind speed",
+            figure={
+                "data": traces,
+                "layout": {
+                    "xaxis": {
+                        "title": {"text": "mean wind speed [m/s]"},
+                        "tickvals": sorted({g[0] for g in groups}),
+                    },
+                    "yaxis": {"title": {"text": y}, "rangemode": "tozero"},
+                },
+            },
+        )
+    )
 
 
 def series_charts(

@@ -123,7 +123,7 @@ def study_command(
             )
         from fe_drivetrain.commands.study_loads import own_loads
         from fe_drivetrain.commands.study_page import studied
-        from fe_drivetrain.compare.cycles import SLOPES, check_slope
+        from fe_drivetrain.histories.damage import SLOPES, check_slope
 
         for exponent in slope or ():
             check_slope(exponent)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_rms
@@ -34,7 +35,9 @@ _LEVELS = {
 }
 
 
-def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
+def errors(
+    page: Page, scene: Scene, levels: Levels, loads: StudyLoads, slopes: Sequence[float]
+) -> int:
     """RMSE of each level against the assembly, and the cheapest level that is enough.
 
     Parameters
@@ -47,6 +50,8 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
         All levels.
     loads : StudyLoads
         Hub loads.
+    slopes : sequence of float
+        Of S-N curves.
 
     Returns
     -------
@@ -107,6 +112,7 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
     worst = {label: max(of[label] for of in shares.values()) for label in others}
     page.answer(_enough(worst))
     _advice(page, levels, shares)
+    measures(page, scene, levels, loads, slopes, _LEVELS, ENOUGH)
     errors_of = {n: max(worst[m] for m in _LEVELS[label]) for n, label in _SAMPLED.items()}
     enough = [level for level, error in errors_of.items() if error <= ENOUGH]
     return enough[0] if enough else min(errors_of, key=lambda level: errors_of[level])

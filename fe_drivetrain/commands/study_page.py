@@ -14,7 +14,6 @@ from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_
 from fe_drivetrain.commands.uncertainty_page import bands, inputs
 from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.compare.cycles import SLOPES
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.export.formats.summary import summary, write_summary
@@ -25,6 +24,7 @@ from fe_drivetrain.fidelity.over_loads import (
     reaction_history,
 )
 from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
+from fe_drivetrain.histories.damage import SLOPES
 from fe_drivetrain.mesh.files import write
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import (
@@ -106,7 +106,7 @@ def studied(
     with run.step("reactions of all load steps"):
         reactions(run, page, model, loads, levels, slopes)
     with run.step("beams against FE"):
-        level = errors(page, scene, levels, loads)
+        level = errors(page, scene, levels, loads, slopes)
         _series(page, scene, loads, levels)
     if scene.uncertainty:
         _uncertainty(run, page, scene, level, factors)

@@ -12,16 +12,11 @@ import numpy as np
 from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
-from fe_drivetrain.compare.cycles import (
-    FREQUENCY,
-    RULE,
-    Cycles,
-    damage_equivalent_load,
-    rainflow_cycles,
-)
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
+from fe_drivetrain.histories.cycles import RULE, Cycles, rainflow_cycles
+from fe_drivetrain.histories.damage import FREQUENCY, damage_equivalent_load
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -152,7 +147,7 @@ def _over_histories(
 def _cycles(samples: Floats, least: float) -> Cycles:
     """None where a component is round-off of the others."""
     if np.ptp(samples) <= least:
-        return Cycles(np.zeros(0), np.zeros(0))
+        return Cycles(np.zeros(0), np.zeros(0), np.zeros(0))
     return rainflow_cycles(samples)
 
 

@@ -1,3 +1,4 @@
+from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
 from .csv_table import write_csv as write_csv
 from .files import hub_load_files as hub_load_files
@@ -6,9 +7,17 @@ from .files import read_hub_loads as read_hub_loads
 from .files import require_points as require_points
 from .histories import UNITS as UNITS
 from .histories import LoadHistory as LoadHistory
+from .loops import Loops as Loops
+from .loops import find_loops as find_loops
+from .loops import loop_statistics as loop_statistics
+from .loops import time_on_loops as time_on_loops
+from .recorded import Recorded as Recorded
+from .recorded import read_recorded as read_recorded
+from .recorded import recorded_files as recorded_files
 from .surrogate import SHEARS as SHEARS
 from .surrogate import WIND_SPEEDS as WIND_SPEEDS
 from .surrogate import Condition as Condition
+from .surrogate import HubLoadSet as HubLoadSet
 from .surrogate import hub_load_set as hub_load_set
 from .surrogate import hub_loads as hub_loads
 from .surrogate import not_kept as not_kept
