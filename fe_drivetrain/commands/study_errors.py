@@ -161,13 +161,15 @@ def _enough(worst: Mapping[str, float]) -> str:
         largest = max(worst[label] for label in labels)
         if largest <= ENOUGH:
             return (
-                f"Over these loads {' and '.join(labels)} is enough: every reaction is within "
+                f"Over these loads {' and '.join(labels)} {'is' if len(labels) == 1 else 'are'} "
+                f"enough: every reaction is within "
                 f"{share} of the assembly's (root mean square of force and of moment; the worst "
                 f"{100 * largest:.2g} %)."
             )
-    compared = [label for labels in _LEVELS.values() for label in labels]
-    best = min(compared, key=lambda label: worst[label])
+    # a level is as good as the worse of its bounds
+    by_level = {labels: max(worst[label] for label in labels) for labels in _LEVELS.values()}
+    best = min(by_level, key=lambda labels: by_level[labels])
     return (
         f"Over these loads no level below the assembly has every reaction within {share} of it; "
-        f"the nearest, {best}, has {100 * worst[best]:.2g} %."
+        f"the nearest, {' and '.join(best)}, is within {100 * by_level[best]:.2g} %."
     )

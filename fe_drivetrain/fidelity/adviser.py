@@ -381,8 +381,9 @@ def _judged(
 ) -> Advice:
     top = results[-1]
     if not np.linalg.norm(top.values) > 0:
+        of = "each hub load" if quantity.load is None else "the load given"
         raise InputError(
-            f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
+            f"quantity {quantity.name!r} is zero at level {top.model.level} for {of}: "
             "ask for another, or give another load"
         )
     judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
