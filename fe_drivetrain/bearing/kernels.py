@@ -240,11 +240,11 @@ def even_sums(
     s[2], s[3], s[4] = K * s2, K * s3, K * s4
 
 
-Row = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
+_Row = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
 
 
 @njit(cache=True, error_model="numpy")
-def _row(bearing: Packed, r: int) -> Row:
+def row_arrays(bearing: Packed, r: int) -> _Row:
     """Laminae, nodes and table of a row."""
     laminae = slice(bearing.lam[r], bearing.lam[r + 1])
     return (
@@ -341,7 +341,7 @@ def evaluate(
     cosines, sines = bearing.cosines, bearing.sines
     for r in range(len(bearing.data)):
         d = bearing.data[r]
-        xi, free, shares, nodes, node_shares, table = _row(bearing, r)
+        xi, free, shares, nodes, node_shares, table = row_arrays(bearing, r)
         sin, cos, arm, half = d[SIN], d[COS], d[ARM], 0.5 * d[LENGTH] * d[LEAN]
         ball = d[KIND] == BALLS
         for i in range(bearing.first[r], bearing.first[r + 1]):
@@ -419,7 +419,7 @@ def elements_of(
         a, uy, uz, ty, tz = displacements[i]
         for r in range(len(bearing.data)):
             d = bearing.data[r]
-            xi, free, shares, nodes, node_shares, table = _row(bearing, r)
+            xi, free, shares, nodes, node_shares, table = row_arrays(bearing, r)
             for j in range(bearing.first[r], bearing.first[r + 1]):
                 co, si = bearing.cosines[j], bearing.sines[j]
                 w = si * uz - co * uy

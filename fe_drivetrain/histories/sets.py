@@ -88,6 +88,6 @@ def differences(
         scatter = float(np.sqrt(squares / degrees))
         # what rounding alone makes of a constant channel is no difference
         rounding = 1e-9 * max(float(np.abs(v).max()) for v in values)
-        means = (float(v.mean()) for v in values)
-        result.append(Difference(name, *means, scatter, max(factor * scatter, rounding)))
+        here, there = (float(v.mean()) for v in values)
+        result.append(Difference(name, here, there, scatter, max(factor * scatter, rounding)))
     return result

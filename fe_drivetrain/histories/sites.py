@@ -150,7 +150,7 @@ class Transient:
 
 def time_factors(hours: ArrayLike, seconds: ArrayLike) -> Floats:
     """How often each history of so many seconds stands for its hours: (n,)."""
-    return np.asarray(hours, dtype=float) * 3600.0 / np.asarray(seconds, dtype=float)
+    return np.asarray(np.asarray(hours, dtype=float) * 3600.0 / np.asarray(seconds, dtype=float))
 
 
 def lifetime_damage(
