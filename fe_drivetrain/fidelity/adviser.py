@@ -381,9 +381,10 @@ def _judged(
 ) -> Advice:
     top = results[-1]
     if not np.linalg.norm(top.values) > 0:
+        decided = ", and by statics at every other" if top.model.level == 0 else ""
         raise InputError(
-            f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
-            "ask for another, or give another load"
+            f"quantity {quantity.name!r} is zero at level {top.model.level}{decided} for the load "
+            "given: ask for another, or give another load"
         )
     judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
     chosen = None
