@@ -108,7 +108,7 @@ def beside(
     )
     page.table(
         "Quantities that load a main bearing, and whether they differ by more than the seeds do",
-        [row for row in rows if row["quantity"].startswith(chosen)],
+        [row for row in rows if str(row["quantity"]).startswith(chosen)],
     )
     farthest = sorted(beyond, key=lambda d: -abs(d.one - d.other) / d.allowed)[:15]
     kept = {d.quantity for d in farthest}

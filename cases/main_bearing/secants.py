@@ -90,9 +90,8 @@ def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
     if own is not None:
         histories, statement = own
         steps = [history.step for history in histories]
-        weights = sample_weights([len(history) for history in histories], steps)
-        if np.ptp(steps) <= 1e-9 * max(steps):
-            weights = None
+        unlike = np.ptp(steps) > 1e-9 * max(steps)
+        weights = sample_weights([len(h) for h in histories], steps) if unlike else None
         return Cases(np.concatenate([h.loads for h in histories]), weights, statement)
     speeds = WIND_SPEEDS[1:2] if run.quick else WIND_SPEEDS
     conditions = [Condition(speed, "medium", shear, 1) for speed in speeds for shear in SHEARS]

@@ -131,8 +131,8 @@ def equilibrium(
     of their internal forces.
     """
     F = checked_loads(bearing, loads)
-    B, carried = _free_motions(bearing)
-    _refuse_mechanism(bearing, F, B, carried)
+    B, carried = free_motions(bearing)
+    refuse_mechanism(bearing, F, B, carried)
     return _solved(bearing, F, B[None], tolerance, start, phases, warm, damped)
 
 
@@ -174,13 +174,13 @@ def three_degrees(
     B[:, 0, 0] = 1.0
     B[:, 1:3, 1] = along / np.hypot(*along.T)[:, None]
     B[:, 3:5, 2] = about / np.hypot(*about.T)[:, None] / bearing.arm
-    whole, carried = _free_motions(bearing)
-    _refuse_mechanism(bearing, F, whole, carried)
+    whole, carried = free_motions(bearing)
+    refuse_mechanism(bearing, F, whole, carried)
     return _solved(bearing, F, B, tolerance, None, None, False, True)
 
 
 @lru_cache(maxsize=64)
-def _free_motions(bearing: Bearing) -> tuple[Floats, Bools]:
+def free_motions(bearing: Bearing) -> tuple[Floats, Bools]:
     """Motions that some contact resists, as columns with tilts over the pitch radius; and which."""
     H = _linear(bearing, np.diag([1.0, 1.0, 1.0, 1.0 / bearing.arm, 1.0 / bearing.arm]))
     values, vectors = np.linalg.eigh(H)
@@ -268,7 +268,7 @@ def _solved(
         )
         for whole, part in zip(found, again, strict=True):
             whole[lost] = part
-        _refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
+        refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
     u = found.displacements
     if moved_on is not None:
         u = turn(u, moved_on)
@@ -366,7 +366,7 @@ def _mean_diagonal(soft: Floats) -> Floats:
     return np.asarray(np.trace(soft, axis1=1, axis2=2)[:, None, None] / m * np.eye(m))
 
 
-def _refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools) -> None:
+def refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools) -> None:
     """Raise where a load acts on a motion that no contact resists."""
     if carried.all():
         return
@@ -387,7 +387,7 @@ def _refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools
         )
 
 
-def _refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
+def refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
     """Raise where no pushes of rollers add up to the load, as of a single row pushed open."""
     rollers = [row for row in bearing.rows if isinstance(row, RollerRow)]
     if not len(loads) or len(rollers) < len(bearing.rows):

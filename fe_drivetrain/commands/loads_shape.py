@@ -186,7 +186,7 @@ def _campbell(page: Page, found: Together) -> None:
         return
     places = sorted(found.campbell)
     numbers = np.arange(places[0], places[-1] + 1)
-    lines = found.campbell_lines
+    lines = found.campbell_lines.astype(float)
     density = np.full((len(numbers), len(lines)), np.nan)
     for place, (total, number) in found.campbell.items():
         density[place - places[0]] = total[: len(lines)] / number / 1e6
@@ -195,7 +195,7 @@ def _campbell(page: Page, found: Together) -> None:
     chart = heatmap(
         f"Campbell diagram of My: spectra of segments of {SEGMENT:g} s by their mean rotor speed; "
         f"dotted {', '.join(f'{n}P' for n in MULTIPLES)}",
-        speed,
+        speed.astype(np.float64),
         lines[kept],
         np.log10(density[:, kept].T),
         ("rotor speed [rad/s]", "frequency [Hz]", "log10 of (kN m)²/Hz"),

@@ -45,7 +45,7 @@ class Classes:
     def edges(self, axis: int = 0) -> Floats:
         """Limits of the classes of one quantity."""
         numbers = self.first[axis] + np.arange(self.amount.shape[axis] + 1, dtype=float)
-        return np.ldexp(numbers, self.powers[axis])
+        return np.asarray(np.ldexp(numbers, self.powers[axis]))
 
     def middles(self, axis: int = 0) -> Floats:
         """Middles of the classes of one quantity."""
