@@ -114,7 +114,7 @@ def short(run: Run, page: Page) -> float:
     generator = np.random.default_rng(1)
     steps = int(600 / 0.1)
     noise = generator.standard_normal((4 if run.quick else 16, steps)).cumsum(axis=1) * 0.02
-    load = noise + wave(np.arange(steps) * 0.1)
+    load = noise + wave(np.arange(steps, dtype=np.float64) * 0.1)
     rows: list[Record] = []
     for seconds in (10, 30, 60, 120, 300, 600):
         part = load[:, : seconds * 10]

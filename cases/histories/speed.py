@@ -34,7 +34,7 @@ def run(run: Run, page: Page) -> None:
     rows: list[Record] = []
     for size in sizes:
         load, other = noise(size, 1), noise(size, 2)
-        at = np.arange(size) * STEP
+        at = np.arange(size, dtype=np.float64) * STEP
         tasks = steps(at, load, other) | peers(load)
         for name, task in tasks.items():
             if name == "load loops" and size > SIZES[1]:
