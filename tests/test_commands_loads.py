@@ -13,6 +13,7 @@ from fe_drivetrain.commands.loads_digest import Options, digest
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.report.results import read_results
@@ -81,6 +82,9 @@ def test_the_page_of_own_files(invoke: Callable[..., Result], histories: Path) -
     for word, total in (("seconds", 140.3), ("turns", 140.3 * HERTZ)):
         amounts = [float(r["amount"]) for r in levels if (r["channel"], r["of"]) == ("Mx", word)]
         assert sum(amounts) == pytest.approx(total)
+    sorted_by = rows_of(out / "wind_and_turbulence.csv")
+    assert {row["wind [m/s]"] for row in sorted_by} == {"8", "12"}
+    assert sum(int(row["windows"]) for row in sorted_by if row["channel"] == "Mx") == 2
     site = rows_of(out / "site.csv")
     assert [float(row["mean wind speed [m/s]"]) for row in site] == [8.0, 12.0]
     reach = np.exp(-np.pi / 4 * (np.array([6.0, 14.0]) / 8.5) ** 2)  # Rayleigh's, of 6 to 14 m/s
@@ -123,6 +127,24 @@ def test_a_stopped_run_goes_on(
     assert (status, read) == (0, ["a.csv", "b.csv", "b.csv"])
     status, _, _ = invoke(*command, "--resume", "--slope", "5")  # other options: read again
     assert (status, read[3:]) == (0, ["a.csv", "b.csv"])
+
+
+def test_another_set_is_compared_by_wind(invoke: Callable[..., Result], histories: Path) -> None:
+    others = histories.parent / "others"
+    others.mkdir()
+    command = ("loads", str(histories), "--out", "out", *COLUMNS, "--against", str(others))
+    write_history(others / "c.csv", 70.1, 0.1, 8.0)
+    status, _, err = invoke(*command)
+    assert status == 2
+    assert "three or more together" in err
+    write_history(others / "d.csv", 65.1, 0.1, 8.0)
+    status, printed, _ = invoke(*command)
+    assert status == 0
+    assert "8 m/s:" in printed
+    rows = rows_of(histories.parent / "out" / "beside.csv")
+    assert {row["wind"] for row in rows} == {"8 m/s"}
+    (torque,) = [row for row in rows if row["quantity"] == "Mx, largest [kN m]"]
+    assert float(torque["these files"]) == pytest.approx(float(torque["the others"]))
 
 
 def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:
@@ -192,3 +214,9 @@ def test_loads_under_other_names_are_read(tmp_path: Path) -> None:
     found = read_recorded(file, names).history
     assert found.loads[:, 0].tolist() == [0.0, 1e3, 2e3, 3e3, 4e3]
     assert found.loads[2, 1:].tolist() == [2.0, 3.0, 4.0, 5.0, 4.0]
+    twice = tmp_path / "twice.csv"
+    twice.write_text(file.read_text().replace("f [N m]", "f [N m],a [kN]").replace("\n", ",9\n"))
+    assert read_recorded(twice, names).history.loads[1, 0] == 1e3  # the first of that name
+    file.write_text(file.read_text().replace("\n3,3", "\n3,three"))
+    with pytest.raises(InputError, match="'three' to float64 at row 3, column 2"):
+        read_recorded(file, names)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fe_drivetrain.commands.study_measures import sentence
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.model_errors import (
     damage_ratio,
@@ -66,3 +67,9 @@ def test_a_load_that_never_changes_has_no_ratio_of_ranges() -> None:
     found = model_errors(flat, flat)
     assert found["mean"] == 0.0
     assert np.isnan(found["DEL, m = 3"])
+
+
+def test_the_answer_names_a_level_for_each_use() -> None:
+    found = sentence({"means": "1 beam", "extremes": "2 meridian", "fatigue": None}, 0.05)
+    assert "for means 1 beam; for extremes 2 meridian; for fatigue none" in found
+    assert sentence(dict.fromkeys(("means", "extremes", "fatigue")), 0.05).startswith("No level")

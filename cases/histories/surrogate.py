@@ -76,7 +76,7 @@ def beside(
     """Table and answer of one turbine and wind; every quantity."""
     found = differences([real], made)
     beyond = [d for d in found if d.beyond]
-    rows = [
+    rows: list[Record] = [
         {
             "quantity": d.quantity,
             "OpenFAST": d.one,

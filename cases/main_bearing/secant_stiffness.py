@@ -62,24 +62,22 @@ def check_scatter(page: Page, key: str, meshes: list[Reacted], shares: Floats) -
     unit = meshes[-1]
     page.equals(
         f"{TITLES[key]}: scatter of K_R about y over the load cases, against the lean "
-        "K_51 / K_11 times the thrust",
+        "K_51 / K_11 times the thrust [%]",
         100.0 * secants.vertical_scatter(unit),
         100.0 * secants.predicted_scatter(unit),
         within=0.1,
         why="seat average and condensed stiffness agree to a tenth",
         source="condensed 6x6 stiffness from unit loads without a gearbox: "
         "My = theta / C_55 + (K_51 / K_11) Fx",
-        unit="%",
         measure="stiffness",
         band=band_of(meshes, lambda u: 100.0 * secants.vertical_scatter(u)),
     )
     page.at_most(
-        f"{TITLES[key]}: scatter of K_R about y at the elastic centre",
+        f"{TITLES[key]}: scatter of K_R about y at the elastic centre [%]",
         100.0 * secants.scatter_at_centre(unit),
         100.0 * secant_stiffness.SCATTERS,
         why="from there on a single spring is called the wrong form",
         source="at the elastic centre thrust does not tilt: nothing is left to scatter",
-        unit="%",
         measure="stiffness",
         band=band_of(meshes, lambda u: 100.0 * secants.scatter_at_centre(u)),
     )

@@ -10,20 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from fe_drivetrain.bearing.kernels import (
-    CLOSED,
-    EVEN,
-    EXPONENT,
-    GAP,
-    KIND,
-    LENGTH,
-    STIFF,
-    Packed,
-    closed,
-    even_sums,
-    lamina_sums,
-    row_arrays,
-)
+from fe_drivetrain.bearing.kernels import GAP, LENGTH, Packed, roller_sums, row_of
 from fe_drivetrain.common.arrays import Floats, Ints
 
 MAX_STEPS = 100
@@ -64,18 +51,13 @@ def _sums(b: Floats, c: Floats, bearing: Packed, s: Floats) -> float:
     total = 0.0
     for r in range(len(bearing.data)):
         d = bearing.data[r]
-        xi, free, shares, nodes, node_shares, table = row_arrays(bearing, r)
+        xi, free, shares, nodes, node_shares, table = row_of(bearing, r)
         for j in range(bearing.first[r], bearing.first[r + 1]):
             here = b[j] - d[GAP]
             s[j, 0] = 0.0
             if here + 0.5 * abs(c[j]) * d[LENGTH] <= 0.0:
                 continue
-            if d[EVEN] == 1.0 and abs(c[j]) * d[LENGTH] <= here:
-                even_sums(here, c[j], d[STIFF], d[EXPONENT], nodes, node_shares, table, s[j])
-            elif d[KIND] == CLOSED:
-                closed(here, c[j], d[STIFF], d[EXPONENT], d[LENGTH], s[j])
-            else:
-                lamina_sums(here, c[j], d[STIFF], d[EXPONENT], xi, free, shares, table, s[j])
+            roller_sums(d, here, c[j], xi, free, shares, nodes, node_shares, table, s[j])
             total += s[j, 0]
     return total
 

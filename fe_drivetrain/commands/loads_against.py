@@ -23,7 +23,7 @@ from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 
-WIND_BIN = 2.0
+WIND_BIN = 1.0
 """Histories whose mean winds round to the same multiple are of one condition [m/s]."""
 
 

@@ -17,6 +17,8 @@ from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import Together, windows_table
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.histories.cycles import Cycles
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.histories.windows import COLUMNS, CaptureMatrix, capture_matrix
@@ -26,10 +28,12 @@ from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
 
-WIND_BIN, TURBULENCE_BIN = 2.0, 0.02
-"""Widths of the capture matrix [m/s, share]: columns about 4, 6, ... 24 m/s."""
+WIND_BIN, TURBULENCE_BIN = 1.0, 0.02
+"""Widths of the capture matrix [m/s, share]: columns about whole numbers of m/s."""
 
 _SHOWN = 20
+_MANY = 8  # files for which it pays to start processes
+_AT_ONCE = 64  # files whose digests, a few hundred kilobytes each, are in memory together
 _SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN\u00a0m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}
 UNIT_OF = dict(zip(CHANNELS, UNITS, strict=True))
 
@@ -95,6 +99,7 @@ def loaded(
     tables: dict[str, list[Record]] = {"files": found.files}
     _statistics(page, found)
     tables["windows"] = windows_table(found, UNIT_OF)
+    tables["wind_and_turbulence"] = _by_turbulence(found)
     tables["capture_matrix"] = _capture(page, found, target)
     tables |= shape(page, found)
     tables |= counts(page, found, options, rule)
@@ -130,16 +135,37 @@ def loaded(
 def _digests(
     run: Run, files: Sequence[Path], options: Options, resume: bool, step: str
 ) -> Iterator[tuple[Path, Digest]]:
-    """One file at a time: kept as soon as it is done."""
-    cache = user_cache()
-    for number, file in enumerate(files, 1):
-        run.report(f"{step} ({number} of {len(files)})")
-        content = options.content(file)
-        one: Digest | None = cache.load("load-digests", content) if resume else None
-        if one is None:
-            one = digest(read_recorded(file, options.columns, options.skip), options)
-            cache.keep("load-digests", content, one)
-        yield file, one
+    """File by file, several at a time where there are cores; each kept as soon as it is done."""
+    for start in range(0, len(files), _AT_ONCE):
+        batch = files[start : start + _AT_ONCE]
+        with Processes(len(batch) if len(batch) >= _MANY else 1, run.report) as processes:
+            jobs = [processes.start(kept_digest, file, options, resume) for file in batch]
+            for number, (file, job) in enumerate(zip(batch, jobs, strict=True), start + 1):
+                run.report(f"{step} ({number} of {len(files)})")
+                yield file, job.result()
+
+
+def kept_digest(_report: Progress, file: Path, options: Options, resume: bool) -> Digest:
+    """The digest of a file, or that of an earlier run where it is kept and asked for.
+
+    Parameters
+    ----------
+    _report : callable
+        Of a job in a process; what takes this long shows no steps.
+    file : Path
+        With the history.
+    options : Options
+        How it is counted.
+    resume : bool
+        Take what is kept.
+    """
+    cache, content = user_cache(), options.content(file)
+    kept: Digest | None = cache.load("load-digests", content) if resume else None
+    if kept is not None:
+        return kept
+    found = digest(read_recorded(file, options.columns, options.skip), options)
+    cache.keep("load-digests", content, found)
+    return found
 
 
 def _require_loads(found: Together) -> None:
@@ -182,6 +208,33 @@ def _statistics(page: Page, found: Together) -> None:
         "mean wind speed [m/s]",
         "bending moment [kN m]",
     )
+
+
+def _by_turbulence(found: Together) -> list[Record]:
+    """Statistics of each channel by mean wind speed and turbulence intensity, for a file."""
+    wind = found.values[:, CHANNELS.index("wind speed")]
+    bins = np.column_stack(
+        [
+            WIND_BIN * np.round(wind[:, 1] / WIND_BIN),
+            TURBULENCE_BIN * (np.floor(wind[:, 3] / wind[:, 1] / TURBULENCE_BIN) + 0.5),
+        ]
+    )
+    rows: list[Record] = []
+    for speed, turbulence in np.unique(bins[~np.isnan(bins).any(axis=1)], axis=0).tolist():
+        chosen = (bins == [speed, turbulence]).all(axis=1)
+        for name, values in zip(CHANNELS, found.overall(chosen), strict=True):
+            if not np.isnan(values).any():
+                rows.append(
+                    {
+                        "wind [m/s]": speed,
+                        "turbulence [-]": turbulence,
+                        "windows": int(chosen.sum()),
+                        "channel": name,
+                        "unit": UNIT_OF[name],
+                        **dict(zip(COLUMNS, values.tolist(), strict=True)),
+                    }
+                )
+    return rows
 
 
 def _row(name: str, values: Sequence[float]) -> Record | None:

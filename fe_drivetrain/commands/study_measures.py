@@ -10,7 +10,12 @@ from fe_drivetrain.commands.study_loads import StudyLoads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.fidelity.over_loads import Levels, reaction_history, relative_errors
+from fe_drivetrain.fidelity.over_loads import (
+    ROUND_OFF,
+    Levels,
+    reaction_history,
+    relative_errors,
+)
 from fe_drivetrain.histories.model_errors import (
     Measured,
     damage_ratio,
@@ -74,6 +79,8 @@ def measures(
             if np.isnan(size[k]):
                 continue
             spread = np.concatenate(reference)[:, first : first + 2].std(axis=0)
+            if spread.max() <= ROUND_OFF * np.abs(np.concatenate(reference)).max():
+                continue  # a component that this support does not hold
             c = first + int(np.argmax(spread))
 
             def counted(histories: Sequence[Floats], c: int = c) -> Measured:
@@ -115,13 +122,16 @@ def sentence(found: Mapping[str, str | None], within: float) -> str:
     within : float
         The tolerance, as a share.
     """
-    words = [
-        f"for {use} {model if model is not None else 'none of those below the assembly'}"
-        for use, model in found.items()
-    ]
+    share = f"{100 * within:g} %"
+    if not any(found.values()):
+        return (
+            f"No level below the assembly has every reaction's mean, extreme, or damage-equivalent "
+            f"load within {share} of it: none is good enough for means, extremes or fatigue."
+        )
+    words = [f"for {use} {model or 'none'}" for use, model in found.items()]
     return (
-        f"Within {100 * within:g} % of the assembly, by reaction, the cheapest that is good enough "
-        f"is {'; '.join(words)} (fatigue: damage-equivalent loads of every slope)."
+        f"The cheapest level within {share} of the assembly's reactions is {'; '.join(words)} "
+        "(fatigue: damage-equivalent loads of every slope)."
     )
 
 

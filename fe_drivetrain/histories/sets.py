@@ -88,6 +88,8 @@ def differences(
         scatter = float(np.sqrt(squares / degrees))
         # what rounding alone makes of a constant channel is no difference
         rounding = 1e-9 * max(float(np.abs(v).max()) for v in values)
-        here, there = (float(v.mean()) for v in values)
-        result.append(Difference(name, here, there, scatter, max(factor * scatter, rounding)))
+        allowed = max(factor * scatter, rounding)
+        result.append(
+            Difference(name, float(values[0].mean()), float(values[1].mean()), scatter, allowed)
+        )
     return result

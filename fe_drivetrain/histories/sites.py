@@ -71,7 +71,7 @@ class Site:
         ndarray, (n,)
             Their sum is below 1: calm and storm are outside.
         """
-        return np.diff(self.below(edges))
+        return np.asarray(np.diff(self.below(edges)))
 
     def hours(self, edges: ArrayLike) -> Floats:
         """Hours of the lifetime in each bin: (n,); see `shares`."""
@@ -150,7 +150,7 @@ class Transient:
 
 def time_factors(hours: ArrayLike, seconds: ArrayLike) -> Floats:
     """How often each history of so many seconds stands for its hours: (n,)."""
-    return np.asarray(np.asarray(hours, dtype=float) * 3600.0 / np.asarray(seconds, dtype=float))
+    return np.asarray(3600.0 * np.asarray(hours, dtype=float) / np.asarray(seconds, dtype=float))
 
 
 def lifetime_damage(

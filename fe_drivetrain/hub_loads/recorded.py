@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.hub_loads.channels import Channel, existing_file, in_si, parse_number
+from fe_drivetrain.hub_loads.channels import Channel, existing_file, in_si
 from fe_drivetrain.hub_loads.csv_table import read_csv
 from fe_drivetrain.hub_loads.files import SUFFIXES, hub_load_files
 from fe_drivetrain.hub_loads.histories import (
@@ -103,7 +103,12 @@ def read_recorded(
             "convert the file or rename it"
         )
     loads_mapped = [name for name in mapped if name in _STANDARD]
-    channels = csv_channels(file) if suffix == ".csv" else openfast_channels(file)
+    if suffix == ".csv":
+        known = [name for names in KNOWN.values() for name in names]
+        wanted = {n.lower() for n in (*_STANDARD, *known, *mapped.values())}
+        channels = csv_channels(file, wanted)
+    else:
+        channels = openfast_channels(file)
     named = {name: _named(file, channels, column) for name, column in mapped.items()}
     attributes: dict[str, Attribute] = {}
     if suffix == ".csv" and not loads_mapped:
@@ -118,8 +123,8 @@ def read_recorded(
         history = LoadHistory(file.stem, time, loads, attributes)
     beside = {}
     for name, units in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
-        known = (channels.get(candidate.lower()) for candidate in KNOWN[name])
-        channel = named.get(name) or next((c for c in known if c is not None), None)
+        candidates = (channels.get(candidate.lower()) for candidate in KNOWN[name])
+        channel = named.get(name) or next((c for c in candidates if c is not None), None)
         if channel is not None:
             beside[name] = in_si(str(file), channel, units)
             require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
@@ -137,34 +142,53 @@ def read_recorded(
     )
 
 
-def csv_channels(file: Path) -> dict[str, Channel]:
-    """Every column of a table that has a name and a unit, by its name in lower case.
+def csv_channels(file: Path, wanted: Collection[str]) -> dict[str, Channel]:
+    """Columns of a table that have a unit, by their names in lower case.
 
     Parameters
     ----------
     file : Path
         A table with a header like ``time [s],thrust [kN]``; lines with # before it are left out.
+    wanted : collection of str
+        Names in lower case; other columns have no values, so that a large table is read in the
+        memory of what is used.
 
     Raises
     ------
     InputError
-        A cell of such a column is not a number.
+        A cell of a wanted column is not a number.
     """
-    lines = file.read_text(encoding="utf-8-sig").splitlines()
-    rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#")))
+    before, titles = 0, ""
+    try:
+        with file.open(encoding="utf-8-sig") as stream:
+            for before, line in enumerate(stream, 1):  # noqa: B007
+                if line.strip() and not line.startswith("#"):
+                    titles = line
+                    break
+    except UnicodeDecodeError as error:
+        raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
     found: dict[str, Channel] = {}
-    for place, title in enumerate(rows[0] if rows else []):
+    places: list[int] = []
+    for place, title in enumerate(next(csv.reader([titles]), [])):
         match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
-        if match is None:
-            continue
-        try:
-            values = np.array([parse_number(row[place]) for row in rows[1:]])
-        except (ValueError, IndexError) as error:
-            raise InputError(
-                f"hub loads '{file}': column '{match[1]}' has a cell that is not a number: correct "
-                "it, or remove the line"
-            ) from error
-        found[match[1].lower()] = Channel(match[1], match[2], values)
+        if match is not None and match[1].lower() not in found:
+            found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
+            if match[1].lower() in wanted:
+                places.append(place)
+    if not places:
+        return found
+    try:
+        values = np.loadtxt(
+            file, delimiter=",", skiprows=before, usecols=places, ndmin=2, encoding="utf-8-sig"
+        )
+    except ValueError as error:
+        raise InputError(
+            f"hub loads '{file}': {error}, counted below the header: correct the cell, or remove "
+            "the line"
+        ) from error
+    used = [name for name in found if name in wanted]
+    for name, column in zip(used, values.T, strict=True):
+        found[name] = Channel(found[name].name, found[name].unit, column)
     return found
 
 

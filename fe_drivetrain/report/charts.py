@@ -1,6 +1,6 @@
 """Charts of lines, as Plotly's JSON."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,13 @@ def trace(name: str, x: ArrayLike, y: ArrayLike, points: bool = False, **more: A
         "y": rounded(y),
         **more,
     }
+
+
+def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
+    """Points without an answer, at 1 where there is not even a wrong one."""
+    at = np.asarray(x, dtype=float)
+    shown = np.ones(len(at)) if y is None else np.nan_to_num(np.asarray(y, dtype=float), nan=1.0)
+    return trace(name, at, shown, True, marker={"symbol": "x"})
 
 
 def chart(
@@ -98,6 +105,49 @@ def density_chart(
         },
     }
     return Chart(caption=caption, figure=figure)
+
+
+def bars(
+    caption: str,
+    groups: Mapping[str, Mapping[str, float]],
+    x: str,
+    least: float | None = None,
+    stacked: bool = False,
+) -> Chart:
+    """Horizontal bars, labels down the side in their order.
+
+    Parameters
+    ----------
+    caption : str
+        What they show.
+    groups : dict
+        Name of each colour, and its values by label.
+    x : str
+        Title of the axis of values, with its unit.
+    least : float or None
+        The axis is logarithmic, and this stands for all that is smaller.
+    stacked : bool
+        Bars of one label stand on one another, not side by side.
+    """
+    data = [
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": name,
+            "y": list(values),
+            "x": rounded([v if least is None else max(v, least) for v in values.values()]),
+        }
+        for name, values in groups.items()
+    ]
+    labels = {label for values in groups.values() for label in values}
+    count = len(labels) if stacked else sum(len(values) for values in groups.values())
+    figure = chart(caption, data, x, "", "" if least is None else "x")
+    figure.figure["layout"] |= {
+        "barmode": "stack" if stacked else "group",
+        "height": 160 + (34 if stacked else 24) * max(count, 4),
+        "yaxis": {"autorange": "reversed", "automargin": True},
+    }
+    return figure
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[float]:
