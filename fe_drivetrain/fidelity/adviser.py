@@ -264,7 +264,7 @@ def advise(
     model = statics_level(scene)
     decided = bool(np.isfinite(quantity.of(model, length)).all())
     done = add(model, model.cost.seconds, 0.0 if decided else float("nan"))
-    if not done:
+    if not done and scene.bearing_units:
         report("level 1: beam, rigid housings")
         model = shaft_level(scene, 1)
         done = add(model, model.cost.seconds, float("nan"))
