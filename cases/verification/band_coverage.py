@@ -1,6 +1,7 @@
 """Coverage of the bands of condensed shafts: random shafts against much finer models."""
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -67,11 +68,11 @@ def chosen(run: Run) -> tuple[Sequence[int], Sequence[int]]:
 def judged(run: Run, seed: int, with_solid: bool) -> list[Record]:
     """Bands and errors of one shaft, in its meridian and as a solid."""
     scene = random_scene(seed)
-    exact, left = run.timed("references", reference, scene)
+    exact, left = run.clocked("references", reference, scene)
     levels = {MERIDIAN: banded_meridian} | ({SOLID: banded_solid} if with_solid else {})
     rows: list[Record] = []
     for level, solve in levels.items():
-        body, band = run.timed(f"level {level}", solve, scene)
+        body, band = run.clocked(f"level {level}", solve, scene)
         error = largest_difference(body.stiffness, exact)
         rows.append(
             {
@@ -99,9 +100,10 @@ def run(run: Run, page: Page) -> None:
     """Random shafts at level 2, and some of them at level 3, each with its band."""
     rows: list[Record] = []
     seeds, solids = chosen(run)
-    for seed in seeds:
-        run.report(f"shaft {seed}")
-        rows += judged(run, seed, seed in solids)
+    for number, seed in enumerate(seeds, 1):
+        run.report(f"shafts ({number} of {len(seeds)})")
+        content = {"case": "band_coverage", "seed": seed, "with solid": seed in solids}
+        rows += run.kept(content, partial(judged, run, seed, seed in solids))
     levels = grouped(rows, "level")
     found: list[Record] = [
         {
