@@ -2,8 +2,9 @@
 
 One mechanism for meshes, made hub loads, solutions, and figures of long studies. They are kept in
 the user's cache folder, which may be deleted at any time; the environment variable
-``FE_DRIVETRAIN_CACHE`` names another folder, or switches keeping off ("off"). Nothing here ever fails a run: what cannot be read or is
-damaged is made again, and what cannot be written is not kept.
+``FE_DRIVETRAIN_CACHE`` names another folder, or switches keeping off ("off"). Nothing here ever
+fails a run: what cannot be read or is damaged is made again, and what cannot be written is not
+kept.
 """
 
 from __future__ import annotations
