@@ -97,6 +97,28 @@ def recovery_estimate(
     return ErrorEstimate(energy, np.concatenate(indicators))
 
 
+def error_energies(points: Floats, parts: Sequence[tuple[Ints, Lame]], fields: Floats) -> Floats:
+    """Estimated energies of the errors of several solutions on one mesh, recovered together.
+
+    Parameters
+    ----------
+    points, parts : Floats, Sequence[tuple[Ints, Lame]]
+        See `recovery_estimate`.
+    fields : Floats
+        (3 n, m) or longer, displacements [m].
+
+    Returns
+    -------
+    Floats
+        (m,) `ErrorEstimate.error_energy` of each [J].
+    """
+    total = np.zeros(fields.shape[1])
+    for cells, lame in parts:
+        for volumes, _, error in _errors(points, np.asarray(cells), lame, fields[: points.size]):
+            total += np.einsum("eq,meq->m", volumes, energy_density(error, lame))
+    return total
+
+
 def recovered_work(
     points: Floats, parts: Sequence[tuple[Ints, Lame]], first: Floats, second: Floats
 ) -> Floats:
