@@ -113,7 +113,7 @@ def test_errors_of_several_quantities_are_those_of_each(solved: tuple[Model, Res
     asked.append(Quantity("main_bearing.Fz", np.eye(10)[2]))
     for quantity, found in zip(asked, recovered_errors(asked, model, response, 2.0), strict=True):
         (alone,) = recovered_errors([quantity], model, response, 2.0)
-        assert found.shape == quantity.columns(2.0).shape[1:]
+        assert found.shape == quantity.columns(2.0, 10).shape[1:]
         np.testing.assert_allclose(found, alone, rtol=1e-6)
 
 
@@ -139,4 +139,4 @@ def test_the_error_of_a_sum_of_loads_is_at_most_that_of_each(
     columns = np.column_stack([load, np.eye(10)[:, [2, 4]]])
     both, force, moment = reaction_error(model, response, "main_bearing", [4], columns)[0]
     assert 0 < both <= force + 2.0 * moment
-    assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0).T
+    assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0, 10).T

@@ -7,6 +7,8 @@ from .answers import lamina_loads as lamina_loads
 from .answers import load_zones as load_zones
 from .answers import pressures as pressures
 from .answers import secant_stiffness as secant_stiffness
+from .answers import toroidal_clearance_loss as toroidal_clearance_loss
+from .answers import truncations as truncations
 from .arrangements import Arrangement as Arrangement
 from .arrangements import ball_row as ball_row
 from .arrangements import cylindrical as cylindrical
@@ -42,6 +44,12 @@ from .geometry import Bearing as Bearing
 from .geometry import RollerRow as RollerRow
 from .geometry import angles as angles
 from .geometry import pitch_ratio as pitch_ratio
+from .races import Races as Races
+from .races import RacesEquilibrium as RacesEquilibrium
+from .races import contact_softness as contact_softness
+from .races import equilibrium_on_races as equilibrium_on_races
+from .races import rigid_races as rigid_races
+from .races import roller_motions as roller_motions
 from .rating import Ratings as Ratings
 from .rating import capacity_factor as capacity_factor
 from .rating import ratings as ratings
