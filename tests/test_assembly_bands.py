@@ -113,4 +113,4 @@ def test_the_error_of_a_sum_of_loads_is_at_most_that_of_each(
     columns = np.column_stack([load, np.eye(10)[:, [2, 4]]])
     both, force, moment = reaction_error(model, response, "main_bearing", [4], columns)[0]
     assert 0 < both <= force + 2.0 * moment
-    assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0).T
+    assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0, 10).T

@@ -312,9 +312,8 @@ def test_a_cage_that_has_moved_on_is_a_bearing_that_is_turned() -> None:
     moved = equilibrium(S, LOADS, phases=phase, tolerance=EXACT)
     other = solved(S.with_rows(phase=0.03), *LOADS)
     assert_allclose(moved.displacements, other.displacements, rtol=1e-7, atol=1e-14)
-    assert_allclose(
-        roller_loads(S, moved.displacements, phases=phase), other.rollers, rtol=1e-6, atol=1e-3
-    )
+    assert_allclose(moved.rollers, other.rollers, rtol=1e-6, atol=1e-3)
+    assert np.abs(moved.unbalanced).max() < 1e-2
     F, K = forces(S, moved.displacements, phases=phase)
     assert_allclose(F, LOADS, rtol=1e-8, atol=1e-3)
     assert_allclose(K, forces(other.bearing, other.displacements)[1], rtol=1e-6, atol=1e-3 * 1e9)

@@ -7,7 +7,12 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.suite.case import all_cases
 
 #: Cases that other tests run: on a scene of their own, or with another program beside them.
-ELSEWHERE = ("export/", "performance/", "verification/calculix_")
+ELSEWHERE = (
+    "bearing/flexible_rings_calculix",
+    "export/",
+    "performance/",
+    "verification/calculix_",
+)
 
 #: Cases of main_bearing that need the whole scene; the others are tested on a short shaft.
 WHOLE = ("main_bearing/calibrate_housing", "main_bearing/secant_stiffness")

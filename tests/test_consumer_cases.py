@@ -9,6 +9,7 @@ from fe_drivetrain.suite.result_folders import run_case
 
 #: The programs and packages of each.
 NEEDS = {
+    "bearing/flexible_rings_calculix": ["ccx"],
     "export/calculix_matrix": ["ccx"],
     "export/exudyn_drivetrain": ["exudyn"],
     "export/matrix_files": ["h5py"],

@@ -18,13 +18,13 @@ LIBRARY = sorted(GRAPH.keys() - {"geometry", "cases"})
 #: From the ground floor up: a room imports from lower floors only.
 FLOORS = (
     {"common"},
-    {"geometry", "compare"},
+    {"geometry", "compare", "histories"},
     {"bearing", "mesh", "scene", "torsion", "hub_loads"},
     {"operator", "revolution"},
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"fidelity", "peers", "report", "validation"},
+    {"fidelity", "peers", "report", "rings", "validation"},
     {"coupled", "export", "suite", "uncertainty"},
     {"commands"},
     {"cases"},

@@ -21,13 +21,14 @@ from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping
-from fe_drivetrain.compare.cycles import damage_equivalent_load, rainflow_cycles
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
 from fe_drivetrain.export.formats.summary import read_summary
 from fe_drivetrain.export.from_scene import unit_superelement
 from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance, relative_errors
+from fe_drivetrain.histories.cycles import rainflow_cycles
+from fe_drivetrain.histories.damage import damage_equivalent_load
 from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.report.pictures import can_draw
 from fe_drivetrain.report.results import Table, read_results
@@ -76,9 +77,9 @@ def test_what_else_a_scene_may_have_is_valid_once_its_comment_sign_is_gone(name:
     more = re.sub("^# ?", "", rest.partition("\n")[2], flags=re.MULTILINE)
     scene = parse_scene(text + more)
     assert faults(text + more) == []
-    assert without(scene, "materials", "mesh", "uncertainty") == without(
-        parse_scene(text), "materials", "mesh", "uncertainty"
-    )
+    shown = ("load_points", "materials", "mesh", "uncertainty")
+    assert without(scene, *shown) == without(parse_scene(text), *shown)
+    assert [point.name for point in scene.load_points] == ["brake"]
     assert scene.uncertainty["shaft.sections.0.outer_diameter"].uniform == 0.001
     assert scene.hub.coupling == "averaged"
     if "mesh" in more:
@@ -528,9 +529,12 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
     (tmp_path / "outputs").mkdir()
     write_outb(tmp_path / "outputs" / "run.outb", rotating_columns())
     commands = commands_of_the_readme()
-    assert [words[0] for words in commands] == ["new", "check", "study", "advise"] + 2 * ["export"]
+    assert [words[0] for words in commands] == [
+        *("new", "check", "study", "advise", "loads"),
+        *2 * ["export"],
+    ]
     for words in commands:
-        coarse = [] if words[0] == "new" else QUICK
+        coarse = [] if words[0] in ("new", "loads") else QUICK
         status, out, err = invoke(*words, *coarse)
         assert status == 0, (words, err)
         assert out
@@ -539,6 +543,7 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
             documented.write_text(example, "utf-8")
     for made in (
         "reports/check/mine/report.html",
+        "reports/loads/report.html",
         "reports/study/mine/reactions_run.csv",
         "reports/advise/mine/report.html",
         "mine.inp",

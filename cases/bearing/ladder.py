@@ -140,6 +140,6 @@ def run(run: Run, page: Page) -> None:
             points=True,
         )
     page.text(
-        "Flexible rings and full contact of solids are rungs above these; they are not part of the "
-        "bearing by itself."
+        "Rings are rigid here: `flexible_ladder` goes on with races that give way, up to the "
+        "contact of the whole solid."
     )

@@ -39,7 +39,7 @@ from fe_drivetrain.scene import Component, SomeComponent
 from fe_drivetrain.suite import Page, Run, column
 
 #: Coarsening of the mesh under --quick.
-QUICK = 1.8
+QUICK = 2.2
 
 #: Factors on mesh sizes of the two coarser solids that give the finest its band.
 COARSER = (1.8, 1.35)

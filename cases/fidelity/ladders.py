@@ -11,7 +11,7 @@ from fe_drivetrain.scene import change_scene, library_scene
 from fe_drivetrain.suite import Page, Record, Run
 
 #: The mesh of a quick run: sizes times this, where the table says no other, and elements a turn.
-COARSER, TURN = 1.4, 8
+COARSER, TURN = 2.2, 8
 
 
 @cases("ladders.yaml", changes="scene")

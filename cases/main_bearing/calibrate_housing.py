@@ -35,7 +35,7 @@ from fe_drivetrain.suite import Page, Record, Run
 
 #: Housings sampled by form.
 SAMPLES, BOLTED_SAMPLES, QUICK_SAMPLES = 60, 36, 10
-QUICK_MESH = 1.25
+QUICK_MESH = 1.6
 #: 0.2 % proof stress of EN-GJS-400-15 (EN 1563) [Pa].
 PROOF = 250e6
 

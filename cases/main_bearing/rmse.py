@@ -8,7 +8,15 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, general, loads, reactions, shown, study
+from fe_drivetrain.cases.main_bearing import (
+    bands,
+    design_measures,
+    general,
+    loads,
+    reactions,
+    shown,
+    study,
+)
 from fe_drivetrain.cases.main_bearing.comparison import (
     MEAN_ERROR,
     PUBLISHED,
@@ -276,6 +284,7 @@ def run(run: Run, page: Page) -> None:
     loads.series_charts(page, hub, found.fe, found.pairs)
     page.section("FE against beam")
     loads.scatter_charts(page, found.fe, found.pairs)
+    design_measures.section(run, page, hub, found)
     page.section("What reactions do not show: stiffness, deflection, slope")
     shown.tilt_table(page, tilt, series["bonded"])
     page.table(

@@ -42,6 +42,12 @@ from .geometry import Bearing as Bearing
 from .geometry import RollerRow as RollerRow
 from .geometry import angles as angles
 from .geometry import pitch_ratio as pitch_ratio
+from .races import Races as Races
+from .races import RacesEquilibrium as RacesEquilibrium
+from .races import contact_softness as contact_softness
+from .races import equilibrium_on_races as equilibrium_on_races
+from .races import rigid_races as rigid_races
+from .races import roller_motions as roller_motions
 from .rating import Ratings as Ratings
 from .rating import capacity_factor as capacity_factor
 from .rating import ratings as ratings

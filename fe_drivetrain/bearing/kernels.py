@@ -139,7 +139,7 @@ def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def _laminae(
+def laminae(
     b: float,
     c: float,
     K: float,
@@ -233,7 +233,7 @@ def _element(
     if d[KIND] == CLOSED:
         closed(b, c, d[STIFF], d[EXPONENT], d[LENGTH], s)
     else:
-        _laminae(b, c, d[STIFF], d[EXPONENT], xi, free, table, work, s)
+        laminae(b, c, d[STIFF], d[EXPONENT], xi, free, table, work, s)
     Q = s[0]
     if Q <= 0.0:
         return 0.0

@@ -59,6 +59,8 @@ class Equilibrium:
         (n,) Newton steps, and evaluations of all rollers.
     unbalanced : Floats
         (n, 5) loads less the forces of the bearing [N, N m]: of a reduction, what it leaves out.
+    phases : Floats or None
+        (n,) angle by which the rolling elements have moved on [rad]; None where they have not.
     """
 
     bearing: Bearing
@@ -68,16 +70,17 @@ class Equilibrium:
     converged: Bools
     iterations: Ints
     evaluations: Ints
+    phases: Floats | None = None
 
     @cached_property
     def unbalanced(self) -> Floats:
         """(n, 5) loads less the forces of the bearing [N, N m]."""
-        return self.loads - forces(self.bearing, self.displacements)[0]
+        return self.loads - forces(self.bearing, self.displacements, phases=self.phases)[0]
 
     @cached_property
     def rollers(self) -> Floats:
         """(n, total) load of each rolling element [N], row by row."""
-        return roller_loads(self.bearing, self.displacements)
+        return roller_loads(self.bearing, self.displacements, phases=self.phases)
 
 
 def equilibrium(
@@ -128,8 +131,8 @@ def equilibrium(
     of their internal forces.
     """
     F = checked_loads(bearing, loads)
-    B, carried = _free_motions(bearing)
-    _refuse_mechanism(bearing, F, B, carried)
+    B, carried = free_motions(bearing)
+    refuse_mechanism(bearing, F, B, carried)
     return _solved(bearing, F, B[None], tolerance, start, phases, warm, damped)
 
 
@@ -171,13 +174,13 @@ def three_degrees(
     B[:, 0, 0] = 1.0
     B[:, 1:3, 1] = along / np.hypot(*along.T)[:, None]
     B[:, 3:5, 2] = about / np.hypot(*about.T)[:, None] / bearing.arm
-    whole, carried = _free_motions(bearing)
-    _refuse_mechanism(bearing, F, whole, carried)
+    whole, carried = free_motions(bearing)
+    refuse_mechanism(bearing, F, whole, carried)
     return _solved(bearing, F, B, tolerance, None, None, False, True)
 
 
 @lru_cache(maxsize=64)
-def _free_motions(bearing: Bearing) -> tuple[Floats, Bools]:
+def free_motions(bearing: Bearing) -> tuple[Floats, Bools]:
     """Motions that some contact resists, as columns with tilts over the pitch radius; and which."""
     H = _linear(bearing, np.diag([1.0, 1.0, 1.0, 1.0 / bearing.arm, 1.0 / bearing.arm]))
     values, vectors = np.linalg.eigh(H)
@@ -232,7 +235,8 @@ def _solved(
     n, m = len(loads), B.shape[2]
     if not 1e-14 <= tolerance < 1.0:
         raise InputError(f"tolerance is {tolerance:g}: give 1e-14 to 1, as 1e-8")
-    turned = loads if phases is None else turn(loads, -np.asarray(phases, dtype=float))
+    moved_on = None if phases is None else np.asarray(phases, dtype=float)
+    turned = loads if moved_on is None else turn(loads, -moved_on)
     B = np.ascontiguousarray(B)
     soft = np.stack([_linear(bearing, b) for b in B])
     # all contacts deflected by as much as carries the load
@@ -264,10 +268,10 @@ def _solved(
         )
         for whole, part in zip(found, again, strict=True):
             whole[lost] = part
-        _refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
+        refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
     u = found.displacements
-    if phases is not None:
-        u = turn(u, np.asarray(phases, dtype=float))
+    if moved_on is not None:
+        u = turn(u, moved_on)
     return Equilibrium(
         bearing,
         loads,
@@ -276,6 +280,7 @@ def _solved(
         found.residuals <= 1.0,
         found.steps,
         found.evaluations,
+        moved_on,
     )
 
 
@@ -361,7 +366,7 @@ def _mean_diagonal(soft: Floats) -> Floats:
     return np.asarray(np.trace(soft, axis1=1, axis2=2)[:, None, None] / m * np.eye(m))
 
 
-def _refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools) -> None:
+def refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools) -> None:
     """Raise where a load acts on a motion that no contact resists."""
     if carried.all():
         return
@@ -382,7 +387,7 @@ def _refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools
         )
 
 
-def _refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
+def refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
     """Raise where no pushes of rollers add up to the load, as of a single row pushed open."""
     rollers = [row for row in bearing.rows if isinstance(row, RollerRow)]
     if not len(loads) or len(rollers) < len(bearing.rows):

@@ -116,7 +116,7 @@ def study_command(
             )
         from fe_drivetrain.commands.study_loads import own_loads
         from fe_drivetrain.commands.study_page import studied
-        from fe_drivetrain.compare.cycles import SLOPES, check_slope
+        from fe_drivetrain.histories.damage import SLOPES, check_slope
 
         for exponent in slope or ():
             check_slope(exponent)
@@ -171,8 +171,9 @@ def advise_command(
         found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.commands.advice_page import advised
         from fe_drivetrain.fidelity.adviser import Quantity
+        from fe_drivetrain.response.model import scene_loads
 
-        asked = Quantity(quantity, parse_loads(load or ()))
+        asked = Quantity(quantity, parse_loads(load or (), scene_loads(found)))
         asked.check(found)
         share = parse_tolerance(tolerance)
         return _run_on_scene(
@@ -247,8 +248,9 @@ def uncertainty_command(
         hold_threads()
         found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.commands.uncertainty_page import uncertain
+        from fe_drivetrain.response.model import scene_loads
 
-        factors = parse_loads(load or ())
+        factors = parse_loads(load or (), scene_loads(found))
         share = parse_tolerance(tolerance)
         sobol_samples = 2 ** (samples.bit_length() - 1) if sobol else 0
         return _run_on_scene(

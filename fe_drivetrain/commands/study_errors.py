@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.compare.time_weighted import weighted_rms
@@ -33,7 +34,9 @@ _LEVELS = {
 }
 
 
-def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
+def errors(
+    page: Page, scene: Scene, levels: Levels, loads: StudyLoads, slopes: Sequence[float]
+) -> int:
     """RMSE of each level against the assembly, and the cheapest level that is enough.
 
     Parameters
@@ -46,6 +49,8 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
         All levels.
     loads : StudyLoads
         Hub loads.
+    slopes : sequence of float
+        Of S-N curves.
 
     Returns
     -------
@@ -54,7 +59,7 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
     """
     page.section("Beams against FE")
     others = list(levels.models)[:-1]
-    hub = np.concatenate([history.loads for history in loads.histories])
+    hub = np.concatenate([entering(scene, history) for history in loads.histories])
     weights = loads.weights
     weight, length = scene.gearbox.weight, scene.shaft.length
     absolute: list[Record] = []
@@ -104,6 +109,7 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
     worst = {label: max(of[label] for of in shares.values()) for label in others}
     page.answer(_enough(worst))
     _advice(page, levels, shares)
+    measures(page, scene, levels, loads, slopes, _LEVELS, ENOUGH)
     errors_of = {n: max(worst[m] for m in _LEVELS[label]) for n, label in _SAMPLED.items()}
     enough = [level for level, error in errors_of.items() if error <= ENOUGH]
     return enough[0] if enough else min(errors_of, key=lambda level: errors_of[level])

@@ -8,13 +8,12 @@ import numpy as np
 
 from fe_drivetrain.commands.scene_page import checked_model, describe, quick_scene
 from fe_drivetrain.commands.study_errors import errors
-from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering, surrogate_loads
 from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_reactions
 from fe_drivetrain.commands.uncertainty_page import bands, inputs
 from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
-from fe_drivetrain.compare.cycles import SLOPES
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.export.formats.summary import summary, write_summary
@@ -25,6 +24,7 @@ from fe_drivetrain.fidelity.over_loads import (
     reaction_history,
 )
 from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
+from fe_drivetrain.histories.damage import SLOPES
 from fe_drivetrain.mesh.files import write
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import (
@@ -33,7 +33,7 @@ from fe_drivetrain.report.pictures import (
     picture_of_model,
 )
 from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
@@ -83,7 +83,9 @@ def studied(
             step.name += ", from the cache"
     with run.step("levels 1 and 2"):
         levels = levels_of(scene, response, run.report)
-    mean = weighted_statistics(np.concatenate([h.loads for h in loads.histories]), loads.weights)
+    driving = np.concatenate([entering(scene, history) for history in loads.histories])
+    mean = weighted_statistics(driving, loads.weights)[:, 1]
+    factors = np.concatenate([mean[:6], [0.0, 0.0, -GRAVITY, scene.gearbox.weight], mean[6:]])
     _check(page, scene, response, levels)
 
     if run.quick:
@@ -92,26 +94,25 @@ def studied(
         )
     page.answer(loads.statement, *model.warnings)
     page.section("Scene")
-    _pictures(run, page, model, response, mean[:, 1])
+    _pictures(run, page, model, response, factors)
     describe(page, model)
     page.section("Stiffness of the bearing units")
     _stiffness(run, page, model, response, levels)
     with run.step("reactions of all load steps"):
         reactions(run, page, model, loads, levels, slopes)
     with run.step("beams against FE"):
-        level = errors(page, scene, levels, loads)
+        level = errors(page, scene, levels, loads, slopes)
         _series(page, scene, loads, levels)
     if scene.uncertainty:
-        _uncertainty(run, page, scene, level, mean[:, 1])
+        _uncertainty(run, page, scene, level, factors)
     with run.step("files"):
         _files(run, page, model, response, loads, levels)
     for assumption in loads.assumptions:
         page.assume(*assumption)
 
 
-def _uncertainty(run: Run, page: Page, scene: Scene, level: int, mean: Floats) -> None:
+def _uncertainty(run: Run, page: Page, scene: Scene, level: int, load: Floats) -> None:
     """What the spreads that the scene states do to stiffnesses and bearing forces."""
-    load = np.concatenate([mean, [0.0, 0.0, -GRAVITY, scene.gearbox.weight]])
     asked = [f"{unit.bearing.name}.Fz" for unit in scene.bearing_units]
     with run.step("uncertainty"):
         found = study(
@@ -135,7 +136,8 @@ def _files(
         write_reactions(run.folder, model, loads, levels)
     write_summary(run.folder / "summary.json", summary(model.scene, 2))
     fields = {
-        f"displacement {load}": response.displacements[:, :, k] for k, load in enumerate(LOADS)
+        f"displacement {load}": response.displacements[:, :, k]
+        for k, load in enumerate(model.loads)
     }
     write(model.mesh, run.folder / "mesh.vtu", fields)
     page.section("Files")
@@ -180,9 +182,7 @@ def _check(page: Page, scene: Scene, response: Response, levels: Levels) -> None
     )
 
 
-def _pictures(run: Run, page: Page, model: Model, response: Response, mean: Floats) -> None:
-    factors = np.zeros(10)
-    factors[:6], factors[8], factors[9] = mean, -GRAVITY, model.scene.gearbox.weight
+def _pictures(run: Run, page: Page, model: Model, response: Response, factors: Floats) -> None:
     with run.step("pictures"):
         try:
             picture_of_model(model, run.folder / "model.png")
@@ -192,7 +192,7 @@ def _pictures(run: Run, page: Page, model: Model, response: Response, mean: Floa
             return
     page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
     page.image(
-        f"Deformed {times:,.0f} times too large, under the mean hub load and all weights",
+        f"Deformed {times:,.0f} times too large, under the mean load and all weights",
         "deformed.png",
     )
 
@@ -263,7 +263,7 @@ def _series(page: Page, scene: Scene, loads: StudyLoads, levels: Levels) -> None
             reaction = reaction_history(
                 levels.models[label],
                 name,
-                history.loads[shown],
+                entering(scene, history)[shown],
                 scene.gearbox.weight,
                 GRAVITY,
             )

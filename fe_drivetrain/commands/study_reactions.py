@@ -9,19 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
-from fe_drivetrain.compare.cycles import (
-    FREQUENCY,
-    RULE,
-    Cycles,
-    damage_equivalent_load,
-    rainflow_cycles,
-)
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
+from fe_drivetrain.histories.cycles import RULE, Cycles, rainflow_cycles
+from fe_drivetrain.histories.damage import FREQUENCY, damage_equivalent_load
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -119,9 +114,10 @@ def _over_histories(
 ) -> Iterator[tuple[str, _Found]]:
     """All histories together, and then each."""
     weight = model.scene.gearbox.weight
+    driving = [entering(model.scene, history) for history in loads.histories]
 
     def of(level: LevelModel) -> list[Floats]:
-        return [reaction_history(level, name, h.loads, weight, GRAVITY) for h in loads.histories]
+        return [reaction_history(level, name, one, weight, GRAVITY) for one in driving]
 
     samples = of(levels.reference)
     coarse = None if levels.coarser is None else of(levels.coarser)
@@ -150,7 +146,7 @@ def _over_histories(
 def _cycles(samples: Floats, least: float) -> Cycles:
     """None where a component is round-off of the others."""
     if np.ptp(samples) <= least:
-        return Cycles(np.zeros(0), np.zeros(0))
+        return Cycles(np.zeros(0), np.zeros(0), np.zeros(0))
     return rainflow_cycles(samples)
 
 
@@ -219,8 +215,9 @@ def _weights(model: Model) -> str:
         f"{part} {GRAVITY * float(mass.sum()) / 1e3:.4g} kN"
         for part, mass in model.part_mass.items()
     )
+    points = "".join(f", {p.name} {p.weight / 1e3:.4g} kN" for p in model.scene.load_points)
     return (
-        f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN; "
+        f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN{points}; "
         "that of the rotor as far as the hub loads have it"
     )
 
@@ -298,7 +295,11 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
         ]
         values = [
             reaction_history(
-                levels.reference, name, history.loads, model.scene.gearbox.weight, GRAVITY
+                levels.reference,
+                name,
+                entering(model.scene, history),
+                model.scene.gearbox.weight,
+                GRAVITY,
             )
             for name in names
         ]

@@ -14,9 +14,6 @@ from .convergence import band_of as band_of
 from .convergence import grid_convergence as grid_convergence
 from .convergence import observed_order as observed_order
 from .convergence import richardson as richardson
-from .cycles import Cycles as Cycles
-from .cycles import damage_equivalent_load as damage_equivalent_load
-from .cycles import rainflow_cycles as rainflow_cycles
 from .moments import moments as moments
 from .pareto import cheapest_within as cheapest_within
 from .pareto import growth_exponent as growth_exponent

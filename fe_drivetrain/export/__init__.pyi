@@ -1,7 +1,9 @@
 from .calculix_deck import write_inp as write_inp
 from .calculix_integration import four_point_model as four_point_model
+from .calculix_integration import four_point_stiffness as four_point_stiffness
 from .calculix_results import ROUNDING as ROUNDING
 from .calculix_results import DeckResponse as DeckResponse
+from .calculix_results import read_dat as read_dat
 from .calculix_results import read_response as read_response
 from .craig_bampton import CraigBampton as CraigBampton
 from .craig_bampton import craig_bampton_shaft as craig_bampton_shaft

@@ -22,7 +22,7 @@ def four_point_model(model: Model) -> Model:
     return replace(
         model,
         part_stiffness={
-            part: _four_points(
+            part: four_point_stiffness(
                 mesh.points,
                 mesh.cells[mesh.part_cells(part)],
                 model.scene.material_of(part).lame,
@@ -33,9 +33,25 @@ def four_point_model(model: Model) -> Model:
     )
 
 
-def _four_points(
+def four_point_stiffness(
     points: Floats, cells: Ints, lame: tuple[float, float], n_dofs: int
 ) -> sparse.bsr_array:
+    """Stiffness of cells integrated at four points, see `four_point_model`.
+
+    Parameters
+    ----------
+    points, cells : Floats, Ints
+        (n, 3) node coordinates [m], and (n_cells, 10) nodes in VTK's order.
+    lame : tuple of float
+        Lame's constants (lambda, mu) [Pa].
+    n_dofs : int
+        Of the result, three a node or more.
+
+    Returns
+    -------
+    stiffness : sparse.bsr_array
+        (n_dofs, n_dofs) [N/m].
+    """
     gradients, weights = element_kind(cells.shape[1]).table(2)
     pattern = sparsity(cells, n_dofs // 3)
     data = np.zeros((len(pattern.indices), 3, 3))

@@ -53,7 +53,7 @@ class Quantity:
         "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
         "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
     load : Floats or None
-        (10,) factors of `model.LOADS`; None for a reaction to all hub loads, one at a time.
+        (n,) factors of `model.scene_loads`; None for a reaction to all hub loads, one at a time.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Quantity:
         InputError
             The name is none of the scene's.
         """
-        names = [unit.bearing.name for unit in scene.bearing_units] + ["gearbox"]
+        names = [*scene.bearing_names, "gearbox"]
         known = [f"{name}.{c}" for name in names for c in FORCES]
         known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
         if self.name not in known:
@@ -81,19 +81,19 @@ class Quantity:
             return "N/m" if component[0] == "u" else "N m/rad"
         return "N" if component[0] == "F" else "N m"
 
-    def columns(self, length: float) -> Floats:
-        """(10, k) factors of `model.LOADS` that each value is of, see `of`."""
+    def columns(self, length: float, n: int) -> Floats:
+        """(n, k) factors of the n unit loads of the scene that each value is of, see `of`."""
         if self.name.startswith("hub.stiffness"):
-            return np.eye(10)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
+            return np.eye(n)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
         if self.load is not None:
             return self.load[:, None]
         scale = np.array([1.0, 1.0, 1.0, length, length, length])
-        return np.asarray(np.eye(10)[:, :6] * scale)
+        return np.asarray(np.eye(n)[:, :6] * scale)
 
     def recovered(self, model: Model, response: Response, length: float) -> Floats:
         """(k,) errors of the values of an assembly, estimated from recovered stresses."""
         owner, _, component = self.name.partition(".")
-        columns = self.columns(length)
+        columns = self.columns(length, len(model.loads))
         if owner == "hub":
             motion = MOTIONS.index(component.rpartition(".")[2])
             given = response.motions["hub"][motion, motion]
@@ -232,7 +232,8 @@ def advise(
     tolerance : float
         Allowed error, relative.
     to_the_top : bool
-        Whether to go on to the assembly where a cheaper level is known to be enough.
+        Whether to go on to the assembly where a cheaper level is known to be enough. With a nose
+        the ladder ends at the solid shaft.
     report : callable
         Called with what is being done.
 
@@ -270,7 +271,7 @@ def advise(
     springs: Mapping[str, Floats] = {}
     if not done:
         springs, done = _run_on_springs(scene, quantity, to_the_top, add, report)
-    if not done:
+    if not done and scene.nose is None:
         model, seconds, (band,) = banded_assembly(scene, [quantity], report)
         add(model, seconds, band.half_width, band)
     return _judged(quantity, tolerance, results, springs)
@@ -294,7 +295,8 @@ def _run_on_springs(
     report("housings, faces on average")
     soft = housing_springs(scene, coupling="averaged", cache=UNCACHED)[0]
     previous = None
-    for level in (1, 2, 3) if to_the_top else (1, 2):
+    # with a nose there is no assembly above the solid shaft
+    for level in (1, 2, 3) if to_the_top or scene.nose is not None else (1, 2):
         report(f"level {level}: {TITLES[level]}, housings as springs")
         start = time.perf_counter()
         body = condensed_shaft(scene, level)

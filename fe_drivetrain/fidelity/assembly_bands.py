@@ -122,7 +122,7 @@ def motion_error(model: Model, response: Response, columns: Floats) -> Floats:
     model, response : Model, Response
         A solved scene.
     columns : Floats
-        (10, k) factors of `fe_drivetrain.response.model.LOADS`.
+        (n, k) factors of the unit loads, see `fe_drivetrain.response.model.scene_loads`.
 
     Returns
     -------
@@ -147,7 +147,7 @@ def reaction_error(
     components : Sequence[int]
         Which of the six.
     columns : Floats
-        (10, k) factors of `fe_drivetrain.response.model.LOADS`.
+        (n, k) factors of the unit loads, see `fe_drivetrain.response.model.scene_loads`.
 
     Returns
     -------

@@ -107,6 +107,49 @@ def bars(
     return figure
 
 
+def density_chart(
+    caption: str, right: ArrayLike, up: ArrayLike, unit: str, bins: int = 60
+) -> Chart:
+    """How often a vector points where, as seen along the axis: a cloud of points would hide it.
+
+    Parameters
+    ----------
+    caption : str
+        What it shows.
+    right, up : array_like
+        (n,) components, in ``unit``.
+    unit : str
+        Their unit.
+    bins : int
+        Cells along each axis.
+    """
+    x, y = np.ravel(np.asarray(right, dtype=float)), np.ravel(np.asarray(up, dtype=float))
+    reach = 1.02 * max(float(np.abs(x).max()), float(np.abs(y).max()), 1e-300)
+    edges = np.linspace(-reach, reach, bins + 1)
+    column, line = (np.searchsorted(edges, v, side="right") - 1 for v in (x, y))
+    counts = np.bincount(line * bins + column, minlength=bins * bins).reshape(bins, bins)
+    shares = 100.0 * counts / x.size
+    middles = rounded(0.5 * (edges[1:] + edges[:-1]), 4)
+    cells = [[float(f"{v:.3g}") if v > 0.0 else None for v in row] for row in shares]
+    figure: dict[str, Any] = {
+        "data": [
+            {
+                "type": "heatmap",
+                "x": middles,
+                "y": middles,
+                "z": cells,
+                "colorscale": "Viridis",
+                "colorbar": {"title": {"text": "% of time"}},
+            }
+        ],
+        "layout": {
+            "xaxis": {"title": {"text": f"right [{unit}]"}, "constrain": "domain"},
+            "yaxis": {"title": {"text": f"up [{unit}]"}, "scaleanchor": "x"},
+        },
+    }
+    return Chart(caption=caption, figure=figure)
+
+
 def rounded(values: ArrayLike, digits: int = 6) -> list[float]:
     """Plain floats of so many significant digits: keeps results.json and pages small."""
     return [float(f"{v:.{digits}g}") for v in np.ravel(np.asarray(values, dtype=float))]

@@ -46,6 +46,8 @@ _CONTENTS_FROM = 5  # sections from which on a page has a table of contents
 
 # Okabe and Ito 2008, "Color Universal Design", without the yellow, which is too faint on white
 _PALETTE = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#1f2933"]
+# line styles of the traces that come after as many as there are colours
+_DASHES = ("solid", "dash", "dot", "dashdot")
 _AXIS = {
     "exponentformat": "SI",
     "showline": True,
@@ -364,11 +366,27 @@ def _figure_as_json(item: Chart) -> Markup:
         {**trace, "type": "scatter"} if trace.get("type") == "scattergl" else trace
         for trace in figure.get("data", [])
     ]
-    content = {"data": traces, "layout": layout}
+    content = {"data": _told_apart(traces), "layout": layout}
     text = json.dumps(_finite(content), ensure_ascii=True, allow_nan=False)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
+
+
+def _told_apart(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The same traces, those in line for a colour a second time drawn in another style."""
+    found = []
+    place = 0
+    for trace in traces:
+        own = trace.get("line", {})
+        if "color" in own or "color" in trace.get("marker", {}):
+            found.append(trace)
+            continue
+        style = _DASHES[place // len(_PALETTE) % len(_DASHES)]
+        place += 1
+        dashed = style != "solid" and trace.get("type", "scatter") == "scatter"
+        found.append({**trace, "line": {"dash": style, **own}} if dashed else trace)
+    return found
 
 
 def _finite(value: Any) -> Any:

@@ -13,6 +13,7 @@ from .influence import Strip as Strip
 from .influence import carried as carried
 from .influence import influence_functions as influence_functions
 from .influence import roller_forces as roller_forces
+from .influence import strip_averages as strip_averages
 from .meridian_mesh import Meridian as Meridian
 from .meridian_mesh import Where as Where
 from .meridian_mesh import meridian as meridian

@@ -287,8 +287,9 @@ def _joined(parts):  # type: ignore[no-untyped-def]
     whole = np.empty(length, dtype=parts[0].dtype)
     at = 0
     for part in parts:
-        whole[at : at + len(part)] = part
-        at += len(part)
+        for value in part:
+            whole[at] = value
+            at += 1
     return whole
 
 
@@ -338,13 +339,19 @@ def _eliminate(A: Floats, count: int) -> bool:
         if not _inverse_of_root(inverse):
             return False
         panel = np.dot(np.ascontiguousarray(inverse.T), np.ascontiguousarray(A[first:end, end:]))
-        A[first:end, first:end] = inverse
-        A[first:end, end:] = panel
+        for i in range(end - first):
+            for j in range(end - first):
+                A[first + i, first + j] = inverse[i, j]
+            for j in range(n - end):
+                A[first + i, end + j] = panel[i, j]
         for top in range(0, n - end, _STRIP):
             bottom = min(top + _STRIP, n - end)
-            A[end + top : end + bottom, end + top :] -= np.dot(
+            product = np.dot(
                 np.ascontiguousarray(panel[:, top:bottom].T), np.ascontiguousarray(panel[:, top:])
             )
+            for i in range(bottom - top):
+                for j in range(n - end - top):
+                    A[end + top + i, end + top + j] -= product[i, j]
     return True
 
 
@@ -390,16 +397,23 @@ def _solve(dofs: Ints, sizes: Ints, gone: Ints, values: Floats, x: Floats) -> No
         here = dofs[first : first + n]
         b = np.empty((n, m))
         for i in range(n):
-            b[i] = x[here[i]]
+            for k in range(m):
+                b[i, k] = x[here[i], k]
         U = values[at : at + count * n].reshape(count, n)
         for low in range(0, count, _PANEL):
             high = min(low + _PANEL, count)
             turned = np.ascontiguousarray(U[low:high, low:].T)
             known = np.dot(turned[: high - low], np.ascontiguousarray(b[low:high]))
-            b[low:high] = known
-            b[high:] -= np.dot(turned[high - low :], known)
+            below = np.dot(turned[high - low :], known)
+            for i in range(n - low):
+                for k in range(m):
+                    if i < high - low:
+                        b[low + i, k] = known[i, k]
+                    else:
+                        b[low + i, k] -= below[i - high + low, k]
         for i in range(n):
-            x[here[i]] = b[i]
+            for k in range(m):
+                x[here[i], k] = b[i, k]
         first += n
         at += count * n
     for front in range(len(sizes) - 1, -1, -1):
@@ -409,12 +423,17 @@ def _solve(dofs: Ints, sizes: Ints, gone: Ints, values: Floats, x: Floats) -> No
         here = dofs[first : first + n]
         b = np.empty((n, m))
         for i in range(n):
-            b[i] = x[here[i]]
+            for k in range(m):
+                b[i, k] = x[here[i], k]
         U = values[at : at + count * n].reshape(count, n)
         start = _PANEL * ((count - 1) // _PANEL) if count > 0 else -1
         for low in range(start, -1, -_PANEL):
             high = min(low + _PANEL, count)
             known = b[low:high] - np.dot(np.ascontiguousarray(U[low:high, high:]), b[high:])
-            b[low:high] = np.dot(np.ascontiguousarray(U[low:high, low:high]), known)
+            found = np.dot(np.ascontiguousarray(U[low:high, low:high]), known)
+            for i in range(high - low):
+                for k in range(m):
+                    b[low + i, k] = found[i, k]
         for i in range(count):
-            x[here[i]] = b[i]
+            for k in range(m):
+                x[here[i], k] = b[i, k]

@@ -181,7 +181,7 @@ def influence_functions(
     still = np.empty(0, dtype=np.int64) if held is None else np.asarray(held, dtype=np.int64)
     pushes = np.zeros((size, len(strips)))
     for column, strip in enumerate(strips):
-        nodes, weights = _mean(mesh, strip)
+        nodes, weights, _ = strip_averages(mesh, strip)
         np.add.at(pushes[:, column], dofs(nodes, 1), weights)
     found = []
     for n in range(harmonics + 1):
@@ -316,11 +316,32 @@ def roller_forces(
 _STEPS = 100
 
 
-def _mean(mesh: Meridian, strip: Strip) -> tuple[Ints, Floats]:
-    """Nodes and their weights in the mean over a strip, which may end inside an element."""
-    width = strip.high - strip.low
+def strip_averages(mesh: Meridian, strip: Strip) -> tuple[Ints, Floats, Floats]:
+    """Nodes and their weights in the mean over a strip, which may end inside an element.
+
+    Parameters
+    ----------
+    mesh : Meridian
+        The meridian.
+    strip : Strip
+        On its outline.
+
+    Returns
+    -------
+    nodes : Ints
+        (k,), some more than once.
+    mean, slope : Floats
+        (k,) weights in the mean, and in the slope along x of the straight line that is closest
+        [1/m].
+
+    Raises
+    ------
+    InputError
+        The strip is not on a cylinder of the outline.
+    """
+    width, middle = strip.high - strip.low, 0.5 * (strip.low + strip.high)
     abscissa, weight = np.polynomial.legendre.leggauss(mesh.element.order + 1)
-    nodes, weights, covered = [], [], 0.0
+    nodes, weights, slopes, covered = [], [], [], 0.0
     for side in range(mesh.element.corners):
         cells = mesh.boundary[mesh.boundary[:, 1] == side, 0]
         if not len(cells):
@@ -334,14 +355,16 @@ def _mean(mesh: Meridian, strip: Strip) -> tuple[Ints, Floats]:
             x = low + (high - low) * (abscissa + 1.0) / 2.0
             values, _, _ = along_sides(mesh, side, cells[:1], (x - start) / (end - start))
             nodes.append(mesh.cells[cell])
-            weights.append((weight * (high - low) / 2.0) @ values / width)
+            share = weight * (high - low) / 2.0
+            weights.append(share @ values / width)
+            slopes.append((share * (x - middle)) @ values / (width**3 / 12.0))
             covered += high - low
     if not 0.0 < width < math.inf or abs(covered - width) > 1e-6 * width:
         raise InputError(
             f"strip of radius {strip.radius:g} m from x = {strip.low:g} m to {strip.high:g} m is "
             "not on a cylinder of the outline, bore or outside: move or shorten it"
         )
-    return np.concatenate(nodes), np.concatenate(weights)
+    return np.concatenate(nodes), np.concatenate(weights), np.concatenate(slopes)
 
 
 def _loose(mesh: Meridian, n: int, held: Ints) -> Floats:

@@ -1,0 +1,158 @@
+"""Error against time on a flexible housing: rigid rings, few shapes, all shapes, gap springs."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from fe_drivetrain.bearing import Bearing, Races, catalogue_bearing, equilibrium_on_races
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.bearing.flexible_rings_calculix import PART, calculix_rollers
+from fe_drivetrain.cases.bearing.housed import NAME, housed_races, housed_scene, state_housing
+from fe_drivetrain.cases.bearing.ladder import CROWN, FIVE, LOADS, closed_form, peaks
+from fe_drivetrain.common import Floats, MissingToolError
+from fe_drivetrain.export import find_calculix
+from fe_drivetrain.rings import housing_solid
+from fe_drivetrain.suite import Page, Record, Run
+
+SIZE, QUICK_SIZE = (1.6, None), (2.5, 12)
+ALL = 144
+REFERENCE_LAMINAE = 200
+
+RIGID, PROFILED = "rigid rings, straight rollers", "rigid rings, 30 laminae with profile"
+FEW = "40 shapes"
+SPRINGS = "gap springs in CalculiX, rollers without length"
+
+
+def on_races(compliance: Floats, shapes: int) -> Callable[[Bearing, Floats], Floats]:
+    """A rung of the ladder: peaks on races with so many shapes."""
+    return peaks(
+        lambda bearing, loads: (
+            equilibrium_on_races(
+                Races(bearing, compliance), loads, shapes=shapes, warm=False
+            ).rollers
+        )
+    )
+
+
+def rungs(
+    compliance: Floats,
+) -> tuple[tuple[str, dict[str, float], Callable[[Bearing, Floats], Floats]], ...]:
+    """Name, changes of the bearing, and how its peak roller is found, cheap to expensive."""
+    profile = {"laminae": 30, "crown": CROWN}
+    return (
+        ("closed form, loads added", {}, closed_form),
+        (RIGID, {"laminae": 0}, FIVE),
+        (PROFILED, profile, FIVE),
+        ("10 shapes", {"laminae": 0}, on_races(compliance, 10)),
+        ("20 shapes", {"laminae": 0}, on_races(compliance, 20)),
+        (FEW, {"laminae": 0}, on_races(compliance, 40)),
+        ("40 shapes, 30 laminae with profile", profile, on_races(compliance, 40)),
+        ("all shapes, 30 laminae with profile", profile, on_races(compliance, ALL)),
+    )
+
+
+@case(
+    "Flexible housing: error against time, from closed form to gap springs of a solid",
+    source="bearing S in the library's housing, all shapes and profiled rollers as reference",
+    alone=True,
+)
+def run(run: Run, page: Page) -> None:
+    """Time each rung over many load cases of each kind; compare with the finest."""
+    n = 20 if run.quick else 500
+    size = QUICK_SIZE if run.quick else SIZE
+    with run.step("condense the housing"):
+        begin = time.perf_counter()
+        C = housed_races(size).compliance
+        condensed = time.perf_counter() - begin
+    finest = catalogue_bearing("bearing_s_o20", laminae=REFERENCE_LAMINAE, crown=CROWN)
+    rows: list[Record] = []
+    for kind, load in LOADS.items():
+        loads = np.array([load] * n, dtype=float)
+        with run.step(kind):
+            exact = float(on_races(C, ALL)(finest, loads[:1])[0])
+            for name, changes, solve in rungs(C):
+                bearing = catalogue_bearing("bearing_s_o20", **changes)
+                solve(bearing, loads[:1])  # compiles, and fills caches
+                begin = time.perf_counter()
+                found = float(solve(bearing, loads)[0])
+                seconds = (time.perf_counter() - begin) / n
+                rows.append(_row(kind, name, seconds, found, exact))
+            rows += _springs(run, kind, C, size, exact)
+    at = {(r["load"], r["model"]): r["error [%]"] for r in rows}
+    for kind in LOADS:
+        page.at_most(
+            f"{kind}: error of all shapes and 30 laminae with profile",
+            at[kind, "all shapes, 30 laminae with profile"],
+            0.5,
+            why="midpoint rule with 30 laminae on rollers that lean",
+            source=f"{REFERENCE_LAMINAE} laminae",
+            unit="%",
+            basis="self-consistency",
+        )
+        page.at_most(
+            f"{kind}: 40 shapes less all, with profile",
+            abs(
+                at[kind, "40 shapes, 30 laminae with profile"]
+                - at[kind, "all shapes, 30 laminae with profile"]
+            ),
+            0.5,
+            why="shapes left out give less than a twentieth of what a contact does",
+            source="all shapes",
+            unit="%",
+            basis="self-consistency",
+        )
+    combined = "combined, in one plane"
+    page.answer(
+        f"Rigid rings miss the peak roller by up to {max(at[k, RIGID] for k in LOADS):.0f} % with "
+        f"straight rollers, by up to {max(at[k, PROFILED] for k in LOADS):.0f} % with their "
+        f"profile. Under the load in one plane 40 shapes of the race miss it with straight "
+        f"rollers by {at[combined, FEW]:.1f} %, most of it the profile. The housing is condensed "
+        f"once, in {condensed:.0f} s.",
+    )
+    page.section("Error against time")
+    for kind in LOADS:
+        page.sweep(
+            f"Peak roller, {kind}",
+            [row for row in rows if row["load"] == kind],
+            "time per load case [us]",
+            "error [%]",
+            by="model",
+            log="xy",
+            points=True,
+        )
+    state_housing(page)
+    page.text(
+        "Gap springs have rollers without length, and their time is that of CalculiX for one load "
+        "case with the motion of the inner ring given, which has to be found besides."
+    )
+
+
+def _springs(
+    run: Run, kind: str, C: Floats, size: tuple[float, int | None], exact: float
+) -> list[Record]:
+    """The contact of the whole solid, where CalculiX is installed; one load in a quick run."""
+    try:
+        find_calculix()
+    except MissingToolError:
+        return []
+    if run.quick and kind != "radial":
+        return []
+    scene = housed_scene(size)
+    bearing = catalogue_bearing("bearing_s_o20", laminae=1)
+    solid = housing_solid(scene, NAME, bearing)
+    u = equilibrium_on_races(Races(bearing, C), LOADS[kind], shapes=ALL).displacements[0]
+    begin = time.perf_counter()
+    deck = run.folder / f"{kind.replace(' ', '_').replace(',', '')}.inp"
+    rollers = calculix_rollers(deck, solid, bearing, scene.material_of(PART), u)
+    return [_row(kind, SPRINGS, time.perf_counter() - begin, float(rollers.max()), exact)]
+
+
+def _row(kind: str, name: str, seconds: float, found: float, exact: float) -> Record:
+    return {
+        "load": kind,
+        "model": name,
+        "time per load case [us]": 1e6 * seconds,
+        "peak roller [kN]": found / 1e3,
+        "error [%]": 100.0 * abs(found / exact - 1.0),
+    }

@@ -1,0 +1,182 @@
+"""Rollers on races that give way: where Newton's method needs damping, how many shapes it takes."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from fe_drivetrain.bearing import (
+    Bearing,
+    Races,
+    catalogue_bearing,
+    contact_softness,
+    equilibrium,
+    equilibrium_on_races,
+)
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.stability.bearing_newton import random_loads
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.revolution import dofs, meridian
+from fe_drivetrain.rings import races_of_revolution
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import Page, Record, Run
+
+#: Bore and width of a ring of iron about bearing S, clamped at its rear end [m].
+BORE, WIDTH = 0.424, 0.3
+WALLS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.3)
+CLEARANCES = (-2e-5, 0.0, 2e-4)
+
+FACTORS = (1.0, 1e-3, 1e-6)
+
+#: Softness of the shapes that are left out, over that of a contact.
+SHARES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
+HARMONICS = (2, 4, 6, 9, 12, 18, 27, 36)
+ALL = 144
+SHARE = "softness left out over that of a contact"
+ERROR = "error, 95th percentile [%]"
+
+#: What a choice of shapes or harmonics may change of peak rollers.
+ENOUGH = 0.01
+
+
+@lru_cache(maxsize=64)
+def ring(wall: float, harmonics: int = 36) -> Floats:
+    """Compliance of a ring of so thick a wall."""
+    section = Section(length=WIDTH, outer_diameter=2 * (BORE + wall), inner_diameter=2 * BORE)
+    shaft = Shaft(front=-WIDTH / 2, sections=(section,))
+    mesh = meridian(shaft, max(wall, 0.03), order=5, layers=0)
+    end = np.flatnonzero(np.abs(mesh.nodes[:, 0] - WIDTH / 2) < 1e-9)
+    held = np.concatenate([dofs(end, c) for c in range(3)])
+    iron = MATERIALS["ductile_iron"]
+    found = races_of_revolution(bearing(), mesh, iron, BORE, held=held, harmonics=harmonics)
+    return found.compliance
+
+
+def bearing(clearance: float = 0.0) -> Bearing:
+    """Bearing S, straight rollers in closed form."""
+    return catalogue_bearing("bearing_s_o20", laminae=0, clearance=clearance)
+
+
+@case(
+    "Flexible rings: where Newton's method needs damping, how many shapes and harmonics it takes",
+    source="damped Newton's method on a convex energy (Boyd, Vandenberghe 2004, ch. 9)",
+)
+def run(run: Run, page: Page) -> None:
+    """Sweep the wall of the ring with clearance and preload, then shapes and harmonics."""
+    n = 20 if run.quick else 300
+    walls = WALLS[1::3] if run.quick else WALLS
+    with run.step("thin walls"):
+        rows = [
+            damping(wall, gap, factor, n)
+            for wall in walls
+            for gap in CLEARANCES
+            for factor in FACTORS
+        ]
+    with run.step("shapes"):
+        shapes = [few(wall, count, n) for wall in walls for count in SHARES]
+    with run.step("harmonics"):
+        harmonics = [low(wall, count, n) for wall in walls for count in HARMONICS]
+    page.vanishes(
+        "cases of damped Newton that have not converged",
+        float(sum(row["not converged"] for row in rows)),
+        within=0.0,
+        why="any start leads to the minimum of a convex function",
+        source="convex energy",
+    )
+    worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
+    share = min(_kept(shapes, SHARE, wall, 1.0) for wall in walls)
+    waves = max(-_kept(harmonics, "harmonics", wall, -1.0) for wall in walls)
+    page.limit(
+        "the softest shapes of the races in place of all",
+        SHARE,
+        high=share,
+        criterion=f"peak rollers of random loads within {100 * ENOUGH:.0f} %, whatever the wall",
+        beyond="rollers feel the mean of races that give way between them",
+        program="leaves out shapes below a twentieth",
+        remedy="nothing to do, or `shapes=` for more",
+    )
+    page.answer(
+        f"Damped Newton converges in all cases, from {1e3 * walls[0]:.0f} mm of wall to "
+        f"{1e3 * walls[-1]:.0f} mm. Plain Newton fails in up to "
+        f"{worst['plain Newton fails [%]']:.0f} % of them, at a clearance of "
+        f"{worst['clearance [um]']:.0f} um, a wall of {worst['wall [mm]']:.0f} mm and "
+        f"{worst['load over nominal']:g} of nominal loads.",
+        f"Shapes that give {share:g} of what a contact does may be left out, and harmonics beyond "
+        f"{waves:.0f}, for {100 * ENOUGH:.0f} % of the peak roller.",
+    )
+    page.section("Wall and clearance")
+    page.table("Random loads", rows)
+    page.sweep(
+        "Random loads of nominal size: peak roller over that of rigid rings",
+        [row for row in rows if row["load over nominal"] == 1.0],
+        "wall [mm]",
+        "peak over that of rigid rings, median [-]",
+        by="clearance [um]",
+        log="x",
+        table=False,
+    )
+    page.section("Shapes and harmonics")
+    for of, x in ((shapes, SHARE), (harmonics, "harmonics")):
+        page.sweep(
+            f"Error of the peak roller over {x}",
+            of,
+            x,
+            ERROR,
+            by="wall [mm]",
+            log="xy",
+        )
+
+
+def damping(wall: float, clearance: float, factor: float, n: int) -> Record:
+    """Random loads of one size on a ring, by plain and by damped Newton."""
+    races, loads = Races(bearing(clearance), ring(wall)), factor * random_loads(n)
+    plain = equilibrium_on_races(races, loads, warm=False, damped=False)
+    damped = equilibrium_on_races(races, loads, warm=False)
+    rigid = equilibrium(races.bearing, loads).rollers.max(axis=1)
+    return {
+        "wall [mm]": 1e3 * wall,
+        "clearance [um]": 1e6 * clearance,
+        "load over nominal": factor,
+        "plain Newton fails [%]": 100.0 * float(1.0 - plain.converged.mean()),
+        "not converged": int((~damped.converged).sum()),
+        "steps, worst": int(damped.iterations.max()),
+        "shapes": damped.shapes.shape[1],
+        "peak over that of rigid rings, median [-]": float(
+            np.median(damped.rollers.max(axis=1) / rigid)
+        ),
+    }
+
+
+def few(wall: float, share: float, n: int) -> Record:
+    """The same with shapes of the races that are softer than a share of a contact."""
+    _, softness = Races(bearing(), ring(wall)).shapes(ALL)
+    count = int((softness > share * contact_softness(bearing())).sum())
+    record: Record = {"wall [mm]": 1e3 * wall, SHARE: share, "shapes": count}
+    return record | _error(wall, ring(wall), count, n)
+
+
+def low(wall: float, count: int, n: int) -> Record:
+    """The same with harmonics up to an order."""
+    return {"wall [mm]": 1e3 * wall, "harmonics": count} | _error(wall, ring(wall, count), ALL, n)
+
+
+@lru_cache(maxsize=16)
+def _whole(wall: float, n: int) -> Floats:
+    races = Races(bearing(), ring(wall))
+    found = equilibrium_on_races(races, random_loads(n), shapes=ALL)
+    return np.asarray(found.rollers.max(axis=1))
+
+
+def _error(wall: float, compliance: Floats, count: int, n: int) -> Record:
+    races = Races(bearing(), compliance)
+    peak = equilibrium_on_races(races, random_loads(n), shapes=count).rollers.max(axis=1)
+    errors = np.abs(peak / _whole(wall, n) - 1.0)
+    # all shapes of the highest harmonics are the reference itself
+    return {ERROR: 100.0 * float(np.quantile(errors, 0.95)) or None}
+
+
+def _kept(rows: list[Record], key: str, wall: float, sign: float) -> float:
+    """The largest (sign 1) or least (-1) value, times the sign, up to which errors are small."""
+    of = [row for row in rows if row["wall [mm]"] == 1e3 * wall]
+    bad = [sign * row[key] for row in of if (row[ERROR] or 0.0) > 100 * ENOUGH]
+    return float(max(sign * row[key] for row in of if sign * row[key] < min(bad, default=np.inf)))

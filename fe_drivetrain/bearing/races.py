@@ -1,0 +1,487 @@
+"""Equilibrium of rollers between races that give way.
+
+A flexible ring takes back part of the approach of a roller: the middle of its line of contact
+recedes by r, and leans by s, along the contact normal. With C the compliance of the ring between
+all rollers, (r, s) = C (Q, M). C is a sum of shapes g g^T, of which few matter beside the
+softness of the contacts; their amplitudes are unknowns beside the five motions of the inner ring,
+and their energy is a sum of squares. Nothing else is new: the whole energy stays convex.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.bearing import kernels, race_newton
+from fe_drivetrain.bearing.contact_forces import checked_loads, in_threads, packed
+from fe_drivetrain.bearing.geometry import Bearing, RollerRow, Row, angles
+from fe_drivetrain.bearing.rolling import (
+    CONTINUED,
+    TOLERANCE,
+    free_motions,
+    refuse_lifted,
+    refuse_mechanism,
+)
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.common.errors import InputError
+
+TYPICAL_APPROACH = 5e-5
+"""An approach at which the stiffness of a contact is compared with that of the races [m]."""
+
+SOFTEST_LEFT_OUT = 0.05
+"""Of the softness of a contact: shapes of the races that give less are left out, which changes peak
+rollers by about 1e-3."""
+
+# Of the largest share of a compliance: a negative one beyond it is no round-off.
+_NEGATIVE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Races:
+    """How the races of a bearing give way under its rollers.
+
+    Attributes
+    ----------
+    bearing : Bearing
+        Of rows of rollers.
+    compliance : Floats
+        (2 total, 2 total): recession of the races at each roller's middle along the contact normal
+        [m], then their lean along the roller [rad], for the load [N] and the moment [N m] of each
+        roller, row by row; moments and leans of a load that grows with x. What moves the outer
+        ring as a rigid body is part of it.
+    """
+
+    bearing: Bearing
+    compliance: Floats
+
+    def __post_init__(self) -> None:
+        size = 2 * sum(self.bearing.counts)
+        for row in self.bearing.rows:
+            if not isinstance(row, RollerRow):
+                raise InputError(
+                    f"{self.bearing.name} has a row of balls: races that give way are for rollers; "
+                    "take the bearing with rigid rings"
+                )
+        C = self.compliance
+        if C.shape != (size, size) or not np.isfinite(C).all():
+            raise InputError(
+                f"compliance of the races of {self.bearing.name} has the shape {C.shape}: give "
+                f"finite numbers ({size}, {size}), recession and lean at each roller"
+            )
+        values = np.linalg.eigvalsh(self._scaled)
+        if values[0] < -_NEGATIVE * max(values[-1], 0.0):
+            raise InputError(
+                f"compliance of the races of {self.bearing.name} gives energy back: its least "
+                f"eigenvalue is {values[0]:.3g} m/N; check the signs of its columns"
+            )
+
+    @property
+    def _scaled(self) -> Floats:
+        lengths = roller_lengths(self.bearing)
+        return _symmetric(self.compliance * np.outer(lengths, lengths))
+
+    def shapes(self, count: int | None = None) -> tuple[Floats, Floats]:
+        """The softest shapes of the races, orthogonal to each other.
+
+        Parameters
+        ----------
+        count : int, optional
+            How many; all that give more than a twentieth of what a contact does, if left out.
+
+        Returns
+        -------
+        shapes : Floats
+            (2 total, k) recession and lean of each roller, the softest first.
+        compliances : Floats
+            (k,) [m/N]: shapes times these times shapes transposed is the compliance.
+        """
+        values, vectors = np.linalg.eigh(self._scaled)
+        values, vectors = values[::-1], vectors[:, ::-1]
+        if count is None:
+            count = int((values > SOFTEST_LEFT_OUT * contact_softness(self.bearing)).sum())
+        count = min(count, int((values > 0.0).sum()))
+        return vectors[:, :count] / roller_lengths(self.bearing)[:, None], values[:count]
+
+    def stiffened(self, factor: float) -> Races:
+        """Races of a modulus that is larger by a factor."""
+        return Races(self.bearing, self.compliance / factor)
+
+
+@dataclass(frozen=True, eq=False)
+class RacesEquilibrium:
+    """Where the inner ring comes to rest on races that give way.
+
+    Attributes
+    ----------
+    races : Races
+        The bearing and its races.
+    loads, displacements : Floats
+        (n, 5) on the inner ring [N, N m], and its motions [m, rad].
+    rollers, moments : Floats
+        (n, total) load of each roller [N], and its moment about the roller's middle [N m].
+    shapes, amplitudes : Floats
+        (2 total, k) shapes of the races that were taken, and (n, k) how much of each [m].
+    residuals : Floats
+        (n,) what is left of the balance, over what `converged` allows.
+    converged : Bools
+        (n,).
+    iterations, evaluations : Ints
+        (n,) Newton steps, and evaluations of all rollers.
+    """
+
+    races: Races
+    loads: Floats
+    displacements: Floats
+    rollers: Floats
+    moments: Floats
+    shapes: Floats
+    amplitudes: Floats
+    residuals: Floats
+    converged: Bools
+    iterations: Ints
+    evaluations: Ints
+
+    @property
+    def recession(self) -> Floats:
+        """(n, 2 total) of the races at each roller [m], then their lean [rad]."""
+        return np.asarray(self.amplitudes @ self.shapes.T)
+
+    @property
+    def unbalanced(self) -> Floats:
+        """(n, 5) loads less the forces of the rollers on the inner ring [N, N m]."""
+        approach, lean = roller_motions(self.races.bearing)
+        return np.asarray(self.loads - self.rollers @ approach - self.moments @ lean)
+
+
+def rigid_races(bearing: Bearing) -> Races:
+    """Races that do not give way.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Of rows of rollers.
+
+    Returns
+    -------
+    races : Races
+        Of no compliance.
+    """
+    size = 2 * sum(bearing.counts)
+    return Races(bearing, np.zeros((size, size)))
+
+
+def roller_lengths(bearing: Bearing) -> Floats:
+    """What makes recessions of leans: the root mean square place on each roller.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Of rows of rollers.
+
+    Returns
+    -------
+    lengths : Floats
+        (2 total,) 1 for each roller, then these [m].
+    """
+    along = [
+        np.full(n, row.length / np.sqrt(12.0))
+        for n, row in zip(bearing.counts, bearing.rows, strict=True)
+        if isinstance(row, RollerRow)
+    ]
+    return np.concatenate([np.ones(sum(bearing.counts)), *along])
+
+
+def roller_motions(bearing: Bearing) -> tuple[Floats, Floats]:
+    """Approach and lean of each roller for unit motions of the inner ring.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Of rows of rollers.
+
+    Returns
+    -------
+    approach, lean : Floats
+        (total, 5) each, over u_x, u_y, u_z [m], theta_y, theta_z [rad].
+    """
+    approach, lean = [], []
+    for row in bearing.rows:
+        psi = angles(row)
+        sin, cos, zero = np.sin(psi), np.cos(psi), np.zeros(len(psi))
+        rolls = isinstance(row, RollerRow) and not row.aligning
+        arm, turns = (row.arm, 1.0) if isinstance(row, RollerRow) and rolls else (0.0, 0.0)
+        axial, radial = np.full(len(psi), np.sin(row.angle)), np.cos(row.angle)
+        approach.append([axial, -radial * cos, radial * sin, -arm * sin, -arm * cos])
+        lean.append([zero, zero, zero, -turns * sin, -turns * cos])
+    return np.hstack(approach).T, np.hstack(lean).T
+
+
+def equilibrium_on_races(
+    races: Races,
+    loads: ArrayLike,
+    *,
+    shapes: int | None = None,
+    tolerance: float = TOLERANCE,
+    warm: bool = True,
+    damped: bool = True,
+) -> RacesEquilibrium:
+    """The displacements that balance each load case, on races that give way.
+
+    Parameters
+    ----------
+    races : Races
+        The bearing and its races.
+    loads : array_like
+        (n, 5) or (5,): Fx, Fy, Fz [N], My, Mz [N m] on the inner ring at the bearing's centre.
+    shapes : int, optional
+        How many shapes of the races to take, see `Races.shapes`.
+    tolerance : float
+        Largest residual over the load, moments divided by the pitch radius, of motions and shapes
+        together.
+    warm : bool
+        Start each case from the one before it, where its load is near.
+    damped : bool
+        False is plain Newton, which may fail: for studies.
+
+    Returns
+    -------
+    found : RacesEquilibrium
+        Each case converged, or flagged. Displacements are those of the inner ring against the
+        ground that the outer ring's compliance is relative to.
+
+    Raises
+    ------
+    InputError
+        A load is no number, or acts on a motion that nothing carries, or lifts the inner ring off.
+    """
+    bearing = races.bearing
+    F = checked_loads(bearing, loads)
+    if not 1e-14 <= tolerance < 1.0:
+        raise InputError(f"tolerance is {tolerance:g}: give 1e-14 to 1, as 1e-8")
+    B, carried = free_motions(bearing)
+    refuse_mechanism(bearing, F, B, carried)
+    G, compliances = races.shapes(shapes)
+    body = _body(bearing, B, G, compliances)
+    targets = np.hstack([F @ B, np.zeros((len(F), len(compliances)))])
+    found = solve_on_body(body, bearing, targets, tolerance, warm=warm, damped=damped)
+    if damped:
+        lost = np.flatnonzero(found.residuals > 1.0)
+        refuse_lifted(bearing, F[lost], lost)
+    m = B.shape[1]
+    return RacesEquilibrium(
+        races,
+        F,
+        found.unknowns[:, :m] @ B.T,
+        found.rollers,
+        found.moments,
+        G,
+        found.unknowns[:, m:],
+        found.residuals,
+        found.residuals <= 1.0,
+        found.steps,
+        found.evaluations,
+    )
+
+
+class Solved(NamedTuple):
+    """What the compiled loops have found, see `race_newton.solve_cases`."""
+
+    unknowns: Floats
+    rollers: Floats
+    moments: Floats
+    steps: Ints
+    evaluations: Ints
+    residuals: Floats
+
+
+def _body(bearing: Bearing, B: Floats, shapes: Floats, compliances: Floats) -> race_newton.Body:
+    """The motions B of the inner ring, and shapes of the races, as what the rollers touch."""
+    total = sum(bearing.counts)
+    approach, lean = roller_motions(bearing)
+    aligning = np.repeat(
+        [isinstance(r, RollerRow) and r.aligning for r in bearing.rows], bearing.counts
+    )
+    leans = np.where(aligning[:, None], 0.0, -shapes[total:])
+    P = np.ascontiguousarray(np.hstack([approach @ B, -shapes[:total]]))
+    C = np.ascontiguousarray(np.hstack([lean @ B, leans]))
+    return race_newton.Body(
+        P,
+        C,
+        np.concatenate([np.zeros(B.shape[1]), 1.0 / compliances]),
+        soft_springs(bearing, P, C),
+    )
+
+
+def soft_springs(bearing: Bearing, approach: Floats, lean: Floats) -> Floats:
+    """Stiffness of all rollers as springs of K n, over unknowns.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Of rows of rollers.
+    approach, lean : Floats
+        (total, m) of each roller for a unit of each unknown.
+
+    Returns
+    -------
+    stiffness : Floats
+        (m, m) for an approach of 1 m.
+    """
+    k = np.repeat([r.law.stiffness * r.law.exponent for r in bearing.rows], bearing.counts)
+    turning = k * np.repeat([_length(r) ** 2 / 12.0 for r in bearing.rows], bearing.counts)
+    return np.asarray(approach.T @ (k[:, None] * approach) + lean.T @ (turning[:, None] * lean))
+
+
+def solve_on_body(
+    body: race_newton.Body,
+    bearing: Bearing,
+    targets: Floats,
+    tolerance: float = TOLERANCE,
+    *,
+    warm: bool = True,
+    damped: bool = True,
+) -> Solved:
+    """Rollers on any body that is linear but for them.
+
+    Parameters
+    ----------
+    body : Body
+        What the rollers touch.
+    bearing : Bearing
+        All rows of rollers.
+    targets : Floats
+        (n, m) loads on the unknowns [N].
+    tolerance : float
+        Largest residual over the load.
+    warm, damped : bool
+        As for `equilibrium_on_races`.
+
+    Returns
+    -------
+    found : Solved
+        Unknowns, rollers and residuals of each case; what does not converge is followed down from
+        larger loads, and has a residual above 1 if that fails.
+    """
+    found = _run(body, bearing, targets, tolerance, warm=warm, damped=damped)
+    lost = np.flatnonzero(found.residuals > 1.0)
+    if damped and len(lost):
+        again = _continued(body, bearing, targets[lost], tolerance)
+        for whole, part in zip(found, again, strict=True):
+            whole[lost] = part
+    return found
+
+
+def _run(
+    body: race_newton.Body,
+    bearing: Bearing,
+    targets: Floats,
+    tolerance: float,
+    *,
+    warm: bool,
+    damped: bool,
+    start: Floats | None = None,
+) -> Solved:
+    """The compiled Newton method over chunks of cases, in threads."""
+    n, total = len(targets), sum(bearing.counts)
+    # under the load of a preload alone rollers are no springs: start where the rings are concentric
+    given = start is not None or all(r.clearance < 0.0 for r in bearing.rows)
+    found = Solved(
+        np.zeros(targets.shape) if start is None else start.copy(),
+        np.empty((n, total)),
+        np.empty((n, total)),
+        np.empty(n, np.int64),
+        np.empty(n, np.int64),
+        np.empty(n),
+    )
+    scales = _scales(bearing, targets)
+    targets, pack = np.ascontiguousarray(targets), packed(bearing)
+
+    def solve(cases: slice) -> None:
+        race_newton.solve_cases(
+            targets[cases],
+            scales[cases],
+            body,
+            pack,
+            tolerance,
+            warm,
+            damped,
+            given,
+            found.unknowns[cases],
+            found.rollers[cases],
+            found.moments[cases],
+            found.steps[cases],
+            found.evaluations[cases],
+            found.residuals[cases],
+        )
+
+    in_threads(solve, n, kernels.CHUNK)
+    return found
+
+
+def _continued(
+    body: race_newton.Body, bearing: Bearing, targets: Floats, tolerance: float
+) -> Solved:
+    """Down from larger loads, as of rigid rings: a clearance is small under them."""
+    free = max(max(abs(r.clearance) for r in bearing.rows), 1e-6)
+    exponent = max(r.law.exponent for r in bearing.rows)
+    most = max(free / max(float(_deflections(bearing, targets).min()), 1e-30), 10.0) ** exponent
+    steps, evaluations = np.zeros(len(targets), np.int64), np.zeros(len(targets), np.int64)
+    at = None
+    for power in range(int(np.ceil(np.log(most) / np.log(CONTINUED))), -1, -1):
+        found = _run(
+            body,
+            bearing,
+            CONTINUED**power * targets,
+            tolerance,
+            warm=False,
+            damped=True,
+            start=at,
+        )
+        at = found.unknowns
+        steps += found.steps
+        evaluations += found.evaluations
+    return found._replace(steps=steps, evaluations=evaluations)
+
+
+def _deflections(bearing: Bearing, targets: Floats) -> Floats:
+    """(n,) an approach of all contacts that carries the load [m]."""
+    row = max(bearing.rows, key=lambda r: r.law.stiffness * r.radius)
+    whole = sum(z * r.law.stiffness for z, r in zip(bearing.counts, bearing.rows, strict=True))
+    return np.asarray((np.linalg.norm(targets, axis=1) / whole) ** (1.0 / row.law.exponent))
+
+
+def _scales(bearing: Bearing, targets: Floats) -> Floats:
+    """(n,) stiffness of contacts there, over that at 1 m."""
+    row = max(bearing.rows, key=lambda r: r.law.stiffness * r.radius)
+    return np.asarray(np.maximum(_deflections(bearing, targets), 1e-30) ** (row.law.exponent - 1.0))
+
+
+def contact_softness(bearing: Bearing) -> float:
+    """Softness of the stiffest contact at a typical approach, with which races are compared.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+
+    Returns
+    -------
+    softness : float
+        [m/N].
+    """
+    stiffest = max(
+        r.law.stiffness * r.law.exponent * TYPICAL_APPROACH ** (r.law.exponent - 1.0)
+        for r in bearing.rows
+    )
+    return 1.0 / float(stiffest)
+
+
+def _length(row: Row) -> float:
+    return row.length if isinstance(row, RollerRow) and not row.aligning else 0.0
+
+
+def _symmetric(C: Floats) -> Floats:
+    return 0.5 * (C + C.T)

@@ -1,0 +1,10 @@
+from .assembly import AssemblyEquilibrium as AssemblyEquilibrium
+from .assembly import RollerAssembly as RollerAssembly
+from .assembly import assembly_equilibrium as assembly_equilibrium
+from .assembly import roller_assembly as roller_assembly
+from .housing import HousingSolid as HousingSolid
+from .housing import contact_compliance as contact_compliance
+from .housing import contact_rows as contact_rows
+from .housing import housing_races as housing_races
+from .housing import housing_solid as housing_solid
+from .of_revolution import races_of_revolution as races_of_revolution

@@ -1,0 +1,240 @@
+"""The housing of a scene as the outer ring of a bearing: its compliance at the rollers.
+
+The bore is the raceway. Each roller presses on a window of it: as long as the roller, and round the
+axis as far as its neighbours' places, falling off evenly. So wide, a window leaves out the approach
+close to the contact, which is part of the contact's own law.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.bearing.geometry import Bearing, RollerRow, angles
+from fe_drivetrain.bearing.races import Races
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.spatial import rigid_motions
+from fe_drivetrain.interfaces import constraints
+from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.operator.incompressible import assemble_unlocked
+from fe_drivetrain.scene.joint_springs import as_numbers
+from fe_drivetrain.scene.materials import Material
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.solve.reduction import reduce
+from fe_drivetrain.solve.solid import Assembly
+from fe_drivetrain.solve.solvers import solve
+
+#: Of a raceway in the bore, over the pitch diameter: others are another bearing's.
+LARGEST_BORE = 1.25
+
+_DEGREE = 8  # of the quadrature of a window, which is not smooth
+
+
+@dataclass(frozen=True, eq=False)
+class HousingSolid:
+    """A housing without its shaft, and where the rollers of a bearing touch it.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Of the housing; other parts of it have no stiffness.
+    name : str
+        Of the bearing in its scene.
+    contacts : Floats
+        (3 n, 2 total) nodal forces of a unit load along the contact normal, outwards, and of a unit
+        moment of each roller; transposed, recession and lean.
+    """
+
+    mesh: Mesh
+    name: str
+    contacts: Floats
+
+
+def housing_races(scene: Scene, name: str, bearing: Bearing, method: str = "auto") -> Races:
+    """Compliance of a scene's housing under the rollers of a bearing; its inner ring is rigid.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of one of its bearings, whose housing it is.
+    bearing : Bearing
+        Of rows of rollers, about the same centre.
+    method : str
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+
+    Returns
+    -------
+    races : Races
+        Relative to the ground; the ring's rigid motion on its housing and bedplate is part of it.
+
+    Raises
+    ------
+    InputError
+        The bearing does not fit the bore.
+    """
+    solid = housing_solid(scene, name, bearing)
+    mesh, F = solid.mesh, solid.contacts
+    part = f"{name}.housing"
+    C = contact_compliance(mesh, part, scene.material_of(part), F, f"{part}.base", method)
+    unit = scene.bearing_unit(name)
+    if unit.bedplate is not None:
+        # the base moves as a rigid body, so this is exact
+        under = np.array([unit.bearing.x, 0.0, -unit.housing.centre_height])
+        motions = F.T @ rigid_motions(mesh.points, under)
+        C = C + motions @ np.diag(1.0 / as_numbers(unit.bedplate)) @ motions.T
+    return Races(bearing, C)
+
+
+def contact_compliance(
+    mesh: Mesh,
+    part: str,
+    material: Material,
+    contacts: Floats,
+    fixed: str,
+    method: str = "auto",
+    assembly: Assembly = assemble_unlocked,
+) -> Floats:
+    """Compliance of a part that stands on a fixed face, at contacts.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh; other parts of it are left out.
+    part, material : str, Material
+        The part, and what it is of.
+    contacts : Floats
+        (3 n, m) nodal forces of a unit of each.
+    fixed : str
+        The face that does not move.
+    method : str
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+    assembly : Assembly
+        Of the stiffness.
+
+    Returns
+    -------
+    compliance : Floats
+        (m, m).
+    """
+    n_dofs = len(contacts)
+    cells = mesh.cells[mesh.part_cells(part)]
+    K = assembly(mesh.points, cells, material.lame, n_dofs)
+    left_out = np.setdiff1d(np.arange(len(mesh.points)), cells)
+    held = [
+        constraints.fixed("fixed", mesh.face_nodes(fixed), n_dofs),
+        constraints.fixed("parts left out", left_out, n_dofs),
+    ]
+    elimination = constraints.eliminate(held, n_dofs)
+    system = reduce(mesh.points, cells, K, elimination)
+    u = elimination.T @ solve(system, elimination.T.T @ contacts, method).x
+    C = contacts.T @ u
+    return np.asarray(0.5 * (C + C.T))
+
+
+def housing_solid(scene: Scene, name: str, bearing: Bearing) -> HousingSolid:
+    """Mesh a scene's housing, and find where the rollers of a bearing touch its bore.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of one of its bearings.
+    bearing : Bearing
+        Of rows of rollers.
+
+    Returns
+    -------
+    solid : HousingSolid
+        See there.
+
+    Raises
+    ------
+    InputError
+        The bearing does not fit the bore.
+    """
+    unit = scene.bearing_unit(name)
+    seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
+    inner = unit.bearing.model_copy(update={"bore_diameter": seat})
+    mesh = cached_mesh(None, [inner], {name: unit.housing}, scene.mesh, frozenset())
+    contacts = contact_rows(mesh, f"{name}.housing.bore", unit.bearing.x, bearing)
+    return HousingSolid(mesh, name, contacts)
+
+
+def contact_rows(mesh: Mesh, face: str, centre: float, bearing: Bearing) -> Floats:
+    """Nodal forces of unit loads and moments of rollers on a bore.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    face : str
+        The bore, a cylinder or a sphere about the x axis.
+    centre : float
+        x of the bearing's centre [m].
+    bearing : Bearing
+        Of rows of rollers.
+
+    Returns
+    -------
+    contacts : Floats
+        (3 n, 2 total): loads of all rollers along their contact normals, outwards, then moments, of
+        loads that grow with x.
+
+    Raises
+    ------
+    InputError
+        A roller lies outside of the bore.
+    """
+    facets = mesh.faces[face]
+    at = facet_points(mesh.points, facets, _DEGREE)
+    x, y, z = np.moveaxis(at.positions, -1, 0)
+    psi, radius = np.arctan2(z, -y), np.hypot(y, z)
+    on_face = mesh.points[np.unique(facets)]
+    low, high = on_face[:, 0].min(), on_face[:, 0].max()
+    bore = float(np.hypot(on_face[:, 1], on_face[:, 2]).max())
+    loads: list[Floats] = []
+    moments: list[Floats] = []
+    for number, row in enumerate(bearing.rows, 1):
+        if not isinstance(row, RollerRow):
+            raise InputError(f"row {number} of {bearing.name} has balls: give rows of rollers")
+        sin, cos = np.sin(row.angle), np.cos(row.angle)
+        # where the contact line of a roller meets the bore
+        if not row.radius < bore < LARGEST_BORE * row.radius:
+            raise InputError(
+                f"{bearing.name} has a pitch diameter of {2e3 * row.radius:g} mm, but the bore of "
+                f"its housing is {2e3 * bore:.6g} mm: give a bore larger than that by about "
+                "the diameter of a roller, as raceway_diameter of the scene's bearing"
+            )
+        middle = centre + row.place + (bore - row.radius) * sin / cos
+        if row.aligning and np.ptp(radius) > 1e-6 * bore:
+            middle = centre + bore * sin  # on a sphere
+        half = 0.5 * row.length * cos
+        if middle - half < low - 1e-6 or middle + half > high + 1e-6:
+            raise InputError(
+                f"row {number} of {bearing.name} reaches from x = {middle - half:.4g} m to "
+                f"{middle + half:.4g} m, beyond the bore from {low:.4g} m to {high:.4g} m: give "
+                "the scene's bearing a larger width"
+            )
+        along = (x - middle) / cos
+        on = (np.abs(x - middle) <= half) * at.areas
+        pitch = 2.0 * np.pi / row.rollers
+        for angle in angles(row):
+            away = np.abs(np.angle(np.exp(1j * (psi - angle))))
+            share = np.maximum(1.0 - away / pitch, 0.0) * on
+            normal = np.array([sin, -cos * np.cos(angle), cos * np.sin(angle)])
+            off = along - (share * along).sum() / share.sum()
+            for found, weights in (
+                (loads, share / share.sum()),
+                (moments, share * off / (share * off**2).sum()),
+            ):
+                nodal = np.zeros(len(mesh.points))
+                np.add.at(nodal, facets, weights @ at.values)
+                found.append(np.outer(nodal, normal).ravel())
+    return np.column_stack([*loads, *moments])
