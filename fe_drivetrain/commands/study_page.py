@@ -231,13 +231,16 @@ def _stiffness(run: Run, page: Page, model: Model, response: Response, levels: L
         "Force over motion, all other loads zero",
         rows,
     )
-    spherical = [
-        unit.bearing.name
-        for unit in model.scene.bearing_units
-        if unit_numbers(levels.stiff[unit.bearing.name])["tilt"] == 0.0
-    ]
-    if spherical:
-        page.text(f"{', '.join(spherical)}: a spherical joint has no K_R.")
+    free = {name: unit_numbers(stiff) for name, stiff in levels.stiff.items()}
+    aligning = [name for name, of in free.items() if of["tilt"] == of["yaw"] == 0.0]
+    floating = [name for name, of in free.items() if of["axial"] == 0.0]
+    if aligning:
+        page.text(f"No K_R of {', '.join(aligning)}: the bearing gives way to tilt.")
+    if floating:
+        page.text(
+            f"No axial stiffness of {', '.join(floating)}: the bearing floats, and leaves axial "
+            "force to the others at every level."
+        )
     page.data("unit_stiffness", rows)
     write_stiffness_json(
         run.folder / "stiffness.json",

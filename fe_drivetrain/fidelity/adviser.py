@@ -90,17 +90,6 @@ class Quantity:
         scale = np.array([1.0, 1.0, 1.0, length, length, length])
         return np.asarray(np.eye(n)[:, :6] * scale)
 
-    def recovered(self, model: Model, response: Response, length: float) -> Floats:
-        """(k,) errors of the values of an assembly, estimated from recovered stresses."""
-        owner, _, component = self.name.partition(".")
-        columns = self.columns(length, len(model.loads))
-        if owner == "hub":
-            motion = MOTIONS.index(component.rpartition(".")[2])
-            given = response.motions["hub"][motion, motion]
-            return np.asarray(motion_error(model, response, columns)[0] / given**2)
-        row = FORCES.index(component)
-        return np.asarray(reaction_error(model, response, owner, [row], columns)[0])
-
     def of(self, model: LevelModel, length: float) -> Floats:
         """(k,) its values: one, or one for each hub load, moments counting as length times 1 N."""
         owner, _, component = self.name.partition(".")
@@ -362,15 +351,55 @@ def banded_assembly(
     sizes.append(mean_size(model.mesh))
     levels.append(level)
     report("level 4: errors estimated from recovered stresses")
+    errors = recovered_errors(quantities, model, response, length)
     bands = [
-        assembly_band(
-            sizes,
-            [quantity.of(level, length) for level in levels],
-            quantity.recovered(model, response, length),
-        )
-        for quantity in quantities
+        assembly_band(sizes, [quantity.of(level, length) for level in levels], error)
+        for quantity, error in zip(quantities, errors, strict=True)
     ]
     return level, seconds, bands
+
+
+def recovered_errors(
+    quantities: Sequence[Quantity], model: Model, response: Response, length: float
+) -> list[Floats]:
+    """Errors of the values of an assembly, estimated from recovered stresses.
+
+    What quantities have in common is solved and recovered once.
+
+    Parameters
+    ----------
+    quantities : Sequence[Quantity]
+        What is asked for.
+    model, response : Model, Response
+        The solved assembly.
+    length : float
+        Of the shaft [m], as of `Quantity.of`.
+
+    Returns
+    -------
+    list[Floats]
+        (k,) of each quantity, as its values.
+    """
+    n, found = len(model.loads), dict[int, Floats]()
+    together: dict[tuple[str, bytes], list[int]] = {}
+    for number, quantity in enumerate(quantities):
+        owner = quantity.name.partition(".")[0]
+        loads = b"" if owner == "hub" else quantity.columns(length, n).tobytes()
+        together.setdefault((owner, loads), []).append(number)
+    for (owner, _), numbers in together.items():
+        components = [quantities[k].name.rpartition(".")[2] for k in numbers]
+        if owner == "hub":
+            motions = [MOTIONS.index(c) for c in components]
+            errors = motion_error(model, response, np.eye(n)[:, motions]).diagonal()
+            given = response.motions["hub"].diagonal()[motions]
+            found |= zip(numbers, (errors / given**2)[:, None], strict=True)
+        else:
+            rows = [FORCES.index(c) for c in components]
+            columns = quantities[numbers[0]].columns(length, n)
+            found |= zip(
+                numbers, reaction_error(model, response, owner, rows, columns), strict=True
+            )
+    return [found[k] for k in range(len(quantities))]
 
 
 def _judged(
@@ -381,9 +410,10 @@ def _judged(
 ) -> Advice:
     top = results[-1]
     if not np.linalg.norm(top.values) > 0:
+        decided = ", and by statics at every other" if top.model.level == 0 else ""
         of = "each hub load" if quantity.load is None else "the load given"
         raise InputError(
-            f"quantity {quantity.name!r} is zero at level {top.model.level} for {of}: "
+            f"quantity {quantity.name!r} is zero at level {top.model.level}{decided} for {of}: "
             "ask for another, or give another load"
         )
     judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
