@@ -254,7 +254,7 @@ class Shaft(Part):
                 return 2 * segment.start[1]
         nearest = sorted(free, key=lambda s: max(s.start[0] - x, x - s.end[0]))[:_NAMED]
         nearest.sort(key=lambda s: s.start[0])
-        allowed = ", ".join(f"{s.start[0]:g} to {s.end[0]:g}" for s in nearest) or "none"
+        allowed = _ranges((s.start[0], s.end[0]) for s in nearest)
         raise InputError(
             f"{what} {name!r}: its seat on the shaft is x = {low:g} to {high:g} m but must lie on "
             f"one cylindrical length clear of steps, tapers and fillets ({allowed} m): move the "
@@ -305,7 +305,7 @@ class Shaft(Part):
         for x0, x1, bore in lengths:
             if bore > 0 and x0 - LENGTH_TOLERANCE <= low and high <= x1 + LENGTH_TOLERANCE:
                 return bore
-        allowed = ", ".join(f"{x0:g} to {x1:g}" for x0, x1, bore in lengths if bore > 0) or "none"
+        allowed = _ranges((x0, x1) for x0, x1, bore in lengths if bore > 0)
         raise InputError(
             f"bearing {name!r}: its seat in the shaft's bore is x = {low:g} to {high:g} m but must "
             f"lie on one cylindrical length of the bore ({allowed} m): move the bearing, make it "
@@ -360,6 +360,12 @@ class Shaft(Part):
             if math.dist(start, end) > LENGTH_TOLERANCE:
                 outline.append(Segment(start, end))
         return revolve(outline)
+
+
+def _ranges(lengths: Iterable[tuple[float, float]]) -> str:
+    """Ranges of x in words, without the round-off of sums of lengths."""
+    rounded = [[round(x, 9) + 0.0 for x in ends] for ends in lengths]
+    return ", ".join(f"{low:g} to {high:g}" for low, high in rounded) or "none"
 
 
 def split(segment: Segment, cuts: Iterable[float]) -> list[Segment]:

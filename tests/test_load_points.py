@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
-from fe_drivetrain.commands.study_loads import entering
+from fe_drivetrain.commands.study_loads import entering, weightless
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.calculix_plan import plan_deck
 from fe_drivetrain.fidelity.ladder import (
@@ -144,6 +144,16 @@ def test_histories_load_it_and_its_weight_is_always_there(levels: list[LevelMode
         np.testing.assert_allclose(found - weighed, force * AT / SPAN, rtol=1e-6)
         bare = reaction_history(model, "rear", history.loads, 0.0, 0.0)[:, 2]
         np.testing.assert_allclose(weighed - bare, -WEIGHT * AT / SPAN, rtol=1e-6)
+
+
+def test_without_weights_nothing_is_left_but_the_loads(levels: list[LevelModel]) -> None:
+    light = weightless(scene_of(gearbox={"stiffness": [0, 0, 0, 1e8, 0, 0], "weight": 1e5}))
+    assert light.gearbox.weight == 0.0
+    history = LoadHistory("h", np.arange(3.0), np.zeros((3, 6)))
+    for model in levels[1:]:  # statics does not tell the axial shares
+        for name in ("front", "rear", "gearbox"):
+            found = reaction_history(model, name, entering(light, history), 0.0, 0.0)
+            np.testing.assert_array_equal(found, 0.0)
 
 
 def test_a_solution_does_not_depend_on_the_weights() -> None:

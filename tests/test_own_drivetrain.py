@@ -24,6 +24,7 @@ from fe_drivetrain.common.reading import parse_mapping
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
 from fe_drivetrain.export.formats.summary import read_summary
 from fe_drivetrain.export.from_scene import unit_superelement
+from fe_drivetrain.fidelity.adviser import Quantity, advise
 from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance, relative_errors
@@ -507,7 +508,9 @@ def test_a_study_without_loads_says_that_they_are_a_surrogate(
     assert results.assumptions  # of the rotor
     assert not list((tmp_path / "s").glob("reactions_*.csv"))
     # one spherical bearing in front of a gearbox that holds no bending: statics decides
-    assert "beam, rigid housings: every reaction is within 5 %" in " ".join(results.summary)
+    assert "beam, rigid housings is enough: every reaction is within 5 %" in " ".join(
+        results.summary
+    )
 
 
 def commands_of_the_readme() -> list[list[str]]:
@@ -593,6 +596,10 @@ def test_a_bearing_free_along_x_leaves_the_axial_force_to_its_neighbour() -> Non
         axial = {name: matrix[0] for name, matrix in model.reaction_matrices.items()}
         np.testing.assert_allclose(axial["rear"][:6], 0.0, atol=1e-9)
         np.testing.assert_allclose(axial["front"][0], 1.0, rtol=1e-9)
+    with pytest.raises(InputError, match="zero at level 0, and by statics at every other"):
+        advise(scene, Quantity("rear.Fx"), 0.01)
+    located = advise(scene, Quantity("front.Fx"), 0.01)
+    assert [result.model.level for result in located.results] == [0]
     exported = unit_superelement(scene, "rear").stiffness
     assert np.abs(exported[0]).max() < 1e-9 * exported[1, 1]
     with pytest.raises(InputError, match=r"shaft.* can move freely along x"):

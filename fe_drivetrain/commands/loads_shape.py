@@ -17,8 +17,8 @@ from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 
 _SEEN = {
-    "force": "it points from the origin (the cross); right is 0 deg, up is 90 deg",
-    "moment": "its axis points from the origin (the cross); right, 0 deg, is an overhung weight, "
+    "force": "it points from the origin ({}); right is 0 deg, up is 90 deg",
+    "moment": "its axis points from the origin ({}); right, 0 deg, is an overhung weight, "
     "left, 180 deg, a rotor that the wind overturns",
 }
 
@@ -57,8 +57,12 @@ def _planes(page: Page, found: Together) -> None:
         with np.errstate(divide="ignore"):
             share = np.log10(100.0 * plane.amount / plane.amount.sum())
         share[np.isinf(share)] = np.nan
+        across, above = plane.edges(0) / 1e3, plane.edges(1) / 1e3
+        near = all(2 * e[0] - e[-1] <= 0.0 <= 2 * e[-1] - e[0] for e in (across, above))
+        where = "the cross" if near else "beyond the picture"
         chart = heatmap(
-            f"Share of time of each {name} across the shaft, looking downwind: {_SEEN[name]}",
+            f"Share of time of each {name} across the shaft, looking downwind: "
+            + _SEEN[name].format(where),
             plane.middles(0) / 1e3,
             plane.middles(1) / 1e3,
             share.T,
@@ -67,9 +71,10 @@ def _planes(page: Page, found: Together) -> None:
             yaxis={"scaleanchor": "x"},
             height=560,
         )
-        cross = {"symbol": "cross-thin-open", "color": "#1f2933", "size": 12}
-        origin = trace("origin", [0.0], [0.0], points=True, marker=cross, showlegend=False)
-        chart.figure["data"].append(origin)
+        if near:
+            cross = {"symbol": "cross-thin-open", "color": "#1f2933", "size": 12}
+            origin = trace("origin", [0.0], [0.0], points=True, marker=cross, showlegend=False)
+            chart.figure["data"].append(origin)
         page.add(chart)
 
 

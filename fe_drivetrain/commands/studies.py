@@ -93,6 +93,13 @@ def study_command(
             "Default: 3, 4 and 10.",
         ),
     ] = None,
+    weight: Annotated[
+        bool,
+        typer.Option(
+            "--weight/--no-weight",
+            help="Whether reactions have the weight of gearbox, shaft, bearings and housings.",
+        ),
+    ] = True,
     quick: Quick = False,
     out: _OutFolder = None,
     set_: SceneSettings = None,
@@ -128,7 +135,7 @@ def study_command(
             scene,
             f"{found.title}: stiffness, reactions, and beams against FE",
             out,
-            lambda run, page: studied(run, page, found, own, slope or SLOPES),
+            lambda run, page: studied(run, page, found, own, slope or SLOPES, weight),
             quick,
         )
 

@@ -9,10 +9,11 @@ import numpy as np
 from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES, GRAVITY
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_rms
 from fe_drivetrain.fidelity.over_loads import (
     COARSER_ASSEMBLY,
+    ROUND_OFF,
     Levels,
     reaction_history,
     relative_errors,
@@ -65,11 +66,11 @@ def errors(
     absolute: list[Record] = []
     shares: dict[str, dict[str, float]] = {}
     for name in levels.reference.reaction_matrices:
-        reference = reaction_history(levels.reference, name, hub, weight, GRAVITY)
+        reference = reaction_history(levels.reference, name, hub, weight, loads.gravity)
         rmse: dict[str, Floats] = {}
         relative: dict[str, Floats] = {}
         for label in others:
-            found = reaction_history(levels.models[label], name, hub, weight, GRAVITY)
+            found = reaction_history(levels.models[label], name, hub, weight, loads.gravity)
             rmse[label] = weighted_rms(found - reference, weights)
             relative[label] = relative_errors(reference, found, length, weights)
         size = weighted_rms(reference, weights)
@@ -78,6 +79,8 @@ def errors(
                 continue
             shares[f"{name}, {kind}"] = {label: float(relative[label][k]) for label in others}
             for c in range(3 * k, 3 * k + 3):
+                if size[c] <= ROUND_OFF * size[3 * k : 3 * k + 3].max():
+                    continue
                 absolute.append(
                     {
                         "reaction": f"{name}, {FORCES[c]} [{_SHOWN_UNITS[c]}]",
@@ -158,8 +161,8 @@ def _enough(worst: Mapping[str, float]) -> str:
         largest = max(worst[label] for label in labels)
         if largest <= ENOUGH:
             return (
-                f"Over these loads {' and '.join(labels)}: every reaction is within {share} of the "
-                f"assembly's (root mean square of force and of moment; the worst "
+                f"Over these loads {' and '.join(labels)} is enough: every reaction is within "
+                f"{share} of the assembly's (root mean square of force and of moment; the worst "
                 f"{100 * largest:.2g} %)."
             )
     compared = [label for labels in _LEVELS.values() for label in labels]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.time_weighted import sample_weights
 from fe_drivetrain.hub_loads.aero_rotor import assumptions
@@ -40,6 +41,15 @@ def entering(scene: Scene, history: LoadHistory) -> Floats:
     return np.hstack([history.loads, *others])
 
 
+def weightless(scene: Scene) -> Scene:
+    """The scene without the weights that it states; those of its parts come with gravity."""
+    change = {
+        "gearbox": scene.gearbox.model_copy(update={"weight": 0.0}),
+        "load_points": tuple(p.model_copy(update={"weight": 0.0}) for p in scene.load_points),
+    }
+    return scene.model_copy(update=change)
+
+
 @dataclass(frozen=True)
 class StudyLoads:
     """Hub-load histories, and what they are.
@@ -54,12 +64,15 @@ class StudyLoads:
         Whether they are the user's.
     assumptions : Sequence[tuple[str, float, str, str]]
         Name, value, unit and source of what a surrogate assumes.
+    gravity : float
+        Along -z, that gives all parts their weight [m/s^2]; 0 where weights are left out.
     """
 
     histories: Sequence[LoadHistory]
     statement: str
     own: bool
     assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
+    gravity: float = GRAVITY
 
     @property
     def seconds(self) -> float:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES, GRAVITY
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import (
     ROUND_OFF,
@@ -64,8 +64,10 @@ def measures(
     chosen = [loads.histories[k] for k in places]
     weight = scene.gearbox.weight
 
+    driving = [entering(scene, history) for history in chosen]
+
     def of(model: LevelModel, name: str) -> list[Floats]:
-        return [reaction_history(model, name, h.loads, weight, GRAVITY) for h in chosen]
+        return [reaction_history(model, name, one, weight, loads.gravity) for one in driving]
 
     worst: dict[str, dict[str, float]] = {level: {} for level in bounds}
     rows: list[Record] = []

@@ -77,7 +77,8 @@ def reactions(
     """
     page.section("Reactions")
     page.text(
-        f"What the drivetrain puts on its surroundings. Weight {_weights(model)}. Frame: {_FRAME}. "
+        f"What the drivetrain puts on its surroundings. Weight {_weights(model, loads.gravity)}. "
+        f"Frame: {_FRAME}. "
         f"Origins of moments {_origins(model)}. Each sample counts by the time that it stands for."
     )
     names = list(levels.reference.reaction_matrices)
@@ -117,7 +118,7 @@ def _over_histories(
     driving = [entering(model.scene, history) for history in loads.histories]
 
     def of(level: LevelModel) -> list[Floats]:
-        return [reaction_history(level, name, one, weight, GRAVITY) for one in driving]
+        return [reaction_history(level, name, one, weight, loads.gravity) for one in driving]
 
     samples = of(levels.reference)
     coarse = None if levels.coarser is None else of(levels.coarser)
@@ -209,8 +210,10 @@ def _channels_of(attributes: object) -> str:
     return str(dict(attributes).get("channels", "as in the file"))  # type: ignore[call-overload]
 
 
-def _weights(model: Model) -> str:
+def _weights(model: Model, gravity: float) -> str:
     """Which weights the reactions have."""
+    if gravity == 0.0:
+        return "left out, but for that of the rotor as far as the hub loads have it"
     parts = ", ".join(
         f"{part} {GRAVITY * float(mass.sum()) / 1e3:.4g} kN"
         for part, mass in model.part_mass.items()
@@ -238,7 +241,7 @@ def _write_statistics(
     facts = {
         "frame": _FRAME,
         "origin of moments": _origins(model),
-        "weight": _weights(model),
+        "weight": _weights(model, loads.gravity),
         "loads": loads.statement,
         "DEL": f"range of a sine of {FREQUENCY:g} Hz with the same damage; {RULE}",
         "mesh band": "by how much the mesh may change least, mean, largest or standard deviation",
@@ -284,7 +287,7 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
             "reactions": "what the drivetrain puts on its surroundings, by the assembly of solids",
             "frame": _FRAME,
             "origin of moments": _origins(model),
-            "weight": _weights(model),
+            "weight": _weights(model, loads.gravity),
             "channels": _channels_of(history.attributes),
         }
         columns = ["time [s]"]
@@ -299,7 +302,7 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
                 name,
                 entering(model.scene, history),
                 model.scene.gearbox.weight,
-                GRAVITY,
+                loads.gravity,
             )
             for name in names
         ]

@@ -253,7 +253,7 @@ def advise(
     model = statics_level(scene)
     decided = bool(np.isfinite(quantity.of(model, length)).all())
     done = add(model, model.cost.seconds, 0.0 if decided else float("nan"))
-    if not done:
+    if not done and scene.bearing_units:
         report("level 1: beam, rigid housings")
         model = shaft_level(scene, 1)
         done = add(model, model.cost.seconds, float("nan"))
@@ -410,9 +410,10 @@ def _judged(
 ) -> Advice:
     top = results[-1]
     if not np.linalg.norm(top.values) > 0:
+        decided = ", and by statics at every other" if top.model.level == 0 else ""
         raise InputError(
-            f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
-            "ask for another, or give another load"
+            f"quantity {quantity.name!r} is zero at level {top.model.level}{decided} for the load "
+            "given: ask for another, or give another load"
         )
     judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
     chosen = None
