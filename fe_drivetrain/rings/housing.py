@@ -3,8 +3,8 @@
 The bore is the raceway. Each roller presses on a window of it: what its length meets along the
 contact normals, and round the axis as far as its neighbours' places, falling off evenly. So wide, a
 window leaves out the approach close to the contact, which is part of the contact's own law. On any
-mesh, a load on a window has the resultant of the roller's, so that a ring that moves as a rigid body
-moves its windows as rigid rings do.
+mesh, a load on a window has the resultant of the roller's, so that a ring that moves as a rigid
+body moves its windows as rigid rings do.
 """
 
 from __future__ import annotations
