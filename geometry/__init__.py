@@ -1,10 +1,10 @@
 """Parametric drivetrain parts, built with gmsh's OpenCASCADE kernel; no mechanics in here."""
 
-from .assembly import build
+from .assembly import NO_BANDS, build
 from .bearing import Bearing
 from .body import BodySizes
 from .element_sizes import MeshSizes, size_name
-from .fits import WIDEST, check_parts, refuse_millimetres
+from .fits import WIDEST, Band, check_bands, check_parts, refuse_millimetres
 from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
@@ -17,8 +17,10 @@ from .walls import within_walls
 
 __all__ = [
     "LENGTH_TOLERANCE",
+    "NO_BANDS",
     "WIDEST",
     "Assumption",
+    "Band",
     "Bearing",
     "BodySizes",
     "Flange",
@@ -33,6 +35,7 @@ __all__ = [
     "Solid",
     "apply_local_sizes",
     "build",
+    "check_bands",
     "check_parts",
     "gmsh_session",
     "refuse_millimetres",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
+from types import MappingProxyType
 
 import gmsh
 
@@ -12,10 +13,13 @@ from fe_drivetrain.common.errors import InputError
 from .bearing import Bearing
 from .element_sizes import MeshSizes, apply_sizes
 from .faces import CAD_TOLERANCE, at_radius, boundary, in_plane, middle, shared
-from .fits import check_parts
+from .fits import Band, check_bands, check_parts
 from .housing import Housing
 from .shaft import Shaft
 from .walls import check_sizes
+
+NO_BANDS: Mapping[str, Band] = MappingProxyType({})
+"""Where loads enter the shaft at its ends and seats alone."""
 
 
 def build(
@@ -24,6 +28,7 @@ def build(
     housings: Mapping[str, Housing],
     sizes: MeshSizes,
     bonded: frozenset[str] = frozenset(),
+    bands: Mapping[str, Band] = NO_BANDS,
 ) -> None:
     """Build the assembly in the open gmsh model, with physical groups and element sizes.
 
@@ -44,6 +49,8 @@ def build(
     bonded : frozenset[str]
         Names of the bearings whose outer face is bonded to the housing. It does not change the
         CAD model; it is checked here and used when the mesh is read.
+    bands : Mapping[str, Band]
+        Where else loads enter the shaft, by name. Each becomes a face, "shaft.band.NAME".
 
     Raises
     ------
@@ -51,13 +58,17 @@ def build(
         The parts do not fit together.
     """
     bores = check_parts(shaft, bearings, housings, bonded)
+    if shaft is not None:
+        check_bands(shaft, bands, bearings)
     check_sizes(shaft, bearings, housings, bores, sizes)
 
     solids: dict[str, int] = {}
     washers: list[tuple[str, int]] = []
     points: dict[str, int] = {}
     if shaft is not None:
-        solids["shaft"] = shaft.build(b.span for b in bearings)
+        outside = [band[:2] for band in bands.values() if not band.inside]
+        inside = [band[:2] for band in bands.values() if band.inside]
+        solids["shaft"] = shaft.build([*(b.span for b in bearings), *outside], inside)
     for bearing in bearings:
         solids[bearing.name] = bearing.build(bores[bearing.name])
         if bearing.name in housings:
@@ -91,6 +102,8 @@ def build(
     for name, tag in parts.items():
         gmsh.model.addPhysicalGroup(3, [tag], name=name)
     _name_faces(shaft, bearings, housings, bores, faces, bases)
+    if shaft is not None:
+        _name_bands(shaft, bands, faces["shaft"])
     for name, piece in zip(points, in_points, strict=True):
         gmsh.model.addPhysicalGroup(0, [tag for _, tag in piece], name=name)
     apply_sizes(sizes, parts, faces)
@@ -133,6 +146,15 @@ def _name_faces(
             name_faces(f"{owner}.base", bases[owner])
         else:
             name_faces(f"{owner}.base", in_plane(faces[owner], 2, -housings[name].centre_height))
+
+
+def _name_bands(shaft: Shaft, bands: Mapping[str, Band], faces: set[int]) -> None:
+    """Give the parts of the shaft's faces where loads enter their names."""
+    for name, (low, high, inside) in bands.items():
+        x = (low + high) / 2
+        around = at_radius(faces, shaft.inner_radius(x) if inside else shaft.outer_radius(x))
+        here = sorted(tag for tag in around if low < middle(tag)[0] < high)
+        gmsh.model.addPhysicalGroup(2, here, name=f"shaft.band.{name}")
 
 
 def _volumes(names: Sequence[str], pieces: Sequence[Sequence[tuple[int, int]]]) -> dict[str, int]:

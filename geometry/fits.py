@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import combinations, permutations
+from typing import NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 
@@ -50,6 +51,47 @@ def check_parts(
             housings[bearing.name].check_fits(bearing, shaft)
     _check_apart(bearings, housings)
     return bores
+
+
+class Band(NamedTuple):
+    """A part of the shaft's outer face where loads enter, or of its bore: x of both ends, m."""
+
+    low: float
+    high: float
+    inside: bool = False
+
+
+def check_bands(shaft: Shaft, bands: Mapping[str, Band], bearings: Sequence[Bearing]) -> None:
+    """Refuse bands on the shaft, where loads enter, that lie off it or on something else.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        The shaft.
+    bands : Mapping[str, Band]
+        By name.
+    bearings : Sequence[Bearing]
+        The bearings on the shaft.
+
+    Raises
+    ------
+    InputError
+        A band does not lie on one cylindrical length, or touches a bearing or another band.
+    """
+    spans = [(f"bearing {b.name!r}", b.span) for b in bearings]
+    for name, (low, high, inside) in bands.items():
+        if inside:
+            shaft.bore_diameter((low + high) / 2, high - low, name)
+        else:
+            shaft.seat_diameter((low + high) / 2, high - low, name, "load point")
+            spans.append((f"load point {name!r}", (low, high)))
+    for (one, first), (two, second) in combinations(spans, 2):
+        if _gap(first, second) <= LENGTH_TOLERANCE and "load point" in two:
+            raise InputError(
+                f"{two} is on the shaft at x = {second[0]:g} to {second[1]:g} m and touches "
+                f"{one} at x = {first[0]:g} to {first[1]:g} m, but must be apart: move it or make "
+                "it narrower"
+            )
 
 
 def _check_names(

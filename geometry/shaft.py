@@ -218,8 +218,8 @@ class Shaft(Part):
                 radii.append((piece.outer_diameter * (1 - share) + piece.end_diameter * share) / 2)
         return max(radii, default=0.0)
 
-    def seat_diameter(self, x: float, width: float, name: str) -> float:
-        """Diameter of the shaft under a bearing.
+    def seat_diameter(self, x: float, width: float, name: str, what: str = "bearing") -> float:
+        """Diameter of the shaft under a bearing, or where a load enters.
 
         Parameters
         ----------
@@ -227,6 +227,8 @@ class Shaft(Part):
             Centre and width of the seat, m.
         name : str
             Name of the bearing, for the message.
+        what : str
+            What it is, where it is no bearing.
 
         Returns
         -------
@@ -252,11 +254,62 @@ class Shaft(Part):
                 return 2 * segment.start[1]
         nearest = sorted(free, key=lambda s: max(s.start[0] - x, x - s.end[0]))[:_NAMED]
         nearest.sort(key=lambda s: s.start[0])
-        allowed = ", ".join(f"{s.start[0]:g} to {s.end[0]:g}" for s in nearest) or "none"
+        allowed = _ranges((s.start[0], s.end[0]) for s in nearest)
         raise InputError(
-            f"bearing {name!r}: its seat on the shaft is x = {low:g} to {high:g} m but must lie on "
+            f"{what} {name!r}: its seat on the shaft is x = {low:g} to {high:g} m but must lie on "
             f"one cylindrical length clear of steps, tapers and fillets ({allowed} m): move the "
-            "bearing, make it narrower, or lengthen that section"
+            f"{what}, make it narrower, or lengthen that section"
+        )
+
+    def inner_radius(self, x: float) -> float:
+        """Smallest radius of the bore at x, m; 0 where the shaft is solid."""
+        return min(
+            (
+                piece.inner_diameter / 2
+                for piece, x0, x1 in zip(
+                    self.pieces, self.stations, self.stations[1:], strict=False
+                )
+                if x0 - LENGTH_TOLERANCE <= x <= x1 + LENGTH_TOLERANCE
+            ),
+            default=0.0,
+        )
+
+    def bore_diameter(self, x: float, width: float, name: str) -> float:
+        """Diameter of the shaft's bore round a bearing that is inside of it.
+
+        Parameters
+        ----------
+        x, width : float
+            Centre and width of the bearing, m.
+        name : str
+            Name of the bearing, for the message.
+
+        Returns
+        -------
+        float
+            Diameter, m.
+
+        Raises
+        ------
+        InputError
+            The bearing does not lie within one cylindrical length of the bore.
+        """
+        low, high = x - width / 2, x + width / 2
+        lengths: list[tuple[float, float, float]] = []
+        for piece, x0, x1 in zip(self.pieces, self.stations, self.stations[1:], strict=False):
+            bore = piece.inner_diameter
+            if lengths and abs(lengths[-1][2] - bore) < LENGTH_TOLERANCE:
+                lengths[-1] = (lengths[-1][0], x1, bore)
+            else:
+                lengths.append((x0, x1, bore))
+        for x0, x1, bore in lengths:
+            if bore > 0 and x0 - LENGTH_TOLERANCE <= low and high <= x1 + LENGTH_TOLERANCE:
+                return bore
+        allowed = _ranges((x0, x1) for x0, x1, bore in lengths if bore > 0)
+        raise InputError(
+            f"bearing {name!r}: its seat in the shaft's bore is x = {low:g} to {high:g} m but must "
+            f"lie on one cylindrical length of the bore ({allowed} m): move the bearing, make it "
+            "narrower, or bore the shaft there"
         )
 
     def cut(self, stations: Iterable[float]) -> Shaft:
@@ -276,13 +329,19 @@ class Shaft(Part):
                 sections.append(piece.model_copy(update=change))
         return self.model_copy(update={"sections": tuple(sections), "flange": None})
 
-    def build(self, seats: Iterable[tuple[float, float]] = ()) -> int:
+    def build(
+        self,
+        seats: Iterable[tuple[float, float]] = (),
+        bore_seats: Iterable[tuple[float, float]] = (),
+    ) -> int:
         """Add the solid to the open gmsh model.
 
         Parameters
         ----------
         seats : Iterable[tuple[float, float]]
             Intervals (low, high) of x, m, each to become a cylindrical face of its own.
+        bore_seats : Iterable[tuple[float, float]]
+            The same of the bore.
 
         Returns
         -------
@@ -290,15 +349,23 @@ class Shaft(Part):
             Tag of the volume.
         """
         cuts = sorted({x for seat in seats for x in seat})
+        bore_cuts = sorted({x for seat in bore_seats for x in seat})
         outline = [piece for segment in self.outer_profile() for piece in split(segment, cuts)]
         inner: list[tuple[float, float]] = []
         for piece, x0, x1 in zip(self.pieces, self.stations, self.stations[1:], strict=False):
-            inner += [(x0, piece.inner_diameter / 2), (x1, piece.inner_diameter / 2)]
+            inside = [x for x in bore_cuts if x0 + LENGTH_TOLERANCE < x < x1 - LENGTH_TOLERANCE]
+            inner += [(x, piece.inner_diameter / 2) for x in (x0, *inside, x1)]
         corners = [outline[-1].end, *reversed(inner), outline[0].start]
         for start, end in pairwise(corners):
             if math.dist(start, end) > LENGTH_TOLERANCE:
                 outline.append(Segment(start, end))
         return revolve(outline)
+
+
+def _ranges(lengths: Iterable[tuple[float, float]]) -> str:
+    """Ranges of x in words, without the round-off of sums of lengths."""
+    rounded = [[round(x, 9) + 0.0 for x in ends] for ends in lengths]
+    return ", ".join(f"{low:g} to {high:g}" for low, high in rounded) or "none"
 
 
 def split(segment: Segment, cuts: Iterable[float]) -> list[Segment]:

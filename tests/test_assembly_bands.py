@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
-from fe_drivetrain.compare.convergence import grid_convergence
-from fe_drivetrain.fidelity.adviser import Quantity
+from fe_drivetrain.compare.convergence import grid_convergence, scattered_band
+from fe_drivetrain.fidelity.adviser import Quantity, recovered_errors
 from fe_drivetrain.fidelity.assembly_bands import assembly_band, motion_error, reaction_error
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.response.influence_fields import reaction_influences
@@ -66,10 +66,13 @@ def test_the_band_is_the_larger_of_series_and_recovered_stresses() -> None:
     ("values", "words"), [((1.0, 1.2, 1.1), "go up and down"), ((1.0, 1.1, 1.3), "do not converge")]
 )
 def test_a_series_without_order_says_so_and_is_wide(values: tuple[float, ...], words: str) -> None:
-    """Its band is three times what the range would be off from element size zero, at least."""
-    found = assembly_band([1.8, 1.35, 1.0], [np.array([v]) for v in values], np.array([0.0]))
+    """Its band is that of Eca and Hoekstra, at least, and more than twice the range."""
+    sizes = [1.8, 1.35, 1.0]
+    found = assembly_band(sizes, [np.array([v]) for v in values], np.array([0.0]))
     assert words in found.sentence()
-    assert found.half_width * values[-1] >= 3.0 * np.ptp(values) / 0.8 * (1 - 1e-12)
+    band = found.half_width * values[-1]
+    assert band >= scattered_band(sizes, values) * (1 - 1e-12)
+    assert band > 2.0 * np.ptp(values)
 
 
 def test_values_that_agree_by_chance_get_no_narrow_band() -> None:
@@ -89,6 +92,29 @@ def test_meshes_of_nearly_one_size_count_once() -> None:
     assert np.isnan(one.series)
     assert one.half_width == pytest.approx(SAFETY * 0.1 / 1.19)
     assert "no series of meshes" in one.sentence()
+
+
+@pytest.mark.parametrize("coarse", [[1.1], [1.25, 1.1]])
+def test_meshes_that_are_hardly_coarser_are_no_series(coarse: list[float]) -> None:
+    """What two topologies do to a value is not multiplied by 1 / (ratio - 1)."""
+    values = [np.array([1.0 + 0.01 * (-1) ** k]) for k in range(len(coarse) + 1)]
+    found = assembly_band([*coarse, 1.0], values, np.array([0.1]))
+    assert np.isnan(found.series)
+    assert found.half_width == pytest.approx(SAFETY * 0.1 / values[-1][0])
+    assert "no series of meshes" in found.sentence()
+    wider = assembly_band([1.4, *coarse, 1.0], [np.array([1.1]), *values], np.array([0.1]))
+    assert np.isfinite(wider.series)
+
+
+def test_errors_of_several_quantities_are_those_of_each(solved: tuple[Model, Response]) -> None:
+    model, response = solved
+    names = ("main_bearing.My", "hub.stiffness.rz", "gearbox.Fz", "main_bearing.Fz")
+    asked = [Quantity(name) for name in (*names, "hub.stiffness.uy")]
+    asked.append(Quantity("main_bearing.Fz", np.eye(10)[2]))
+    for quantity, found in zip(asked, recovered_errors(asked, model, response, 2.0), strict=True):
+        (alone,) = recovered_errors([quantity], model, response, 2.0)
+        assert found.shape == quantity.columns(2.0, 10).shape[1:]
+        np.testing.assert_allclose(found, alone, rtol=1e-6)
 
 
 @pytest.mark.parametrize("factor", [0.5, 1.35, 1.5])
@@ -113,4 +139,4 @@ def test_the_error_of_a_sum_of_loads_is_at_most_that_of_each(
     columns = np.column_stack([load, np.eye(10)[:, [2, 4]]])
     both, force, moment = reaction_error(model, response, "main_bearing", [4], columns)[0]
     assert 0 < both <= force + 2.0 * moment
-    assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0).T
+    assert pytest.approx(columns[:, :1].T) == Quantity("main_bearing.My", load).columns(1.0, 10).T

@@ -48,9 +48,9 @@ def meshings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     made: list[int] = []
     generate = cached.generate
 
-    def counted(*arguments: Any) -> Mesh:
+    def counted(*arguments: Any, **named: Any) -> Mesh:
         made.append(len(made))
-        return generate(*arguments)
+        return generate(*arguments, **named)
 
     monkeypatch.setattr(cached, "generate", counted)
     return made
@@ -267,7 +267,7 @@ def test_what_a_mesh_depends_on_makes_another(
     """Only the key is looked at, so that nothing needs to be meshed."""
     asked: list[str] = []
     monkeypatch.setattr(Cache, "load", lambda self, kind, content: asked.append(key(content)))
-    monkeypatch.setattr(cached, "generate", lambda *arguments: _mesh())
+    monkeypatch.setattr(cached, "generate", lambda *arguments, **named: _mesh())
     scene = coarse_scene("spherical")
     mesh_scene(scene)
     mesh_scene(change_scene(scene, change))

@@ -57,12 +57,12 @@ def test_a_file_pattern_is_a_word() -> None:
 )
 def test_wrong_loads_are_refused(texts: list[str], message: str) -> None:
     with pytest.raises(InputError, match=re.escape(message)):
-        parse_loads(texts)
+        parse_loads(texts, LOADS)
 
 
 def test_loads_are_factors_of_the_unit_loads() -> None:
-    assert parse_loads([]) is None
-    factors = parse_loads(["hub.Fz=-3e5", "gearbox.weight=4", "hub.Fz=-2e5"])
+    assert parse_loads([], LOADS) is None
+    factors = parse_loads(["hub.Fz=-3e5", "gearbox.weight=4", "hub.Fz=-2e5"], LOADS)
     expected = {"hub.Fz": -2e5, "gearbox.weight": 4.0}
     np.testing.assert_array_equal(factors, [expected.get(name, 0.0) for name in LOADS])
 

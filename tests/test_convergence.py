@@ -11,6 +11,7 @@ from fe_drivetrain.compare.convergence import (
     grid_convergence,
     observed_order,
     richardson,
+    scattered_band,
 )
 
 RATIOS = [(1.0, 0.5, 0.25), (1.0, 0.7, 0.5), (2.0, 1.4, 1.0, 0.7), (3.0, 2.0, 0.5)]
@@ -161,7 +162,39 @@ def test_least_order_gives_a_band_where_no_order_is_seen():
         assert found.extrapolated == pytest.approx(slowest)
         missing = abs(slowest - values[-1])
         assert found.extrapolated_uncertainty == pytest.approx(max(np.ptp(values), missing))
-        assert found.uncertainty == pytest.approx(max(1.25 * np.ptp(values), missing))
+        scatter = scattered_band([1.0, 0.5, 0.25], values)
+        assert found.uncertainty == max(1.25 * np.ptp(values), missing, scatter)
+
+
+def test_scattered_band_is_three_times_the_error_where_a_line_fits():
+    """Eca and Hoekstra's equation 20: 5 + 2 h and 5 + 2 h^2 leave no residual."""
+    h = np.array([1.8, 1.35, 0.9])
+    assert scattered_band(h, 5 + 2 * h) == pytest.approx(3 * 2 * 0.9)
+    assert scattered_band(h, 5 + 2 * h**2) == pytest.approx(3 * 2 * 0.9**2)
+
+
+def test_scattered_band_is_multiplied_where_no_line_fits():
+    """Their equation 21, with other least squares: the standard deviation is above the range."""
+    h, v = np.array([3.0, 2.0, 1.0]), np.array([0.0, 1.0, 0.0])
+    found = []
+    for x in (h, h**2):
+        for weights in (np.ones(3), 3 / h / (1 / h).sum()):
+            line = np.polynomial.Polynomial.fit(x, v, 1, w=np.sqrt(weights)).convert()
+            rest = v - line(x)
+            sigma = np.sqrt(weights @ rest**2)
+            error = abs(line.coef[1]) * x[-1]
+            found.append((sigma, 3 * sigma / 0.5 * (error + sigma + abs(rest[-1]))))
+    assert min(found)[0] > 0.5
+    assert scattered_band(h, v) == pytest.approx(min(found)[1])
+
+
+def test_scattered_band_grows_with_the_scatter_and_knows_no_unit():
+    h = [1.8, 1.35, 1.0]
+    bands = [scattered_band(h, [1.0, 1.0 + up, 1.1]) for up in (0.1, 0.2, 0.4, 0.8)]
+    assert np.all(np.diff(bands) > 0)
+    assert scattered_band(np.multiply(h, 1e-3), [1e9, 1.2e9, 1.1e9]) == pytest.approx(
+        1e9 * bands[1]
+    )
 
 
 @pytest.mark.parametrize("value", [5.0, -3e9, 0.0])

@@ -373,7 +373,7 @@ def test_a_cache_that_can_only_be_read_gives_what_it_has(
     assert kept.kept
     np.testing.assert_array_equal(kept.points, made.points)
     before = sorted(tmp_path.rglob("*"))
-    monkeypatch.setattr(cached, "generate", lambda *arguments: made)
+    monkeypatch.setattr(cached, "generate", lambda *arguments, **named: made)
     other = mesh_scene(coarse_scene("bonded", **{"mesh.shaft": 0.29}))
     assert not other.kept
     assert sorted(tmp_path.rglob("*")) == before

@@ -9,6 +9,7 @@ from conftest import COARSE, coarse_scene
 from test_own_drivetrain import write_loads
 
 from fe_drivetrain.cases.main_bearing import general, rmse
+from fe_drivetrain.cases.main_bearing.secants import Cases, hub_loads
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.results import Chart, Table
 from fe_drivetrain.scene.reading import change_scene
@@ -125,7 +126,8 @@ def test_secants_of_two_bearings(tmp_path: Path, rng: np.random.Generator) -> No
     page = Page()
     size = np.array([2e5, 5e4, 3e5, 1e6, 5e5, 5e5])
     hub = size * (1.0 + 0.5 * rng.standard_normal((80, 6)))
-    general.secant_page(run_in(tmp_path), page, two_bearings(), hub, "made loads")
+    cases = Cases(hub, np.full(80, 1 / 80), "made loads")
+    general.secant_page(run_in(tmp_path), page, two_bearings(), cases)
     assert all(verdict.passed for verdict in page.verdicts)
     rows = rows_of(page, "K_R of each bearing")
     assert {row["bearing"] for row in rows} == {"front"}  # the rear one slides on a sphere
@@ -151,3 +153,21 @@ def test_histories_of_different_lengths_are_studied_on_the_general_beam(
     assert "the histories differ in length" in page.notes[0]
     with pytest.raises(InputError, match="self_weight is a setting of the comparison with closed"):
         rmse.run(run_in(tmp_path, loads=str(tmp_path), self_weight=False), Page())
+
+
+def test_load_cases_of_histories_of_unlike_length_and_step_count_by_their_time(
+    tmp_path: Path,
+) -> None:
+    head = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
+    for name, step, count in (("fine", 0.1, 40), ("coarse", 0.5, 20)):
+        rows = [f"{step * k:g},{1e5 + k},2,3,4,{5e4 - k},6" for k in range(count)]
+        (tmp_path / f"{name}.csv").write_text("\n".join([head, *rows]))
+    found = hub_loads(run_in(tmp_path, loads=str(tmp_path)), 1, stepped())
+    assert found.hub.shape == (60, 6)
+    assert found.weights is not None
+    # coarse comes first; a step of it stands for five times the time of a fine one
+    assert found.weights[0] == pytest.approx(5 * found.weights[-1])
+    assert found.weights.sum() == pytest.approx(1.0)
+    assert "2 files of your own" in found.statement
+    alone = hub_loads(run_in(tmp_path, loads=str(tmp_path / "fine.csv")), 1, stepped())
+    assert alone.weights is None

@@ -106,6 +106,18 @@ def test_reactions_of_own_histories_are_written(reports):
     assert (reports / "rmse" / "reaction_statistics.csv").is_file()
 
 
+def test_statics_is_right_in_every_measure_of_design(reports):
+    """A spherical bearing is determinate: means, extremes, time at level and damage are FE's."""
+    results = read_results(reports / "rmse" / "results.json")
+    rows = results.figures["design_measures"]
+    assert len(rows) == 4
+    for name, value in rows[0].items():
+        if name.endswith("[%]"):
+            assert abs(value) < 1e-5, name
+    assert rows[0]["damage over that of FE, m = 10"] == pytest.approx(1.0)
+    assert any(s.startswith("Good enough within 5 %") for s in results.summary)
+
+
 def test_meshes_are_written(reports):
     import meshio
 

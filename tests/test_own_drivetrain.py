@@ -21,13 +21,15 @@ from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping
-from fe_drivetrain.compare.cycles import damage_equivalent_load, rainflow_cycles
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
 from fe_drivetrain.export.formats.summary import read_summary
 from fe_drivetrain.export.from_scene import unit_superelement
+from fe_drivetrain.fidelity.adviser import Quantity, advise
 from fe_drivetrain.fidelity.ladder import shaft_level, statics_level
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance, relative_errors
+from fe_drivetrain.histories.cycles import rainflow_cycles
+from fe_drivetrain.histories.damage import damage_equivalent_load
 from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.report.pictures import can_draw
 from fe_drivetrain.report.results import Table, read_results
@@ -76,9 +78,9 @@ def test_what_else_a_scene_may_have_is_valid_once_its_comment_sign_is_gone(name:
     more = re.sub("^# ?", "", rest.partition("\n")[2], flags=re.MULTILINE)
     scene = parse_scene(text + more)
     assert faults(text + more) == []
-    assert without(scene, "materials", "mesh", "uncertainty") == without(
-        parse_scene(text), "materials", "mesh", "uncertainty"
-    )
+    shown = ("load_points", "materials", "mesh", "uncertainty")
+    assert without(scene, *shown) == without(parse_scene(text), *shown)
+    assert [point.name for point in scene.load_points] == ["brake"]
     assert scene.uncertainty["shaft.sections.0.outer_diameter"].uniform == 0.001
     assert scene.hub.coupling == "averaged"
     if "mesh" in more:
@@ -506,7 +508,9 @@ def test_a_study_without_loads_says_that_they_are_a_surrogate(
     assert results.assumptions  # of the rotor
     assert not list((tmp_path / "s").glob("reactions_*.csv"))
     # one spherical bearing in front of a gearbox that holds no bending: statics decides
-    assert "beam, rigid housings: every reaction is within 5 %" in " ".join(results.summary)
+    assert "beam, rigid housings is enough: every reaction is within 5 %" in " ".join(
+        results.summary
+    )
 
 
 def commands_of_the_readme() -> list[list[str]]:
@@ -528,9 +532,12 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
     (tmp_path / "outputs").mkdir()
     write_outb(tmp_path / "outputs" / "run.outb", rotating_columns())
     commands = commands_of_the_readme()
-    assert [words[0] for words in commands] == ["new", "check", "study", "advise"] + 2 * ["export"]
+    assert [words[0] for words in commands] == [
+        *("new", "check", "study", "advise", "loads"),
+        *2 * ["export"],
+    ]
     for words in commands:
-        coarse = [] if words[0] == "new" else QUICK
+        coarse = [] if words[0] in ("new", "loads") else QUICK
         status, out, err = invoke(*words, *coarse)
         assert status == 0, (words, err)
         assert out
@@ -539,6 +546,7 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
             documented.write_text(example, "utf-8")
     for made in (
         "reports/check/mine/report.html",
+        "reports/loads/report.html",
         "reports/study/mine/reactions_run.csv",
         "reports/advise/mine/report.html",
         "mine.inp",
@@ -588,6 +596,10 @@ def test_a_bearing_free_along_x_leaves_the_axial_force_to_its_neighbour() -> Non
         axial = {name: matrix[0] for name, matrix in model.reaction_matrices.items()}
         np.testing.assert_allclose(axial["rear"][:6], 0.0, atol=1e-9)
         np.testing.assert_allclose(axial["front"][0], 1.0, rtol=1e-9)
+    with pytest.raises(InputError, match="zero at level 0, and by statics at every other"):
+        advise(scene, Quantity("rear.Fx"), 0.01)
+    located = advise(scene, Quantity("front.Fx"), 0.01)
+    assert [result.model.level for result in located.results] == [0]
     exported = unit_superelement(scene, "rear").stiffness
     assert np.abs(exported[0]).max() < 1e-9 * exported[1, 1]
     with pytest.raises(InputError, match=r"shaft.* can move freely along x"):

@@ -8,6 +8,7 @@ from test_component import coarse
 
 from fe_drivetrain.beam.frame import round_section
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.export.from_component import component_superelement
 from fe_drivetrain.fidelity import component_frames
@@ -18,6 +19,7 @@ from fe_drivetrain.fidelity.component_levels import (
     pin_motions,
     rigid_level,
     solid_level,
+    stiffness_on_supports,
     torque_share,
 )
 from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
@@ -195,3 +197,17 @@ def test_the_band_is_positive_and_small(carrier: CarrierComponent, solid: SolidC
     element = component_superelement(carrier, solids=(solid, solid_component(rough)))
     assert element.band is not None
     assert 0 < element.band < 0.5
+
+
+def test_recovered_stresses_cover_what_a_finer_mesh_says(
+    carrier: CarrierComponent, solid: SolidComponent
+) -> None:
+    """Meshes of one size are no series: the band is that of recovered stresses."""
+    finer = solid_component(carrier.model_copy(update={"mesh": carrier.mesh.scaled(0.65)}))
+    for what, at in (("body", ["hub", "pin_1"]), ("supported", ["pin_1"])):
+        element = component_superelement(carrier, what, at, solids=(solid, solid))
+        supports = carrier.supports if what == "supported" else {}
+        better = stiffness_on_supports(finer.body, supports, at)
+        error = largest_difference(element.stiffness, better)
+        assert element.band is not None
+        assert error < element.band < 10 * error

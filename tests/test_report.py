@@ -8,12 +8,15 @@ import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
 from PIL import Image as Pixels
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.charts import density_chart
 from fe_drivetrain.report.page import (
     error_text,
     formatted,
@@ -381,3 +384,15 @@ def test_limits_are_on_the_page_and_on_the_atlas(tmp_path: Path) -> None:
     write_index(tmp_path)
     assert not (tmp_path / "atlas.html").exists()
     assert "atlas.html" not in (tmp_path / "index.html").read_text()
+
+
+def test_a_density_has_all_of_the_time_and_points_the_right_way() -> None:
+    rng = np.random.default_rng(0)
+    right, up = rng.normal(5.0, 1.0, 2000), rng.normal(-3.0, 0.5, 2000)
+    (heat,) = density_chart("density", right, up, "kN").figure["data"]
+    shares = np.array([[cell or 0.0 for cell in row] for row in heat["z"]])
+    assert_allclose(shares.sum(), 100.0, rtol=5e-3)
+    x, y = np.meshgrid(heat["x"], heat["y"])
+    assert_allclose((shares * x).sum() / 100.0, right.mean(), rtol=0.02)
+    assert_allclose((shares * y).sum() / 100.0, up.mean(), rtol=0.02)
+    assert np.isfinite(density_chart("nothing", [0.0], [0.0], "kN").figure["data"][0]["x"]).all()

@@ -191,3 +191,27 @@ def test_work_is_the_same_at_another_point():
     loads = some(12, 12, (1e5,) * 6)
     there = moved(loads, motions, np.array([0.3, -0.2, 0.5]))
     np.testing.assert_allclose((there[0] * there[1]).sum(1), (loads * motions).sum(1), rtol=1e-10)
+
+
+def test_cases_count_by_their_time_and_not_by_how_finely_they_are_sampled():
+    """Half the samples twice, at half their weight each, are the same history."""
+    K = spring(0.4)
+    loads, motions = on_a_beam(K)
+    loads = loads + 1e3 * some(7, 50, np.ones(6))  # what no spring explains
+    again = np.r_[np.arange(50), np.arange(20)]
+    weights = np.r_[np.full(20, 0.5), np.ones(30), np.full(20, 0.5)] / 50
+    once, twice = (
+        (secant(R, u, 4, w), fitted_spring(R, u, w), parts_of(R, u, K, 4, w))
+        for R, u, w in ((loads, motions, None), (loads[again], motions[again], weights))
+    )
+    assert twice[0].stiffness == pytest.approx(once[0].stiffness, rel=1e-12)
+    assert twice[0].scatter == pytest.approx(once[0].scatter, rel=1e-9)
+    np.testing.assert_array_equal(twice[0].secants[:50], once[0].secants)
+    np.testing.assert_allclose(twice[1].matrix, once[1].matrix, rtol=1e-6, atol=1e2)
+    np.testing.assert_allclose(twice[1].unexplained, once[1].unexplained, rtol=1e-9)
+    np.testing.assert_allclose(twice[2].shares, once[2].shares, atol=1e-9)
+    np.testing.assert_allclose(twice[2].sizes, once[2].sizes, rtol=1e-9)
+    # without weights, they would not be
+    assert secant(loads[again], motions[again], 4).stiffness != pytest.approx(
+        once[0].stiffness, rel=1e-6
+    )

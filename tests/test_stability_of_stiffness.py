@@ -4,17 +4,11 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from fe_drivetrain.cases.stability import (
-    fingerprints,
-)
-from fe_drivetrain.cases.stability.decades import (
-    decades,
-    fitted_exponent,
-    safe_range,
-)
+from fe_drivetrain.compare.sweeps import decades, fitted_exponent, safe_range
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.validation import (
+    fingerprints,
     layers,
     other_precisions,
     penalised_couplings,

@@ -7,40 +7,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fe_drivetrain.cases.performance.choices import (
-    CURVED,
-    ELEMENTS,
-    HEXAHEDRA,
-    P1,
-    STRAIGHT,
-    Level,
-    Solve,
-    assemble_shaft,
-    mesh_shaft,
-    shaft_outcomes,
-)
-from fe_drivetrain.cases.performance.growth import (
-    STEPPED,
-)
-from fe_drivetrain.cases.performance.precision import (
-    cheapest_within,
-    growth_exponent,
-    pareto_front,
-)
 from fe_drivetrain.cases.performance.studies import (
     beam_stiffness,
     meridian_stiffness,
-)
-from fe_drivetrain.cases.performance.tilt import (
-    QUANTITIES,
-    assemble_tilt,
-    in_element,
 )
 from fe_drivetrain.cases.performance.work_precision import (
     PARTS,
     parts_of,
 )
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.compare.pareto import (
+    cheapest_within,
+    growth_exponent,
+    pareto_front,
+)
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.shaft_section import Grading
@@ -53,6 +33,26 @@ from fe_drivetrain.solve import solvers
 from fe_drivetrain.suite.case import find_cases
 from fe_drivetrain.suite.result_folders import run_case
 from fe_drivetrain.suite.run import Run
+from fe_drivetrain.validation.growing_shafts import (
+    STEPPED,
+)
+from fe_drivetrain.validation.stiffness_choices import (
+    CURVED,
+    ELEMENTS,
+    HEXAHEDRA,
+    P1,
+    STRAIGHT,
+    Level,
+    Solve,
+    assemble_shaft,
+    mesh_shaft,
+    shaft_outcomes,
+)
+from fe_drivetrain.validation.tilt_choices import (
+    QUANTITIES,
+    assemble_tilt,
+    in_element,
+)
 
 STEEL = MATERIALS["steel"]
 TUBE = Shaft(front=-2.0, sections=(Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3),))

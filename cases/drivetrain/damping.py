@@ -286,14 +286,13 @@ def check_quartic(page: Page, system: Torsional) -> Floats:
     found = damped_modes(system).eigenvalues
     for m, (value, root) in enumerate(zip(found, roots, strict=True), start=1):
         page.equals(
-            f"2 masses, as meant, generator fixed: decay of mode {m}",
+            f"2 masses, as meant, generator fixed: decay of mode {m} [1/s]",
             float(-value.real),
             float(-root.real),
             within=1e-8,
             why="exact; decay is a hundredth of the frequency, and the roots have some twelve "
             "digits of that",
             source="roots of the characteristic quartic",
-            unit="1/s",
             measure="frequency",
         )
     return quartic

@@ -175,14 +175,12 @@ def check_planets(page: Page, f: Floats, seen: Ints) -> float:
     )
     for m in np.setdiff1d(np.arange(len(f)), seen):
         page.equals(
-            f"11 masses: planets against each other, the rest still, mode {m + 1}",
+            f"11 masses: planets against each other, the rest still, mode {m + 1} [Hz]",
             float(f[m]),
             pair,
             within=1e-9,
             why="exact but for rounding",
             source="sqrt((K_RP + K_SP) / J_P) / 2 pi",
-            unit="Hz",
-            measure="frequency",
         )
     return pair
 
@@ -212,14 +210,12 @@ def check_statics(page: Page) -> float:
     )
     stiffness = static_stiffness(SYSTEMS["free"], ROTOR, GENERATOR)
     page.equals(
-        "11 masses: torque on the rotor over its angle, generator held",
+        "11 masses: torque on the rotor over its angle, generator held [N m/rad]",
         stiffness,
         float(series),
         within=1e-10,
         why="exact but for rounding",
         source="flow of torque through shafts and meshes, in series",
-        unit="N m/rad",
-        measure="stiffness",
     )
     return stiffness
 
@@ -384,15 +380,13 @@ def check_stage(page: Page, other: Restored) -> float:
     slope = miss(fitted * 1.01) / (0.01 * fitted)
     page.equals(
         "J_2 that five masses need for 402 Hz, from the eleven masses: carrier, three planets and "
-        "N_1^2 times the sun",
+        "N_1^2 times the sun [kg m^2]",
         other.stage,
         fitted,
         within=other.spread + abs(published.digit(printed) / 2 / slope),
         relative=False,
         why="half of the last digit of the three frequencies that either follows from",
         source="Table 6.1, five masses, mode 4",
-        unit="kg m^2",
-        measure="mass",
     )
     return fitted
 

@@ -102,15 +102,13 @@ def run(run: Run, page: Page) -> None:
         ]
     solid = in_three_dimensions(run, shaft)
     page.equals(
-        f"shaft with fillets in three dimensions, {solid.unknowns[-1]:,} unknowns",
+        f"shaft with fillets in three dimensions, {solid.unknowns[-1]:,} unknowns [N m/rad]",
         solid.series.finest,
         meridian.value,
         within=(2 if run.quick else 1) * HALF_DIGIT / TABLED,
         why="half of the last printed digit of K_LSS (of the coarser meshes of a quick run, all of "
         "it): a better stiffness would not be seen",
         source=f"meridian, order {ORDERS[-1]}, rigid ends",
-        unit="N m/rad",
-        measure="stiffness",
         band=solid.series.uncertainty,
     )
     taken = taken_over(meridian, solid)
@@ -152,29 +150,25 @@ def check_meridian(page: Page, quick: bool) -> float:
         for size in (IMPLIED.diameter / 2, IMPLIED.diameter)
     ]
     page.equals(
-        "uniform shaft, meridian",
+        "uniform shaft, meridian [N m/rad]",
         uniform[-1],
         TABLED,
         within=1e-9,
         why="rigid ends do not disturb Saint-Venant's torsion of a circle, and the elements hold "
         "it: rounding",
         source="J G / L, Eq 4.4",
-        unit="N m/rad",
-        measure="stiffness",
         band=abs(uniform[-1] - uniform[0]),
     )
     sharp = lss.stepped(IMPLIED.length, TABLED, 0.0)
     found = [lss.meridian_stiffness(sharp, 0.3, order) for order in ((3, 4) if quick else (5, 6))]
     bounds = torsion_bounds(sharp, SHEAR_MODULUS, 0.1, 2 if quick else 5)
     page.equals(
-        "shaft with sharp steps, meridian",
+        "shaft with sharp steps, meridian [N m/rad]",
         found[-1],
         bounds.middle,
         within=bounds.half_width / bounds.middle,
         why="the exact stiffness lies between the bounds",
         source="between two bounds: of displacements, and of the torsion function",
-        unit="N m/rad",
-        measure="stiffness",
         band=abs(found[-1] - found[0]),
     )
     return found[-1]
@@ -233,27 +227,23 @@ def check_frequency(
     low, high = (frequency(*model, K.value + side * K.band) for side in (-1, 1))
     exact_band = (high - low) / 2
     page.equals(
-        f"{label}: half width of the band, of first order",
+        f"{label}: half width of the band, of first order [Hz]",
         first_order(*model, K),
         exact_band,
         within=K.band / K.value,
         why="the next term is as small as the band itself, relative",
         source="solved again at both ends of the stiffness's band",
-        unit="Hz",
-        measure="frequency",
     )
     step, change = 1e-6, K.value / TABLED - 1
     ahead, behind = (frequency(*model, K.value * (1 + side * step)) for side in (1, -1))
     slope = (ahead / behind - 1) / (2 * step)
     page.equals(
-        f"{label}: frequency with the finite-element shaft, of first order",
+        f"{label}: frequency with the finite-element shaft, of first order [Hz]",
         before * (1 + slope * change),
         after,
         within=change**2,
         why="of second order in the change of stiffness",
         source="solved again with the other stiffness",
-        unit="Hz",
-        measure="frequency",
         basis="self-consistency",
         band=exact_band,
     )

@@ -117,14 +117,12 @@ def check_gears_and_stages(page: Page, table: Drivetrain) -> tuple[float, float]
     )
     rigid = static_stiffness(stage_masses(table, "free"), ROTOR, GENERATOR)
     page.equals(
-        "shafts of the stages, generator held: torque on the rotor over its angle",
+        "shafts of the stages, generator held: torque on the rotor over its angle [N m/rad]",
         rigid,
         float(two_masses(table, "free").k[0]),
         within=1e-10,
         why="exact but for rounding",
         source="sum of compliances",
-        unit="N m/rad",
-        measure="stiffness",
     )
     return static_stiffness(gears, ROTOR, GENERATOR), rigid
 

@@ -32,15 +32,13 @@ def check_printed(
     for mode, (f, value, band) in enumerate(zip(found, printed, bands, strict=True), start=1):
         if float(value) != 0.0 and mode not in leave_out:
             page.equals(
-                f"{label}: frequency {mode}",
+                f"{label}: frequency {mode} [Hz]",
                 float(f),
                 float(value),
                 within=float(band) + digit(value),
                 relative=False,
                 why=ROUNDING,
                 source=source,
-                unit="Hz",
-                measure="frequency",
             )
 
 

@@ -134,14 +134,12 @@ def check_frequencies(page: Page, state: GeneratorState, modes: Modes, band: Flo
     for mode, (value, root) in enumerate(zip(f, exact, strict=True), start=1):
         if root:
             page.equals(
-                f"{label}: frequency {mode} against the quadratic",
+                f"{label}: frequency {mode} against the quadratic [Hz]",
                 float(value),
                 root,
                 within=1e-11,
                 why="both are exact but for rounding",
                 source="roots of the characteristic polynomial of Eq 4.33-4.34",
-                unit="Hz",
-                measure="frequency",
             )
 
 
@@ -167,14 +165,12 @@ def check_restored(page: Page, other: Restored, rounding: float) -> None:
     """Two frequencies that were solved for, and a third that was not; its relative rounding."""
     for name, w, value in zip(("first", "second"), other.omega, published.OTHER_TWO, strict=True):
         page.equals(
-            f"Table 6.2's {name} frequency from the rotor and shaft that it needs",
+            f"Table 6.2's {name} frequency from the rotor and shaft that it needs [rad/s]",
             float(w),
             float(value),
             within=1e-11,
             why="both inputs are solved for both frequencies, in closed form: rounding",
             source=published.TABLE_6_2,
-            unit="rad/s",
-            measure="frequency",
             basis="self-consistency",
         )
     check_printed(

@@ -15,11 +15,14 @@ from fe_drivetrain.export import (
     frequencies_by_calculix,
     held,
 )
-from fe_drivetrain.suite import Page, Run, column
+from fe_drivetrain.suite import Page, Run, Target, column
 
 #: Natural frequencies that are compared.
 COUNT = 3
 
+SEVEN = "ccx prints seven digits"
+UNCERTAIN = f"{SEVEN}, of which its eigenvalue solver leaves the last uncertain"
+INVERSE, EIGENVALUES = "the inverse of the stiffness", "eigenvalues of stiffness and mass"
 DIFFERENCE = "difference of a unit diagonal"
 
 
@@ -58,37 +61,20 @@ def run(run: Run, page: Page) -> None:
             1.0,
             why="ccx prints seven digits; beside that only the round-off of the deck's fourteen "
             "digits",
-            source="the inverse of the stiffness",
+            source=INVERSE,
             measure="identity",
         )
         last = len(expected) - 4
-        page.equals(
-            f"{label}: uz of its last point under a unit force there",
-            found[last, last],
-            expected[last, last],
-            within=1e-6,
-            why="ccx prints seven digits",
-            source="the inverse of the stiffness",
-            unit="m/N",
-            measure="deflection",
-        )
+        title, value = f"{label}: uz of its last point under a unit force there [m/N]", (last, last)
+        page.meets(found[value], Target(title, expected[value], 1e-6, SEVEN, INVERSE))
         if element.mass is None:
             continue
         with run.step("CalculiX"), TemporaryDirectory() as name:
             computed = frequencies_by_calculix(element, Path(name), COUNT)
         exact = frequencies(stiffness, element.mass[start:, start:], COUNT)
         for k in range(COUNT):
-            page.equals(
-                f"{label}, held at its first point: natural frequency {k + 1}",
-                computed[k],
-                exact[k],
-                within=1e-6,
-                why="ccx prints seven digits, of which its eigenvalue solver leaves the last "
-                "uncertain",
-                source="eigenvalues of stiffness and mass",
-                unit="Hz",
-                measure="frequency",
-            )
+            title = f"{label}, held at its first point: natural frequency {k + 1} [Hz]"
+            page.meets(computed[k], Target(title, exact[k], 1e-6, UNCERTAIN, EIGENVALUES))
     page.answer(
         "CalculiX moves under unit loads as the exported matrices say, to "
         f"{max(column(rows, DIFFERENCE)):.1e} of the largest displacements: the digits that it "

@@ -16,6 +16,7 @@ from fe_drivetrain.cases.export.samples import matrices, samples
 from fe_drivetrain.common import Floats, MissingToolError, largest_difference
 from fe_drivetrain.suite import Page, Record, Run, column
 
+WRITTEN = "the matrix before it was written"
 DIFFERENCE = "difference of a unit diagonal"
 
 
@@ -86,16 +87,11 @@ def run(run: Run, page: Page) -> None:
                     for kind in kinds
                     if kind in written
                 ]
+    why = "seventeen digits, or the bits, name every double; the rest is one addition of the halves"
     for row in rows:
-        page.vanishes(
-            f"{row['superelement']}, {row['format']}: {row['matrix']} read less {row['matrix']} "
-            "written, of a unit diagonal",
-            row[DIFFERENCE],
-            within=1e-15,
-            why="seventeen digits, or the bits, name every double; the rest is one addition of the "
-            "halves",
-            source="the matrix before it was written",
-        )
+        kind, name = row["matrix"], f"{row['superelement']}, {row['format']}"
+        title = f"{name}: {kind} read less {kind} written, of a unit diagonal"
+        page.vanishes(title, row[DIFFERENCE], within=1e-15, why=why, source=WRITTEN)
     page.answer(
         "JSON, CSV, Matrix Market and HDF5 give the matrices back with a largest difference of "
         f"{max(column(rows, DIFFERENCE)):.1e} of a unit diagonal, each by a library that knows "

@@ -10,7 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import frequencies, matrices, samples
 from fe_drivetrain.common import largest_difference
 from fe_drivetrain.export import pynastran
-from fe_drivetrain.suite import Page, Run, column, grouped
+from fe_drivetrain.suite import Page, Run, Target, column, grouped
 
 WRITTEN = "the matrices before they were written"
 #: By format: largest difference that the digits of its numbers leave, and why.
@@ -25,6 +25,8 @@ DIGITS = {
         "seventeen digits name every double; the rest is one addition of the two triangles",
     ),
 }
+SOFTEST = "rounding by 1e-10, over the softest elastic motion's share in a unit diagonal, which is "
+SOFTEST += "above 1e-2"
 DIFFERENCE = "difference of a unit diagonal"
 
 
@@ -47,13 +49,8 @@ def run(run: Run, page: Page) -> None:
             name, found, written = f"{label}, {format}", matrices(back), matrices(element)
             for kind in written:
                 worst = largest_difference(found[kind], written[kind])
-                page.vanishes(
-                    f"{name}: {kind} read less {kind} written, of a unit diagonal",
-                    worst,
-                    within=tolerance,
-                    why=digits,
-                    source=WRITTEN,
-                )
+                what = f"{name}: {kind} read less {kind} written, of a unit diagonal"
+                page.vanishes(what, worst, within=tolerance, why=digits, source=WRITTEN)
                 rows.append(
                     {
                         "superelement": label,
@@ -75,17 +72,8 @@ def run(run: Run, page: Page) -> None:
             )
             computed, exact = (frequencies(m["stiffness"], m["mass"], 3) for m in (found, written))
             k = int(np.argmax(np.abs(computed / exact - 1.0)))
-            page.equals(
-                f"{name}: natural frequency {k + 1} of the first three",
-                computed[k],
-                exact[k],
-                within=1e-6,
-                why="rounding by 1e-10, over the softest elastic motion's share in a unit "
-                "diagonal, which is above 1e-2",
-                source=WRITTEN,
-                unit="Hz",
-                measure="frequency",
-            )
+            title = f"{name}: natural frequency {k + 1} of the first three [Hz]"
+            page.meets(computed[k], Target(title, exact[k], 1e-6, SOFTEST, WRITTEN))
     worst_of = {name: max(column(of, DIFFERENCE)) for name, of in grouped(rows, "format")}
     page.answer(
         f"pyNastran reads the exported DMIG with a largest difference of {worst_of['dmig']:.1e} of "

@@ -6,7 +6,6 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.sample_elastodyn import TEXT
 from fe_drivetrain.cases.export.samples import FACTOR, frequencies
 from fe_drivetrain.common import largest_difference
 from fe_drivetrain.export import (
@@ -19,6 +18,7 @@ from fe_drivetrain.export import (
 from fe_drivetrain.export.formats import elastodyn, extptfm, subdyn
 from fe_drivetrain.scene import Scene, library_scene
 from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation.sample_elastodyn import TEXT
 
 PUBLISHED = "OpenFAST r-test, SD_Spring_Case1"
 
@@ -59,13 +59,12 @@ def run(run: Run, page: Page) -> None:
         spring_element(run, page, scene, folder / "spring.dat")
         platform_superelement(run, page, shaft, folder / "superelement.dat")
     page.equals(
-        "damper of the NREL 5 MW drivetrain for 5 % of critical",
+        "damper of the NREL 5 MW drivetrain for 5 % of critical [N m s/rad]",
         torsional_damping(0.05, **NREL_5_MW),
         NREL_DAMPING,
         within=1e-3,
         why="printed to 4 digits; the rotor's inertia, known to a percent, counts for a sixteenth",
         source="Jonkman et al. 2009, NREL/TP-500-38060, section 5",
-        unit="N m s/rad",
     )
     page.answer(
         "SubDyn's spring element and ExtPtfm's superelement come back from openfast_io with every "
@@ -104,14 +103,12 @@ def drivetrain_torsion(
     exact(page, "ElastoDyn: other values that changed", len(changed - {"DTTorSpr", "DTTorDmp"}))
     section, material = scene.shaft.sections[0], scene.material_of("shaft")
     page.equals(
-        "DTTorSpr of the uniform shaft",
+        "DTTorSpr of the uniform shaft [N m/rad]",
         after["DTTorSpr"],
         material.shear_modulus * np.pi / 32 * section.outer_diameter**4 / section.length,
         within=1e-9,
         why="the elements contain the exact solution: round-off of the condensation",
         source="Coulomb's torsion of a round shaft, G J / L",
-        unit="N m/rad",
-        measure="stiffness",
     )
     page.answer(
         f"A drivetrain spring of {spring:.4g} N m/rad from the finite-element shaft and its damper "
@@ -154,24 +151,20 @@ def spring_element(run: Run, page: Page, scene: Scene, path: Path) -> None:
             ),
         )
     page.equals(
-        "SubDyn spring of 3947.8 N/m with 100 kg: frequency",
+        "SubDyn spring of 3947.8 N/m with 100 kg: frequency [Hz]",
         np.sqrt(K[2, 2] / m) / (2 * np.pi),
         1.0,
         within=0.5 * 0.05 / 3947.8,
         why="the stiffness is rounded to a tenth of 1 N/m",
         source=PUBLISHED,
-        unit="Hz",
-        measure="frequency",
     )
     page.equals(
-        "SubDyn spring of 3947.8 N/m with 100 kg: sag",
+        "SubDyn spring of 3947.8 N/m with 100 kg: sag [m]",
         np.linalg.solve(K, [0, 0, -9.81 * m, 0, 0, 0])[2],
         -0.2485,
         within=0.00005 / 0.2485,
         why="printed to 4 digits",
         source=PUBLISHED,
-        unit="m",
-        measure="deflection",
     )
 
 
@@ -182,13 +175,11 @@ def platform_superelement(run: Run, page: Page, shaft: Superelement, path: Path)
         reduced = extptfm.read_reduced(path)
     assert shaft.mass is not None
     page.equals(
-        "ExtPtfm: lowest elastic frequency of the free shaft",
+        "ExtPtfm: lowest elastic frequency of the free shaft [Hz]",
         frequencies(reduced.stiffness, reduced.mass, 1)[0],
         frequencies(shaft.stiffness, shaft.mass, 1)[0],
         within=1e-8,
         why="the same matrices in other motions: round-off of a stiffness whose terms spread over "
         "eight decades",
         source="the condensed shaft before it was written",
-        unit="Hz",
-        measure="frequency",
     )

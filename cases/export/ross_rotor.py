@@ -190,7 +190,7 @@ def free_shaft(run: Run, page: Page) -> None:
         solid = free_frequencies(scene, FREE, order=ORDER, rings=False)[:FREE]
     for number, (computed, exact) in enumerate(zip(theirs, solid, strict=True), start=1):
         page.equals(
-            f"free shaft of main_bearing_bonded, natural frequency {number}",
+            f"free shaft of main_bearing_bonded, natural frequency {number} [Hz]",
             computed,
             exact,
             within=0.01,
@@ -198,8 +198,6 @@ def free_shaft(run: Run, page: Page) -> None:
             "shear's share of these frequencies under 20 %; torsion of "
             f"{PARTS} elements is high by 0.2 % at most",
             source="its meridian at level 2, not condensed",
-            unit="Hz",
-            measure="frequency",
         )
 
 

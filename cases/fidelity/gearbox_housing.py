@@ -280,15 +280,13 @@ def _check_beams(page: Page, component: HousingComponent) -> None:
     give = length**3 / (3 * material.youngs_modulus * section.inertias[0])
     give += length / (material.shear_modulus * section.shear_areas[1])
     page.equals(
-        "torsion with arms as beams on a rigid ring, arms at the axis",
+        "torsion with arms as beams on a rigid ring, arms at the axis [N m/rad]",
         float(1.0 / frame_level(straight, ring_gives=False).compliance[3, 3]),
         2 * half_span**2 / (1.0 / kz + give),
         within=1e-9,
         why="the same theory: only round-off is left",
         source="cantilevers with shear in series with the bushings, "
         "2 s^2 / (1/k + l^3/3EI + l/kGA)",
-        unit="N m/rad",
-        measure="stiffness",
     )
 
 
@@ -297,23 +295,21 @@ def _check_solid(page: Page, component: HousingComponent, ladder: Ladder) -> Non
     total, rough = (_on_all_bushings(component, m) for m in (ladder.top, ladder.coarse[-1]))
     housing = component.gearbox_housing
     page.equals(
-        "solid: moment that the bushings carry under a torque of 1 N m",
+        "solid: moment that the bushings carry under a torque of 1 N m [N m]",
         float(total[3, 3]),
         1.0,
         within=SOLVED,
         why=SOLVED_REASON,
         source="equilibrium",
-        unit="N m",
         measure="reaction",
     )
     page.equals(
-        "solid: forces of the bushings under 1 m/s^2 along z",
+        "solid: forces of the bushings under 1 m/s^2 along z [N]",
         float(total[2, -1]),
         material_of(component).density * housing.volume_and_centre()[0],
         within=1e-3,
         why="curved elements keep the volume of cylinders to some 1e-4",
         source="mass of ring, arms and eyes in closed form",
-        unit="N",
         measure="mass",
         band=abs(float(total[2, -1] - rough[2, -1])),
     )
@@ -321,12 +317,11 @@ def _check_solid(page: Page, component: HousingComponent, ladder: Ladder) -> Non
     sign = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
     left, right = (ladder.top.reaction_matrices[name][:, :6] for name in ("left", "right"))
     page.vanishes(
-        "solid: left and right bushing under mirrored loads, largest difference",
+        "solid: left and right bushing under mirrored loads, largest difference [-]",
         float(np.abs(left - np.outer(sign, sign) * right).max() / np.abs(left).max()),
         within=SOLVED,
         why=SOLVED_REASON,
         source="the mesh is its own mirror image",
-        unit="-",
     )
 
 

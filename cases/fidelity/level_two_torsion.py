@@ -69,15 +69,13 @@ def run(run: Run, page: Page) -> None:
         series = [row[STIFFNESS] for row in rows if row["shaft"] == name]
         width = widths[-1]["width, relative"]
         page.equals(
-            f"{name}: torsional stiffness, order {order}",
+            f"{name}: torsional stiffness, order {order} [N m/rad]",
             series[-1],
             bounds.middle,
             within=width / 2,
             why="half the distance of the bounds",
             source="between two bounds, by displacements and by the torsion function (Michell "
             "1899), in triangles of scikit-fem",
-            unit="N m/rad",
-            measure="stiffness",
             band=abs(series[-1] - series[-2]),
         )
         page.at_most(

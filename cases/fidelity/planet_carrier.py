@@ -188,15 +188,13 @@ def _check_beams(page: Page, component: CarrierComponent) -> None:
     give = carrier.gap**3 / (20 * E * pin.inertias[0]) + carrier.gap / (3 * G * pin.shear_areas[0])
     closed = carrier.hub_length / (G * hub.torsion) + give / (carrier.planets * radius**2)
     page.equals(
-        "pins on one wall, as beams: wind-up",
+        "pins on one wall, as beams: wind-up [N m/rad]",
         pin_motions(single, frame_level(single)).wind_up,
         1.0 / closed,
         within=1e-3,
         why="the load stands on the nodes of 8 pieces, by Simpson's rule",
         source="twist of the hub, and cantilevers with shear under an even load, "
         "l / GJ + (l^3/20EI + l/3kGA) / (n r^2)",
-        unit="N m/rad",
-        measure="stiffness",
     )
 
 
@@ -212,22 +210,20 @@ def _check_solid(page: Page, component: CarrierComponent, ladder: Ladder) -> Non
         own = turn.T @ top.compliance[np.ix_(row, row)] @ turn
         uneven = max(uneven, float(np.abs((own - first) / np.outer(size, size)).max()))
     page.vanishes(
-        "solid: stiffness of the pins, each in its own frame, largest difference",
+        "solid: stiffness of the pins, each in its own frame, largest difference [-]",
         uneven,
         within=SOLVED,
         why=SOLVED_REASON,
         source=f"the mesh is {carrier.planets} times the same sector",
-        unit="-",
     )
     share = torque_share(component)
     page.equals(
-        "solid: torque at the hub under 1 N m on the pins",
+        "solid: torque at the hub under 1 N m on the pins [N m]",
         float((top.reaction_matrices["hub"][:, : len(share)] @ share)[3]),
         1.0,
         within=SOLVED,
         why=SOLVED_REASON,
         source="equilibrium",
-        unit="N m",
         measure="reaction",
     )
     if component.pins.coupling != "averaged":
@@ -239,12 +235,11 @@ def _check_solid(page: Page, component: CarrierComponent, ladder: Ladder) -> Non
     position = np.array(carrier.pin_centres()[0])
     mean = averaged_point("pin", nodes, weights[nodes], mesh.points, position, u.size)
     page.equals(
-        "solid: way of the first pin along its circle, from displacements",
+        "solid: way of the first pin along its circle, from displacements [m]",
         float((mean.motion @ u.ravel())[1]),
         float(motions[7]),
         within=SOLVED,
         why=SOLVED_REASON,
         source="the condensed stiffness, which was found without them",
-        unit="m",
         measure="identity",
     )

@@ -54,15 +54,13 @@ def beside_published(page: Page, scene: Scene, published: Published) -> None:
     band = abs(found - coarser)
     where = f"front face to x = {published.to:g} m"
     page.equals(
-        f"G J / L of the sections in series, {where}",
+        f"G J / L of the sections in series, {where} [N m/rad]",
         summed,
         published.value,
         within=published.half_digit / published.value + thicker / summed - 1.0,
         why="half of its last printed digit"
         + (", and of the scene's dimensions" if published.rounding else ""),
         source=published.source,
-        unit="N m/rad",
-        measure="stiffness",
     )
     page.at_most(
         f"finite elements without fillets above the sections in series, {where}, relative",

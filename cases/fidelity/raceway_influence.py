@@ -200,14 +200,12 @@ def _check_plane_strain(page: Page, count: int, orders: tuple[int, int]) -> None
         reference = float(lame) if k == 0 else float(exact[k - 2])
         band = abs(planes[-1][k] - planes[0][k])
         page.equals(
-            f"harmonic {k}: compliance of the raceway in plane strain",
+            f"harmonic {k}: compliance of the raceway in plane strain [m/N]",
             planes[-1][k],
             reference,
             within=max(1e-9, band / reference),
             why="what the higher order of elements of two changed, or round-off",
             source="Lame 1852" if k == 0 else "Michell 1899: four powers of the radius",
-            unit="m/N",
-            measure="deflection",
             band=band,
         )
 
@@ -231,14 +229,12 @@ def _check_thin_ring(page: Page) -> None:
     sheared = 1.2 * E * inertia / (G * area * RACEWAY**2)
     one, two = 1.0 - slim + sheared, 1.0 - slim
     page.equals(
-        f"thin ring, radius over wall {THIN:g}: radius across two opposite pushes",
+        f"thin ring, radius over wall {THIN:g}: radius across two opposite pushes [m/N]",
         across,
         -(RACEWAY**3) / (E * inertia) * (2 * two**2 / np.pi - two + one / 2) / 2,
         within=1.0 / THIN**2,
         why="what beam theory leaves out is of the order of (wall over radius)^2",
         source="curved beam with tension and shear (Roark's formulas, thin rings, case 1)",
-        unit="m/N",
-        measure="deflection",
         band=abs(across - short),
     )
 
@@ -291,14 +287,12 @@ def _check_free_ring(page: Page, free: FreeRing, levels: tuple[int, ...]) -> Non
         # of the sum: its orders, and the meridian's mesh
         left = (free.tail if k == 0 else 0.0) + abs(free.flat[k] - free.rough[k])
         page.equals(
-            f"free ring: radial displacement {place} two opposite pushes",
+            f"free ring: radial displacement {place} two opposite pushes [m/N]",
             free.flat[k],
             values[-1],
             within=(band + left) / abs(values[-1]),
             why="the solid's band, the tail of the sum, and what one order changed of the meridian",
             source=f"solid of hexahedra of 27 nodes, {len(levels)} meshes",
-            unit="m/N",
-            measure="deflection",
             band=left,
         )
 

@@ -16,7 +16,7 @@ from fe_drivetrain.fidelity import (
     shaft_level,
     simplified,
 )
-from fe_drivetrain.report import Chart, rounded
+from fe_drivetrain.report import Chart, bars
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.solve import Condensed, keep_points
 from fe_drivetrain.suite import Page
@@ -165,27 +165,14 @@ _TITLES = {
 
 
 def _bars(key: str, found: Sequence[Compared]) -> Chart:
-    """Bars of each scene's changes, the slenderest scene at the bottom."""
-    ordered = sorted(found, key=lambda one: one.slenderness, reverse=True)
-    bars = [
-        {
-            "type": "bar",
-            "orientation": "h",
-            "name": title,
-            "y": [f"{one.scene} ({one.slenderness:.1f})" for one in ordered],
-            "x": rounded([max(100 * getattr(one.changes[key], part), _LEAST) for one in ordered]),
+    """Bars of each scene's changes, the stoutest scene at the top."""
+    ordered = sorted(found, key=lambda one: one.slenderness)
+    groups = {
+        title: {
+            f"{one.scene} ({one.slenderness:.1f})": 100 * getattr(one.changes[key], part)
+            for one in ordered
         }
         for part, title in _TITLES.items()
-    ]
-    layout = {
-        "barmode": "group",
-        "height": 72 * len(ordered) + 120,
-        "xaxis": {
-            "type": "log",
-            "exponentformat": "power",
-            "title": {"text": f"change [%]; {_LEAST:g} stands for less"},
-        },
-        "yaxis": {"automargin": True, "title": {"text": ""}},
     }
     caption = f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
-    return Chart(caption=caption, figure={"data": bars, "layout": layout})
+    return bars(caption, groups, f"change [%]; {_LEAST:g} stands for less", least=_LEAST)

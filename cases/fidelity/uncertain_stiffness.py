@@ -281,12 +281,11 @@ def _check_deviations(page: Page, found: Study, top: Slopes, coarse: Slopes) -> 
         exact = _deviation(found, top[q], top[q])
         page.at_most(
             f"{q}: standard deviation for the inputs, how far outside of the two bounds of "
-            f"level 1, {100 * bounds[0]:.3g} and {100 * bounds[1]:.3g} %",
+            f"level 1, {100 * bounds[0]:.3g} and {100 * bounds[1]:.3g} % [%]",
             100 * max(bounds[0] - exact, exact - bounds[1], 0.0),
             10 * exact,
             why="a tenth of the assembly's: the samples themselves know a band to that",
             source=f"sensitivities of the assembly: {100 * exact:.3g} %",
-            unit="%",
             band=100 * TO_ZERO * abs(exact - _deviation(found, coarse[q], top[q])),
         )
 
@@ -321,13 +320,12 @@ def _check_samples(page: Page, found: Study, count: int) -> None:
             continue
         samples = found.samples[number.name]
         page.equals(
-            f"{number.name}: standard deviation of {count} samples",
+            f"{number.name}: standard deviation of {count} samples [%]",
             100 * float(samples.values.std(ddof=1)) / abs(samples.nominal),
             100 * first_order(found, number),
             within=float(2.0 / np.sqrt(2.0 * (count - 1))),
             why="two standard errors of a deviation from so many independent samples",
             source="first order: root of the sum of squares",
-            unit="%",
         )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from fe_drivetrain.beam import main_bearing_beam
 from fe_drivetrain.cases.main_bearing import shown, study
+from fe_drivetrain.cases.main_bearing.secants import Cases
 from fe_drivetrain.cases.main_bearing.study import Solved
 from fe_drivetrain.common import FORCES, Floats, InputError
 from fe_drivetrain.compare import resultant
@@ -335,16 +336,15 @@ def wall_page(run: Run, page: Page, scenes: Mapping[int, Scene]) -> None:
     page.data("walls", rows)
 
 
-def secant_page(run: Run, page: Page, scene: Scene, hub: Floats, what: str) -> None:
+def secant_page(run: Run, page: Page, scene: Scene, cases: Cases) -> None:
     """K_R of every bearing that carries moments, as a secant over load cases.
 
     Parameters
     ----------
-    hub : ndarray, (m, 6)
-        Load cases at the hub [N, N m].
-    what : str
-        What they are.
+    cases : Cases
+        Load cases at the hub.
     """
+    hub, weights = cases.hub, cases.weights
     solved = study.solve_scene(run, scene, "scene")
     with run.step("bearing units, two bounds"):
         bounds = bounds_of(scene)
@@ -352,7 +352,7 @@ def secant_page(run: Run, page: Page, scene: Scene, hub: Floats, what: str) -> N
     factors = np.zeros((len(hub), len(LOADS)))
     factors[:, :6], factors[:, 9] = hub, scene.gearbox.weight
     page.section("The secant over load cases")
-    page.text(what)
+    page.text(cases.statement)
     rows: list[Record] = []
     traces = []
     for name, bound in bounds.items():
@@ -361,9 +361,9 @@ def secant_page(run: Run, page: Page, scene: Scene, hub: Floats, what: str) -> N
         if np.abs(loads[:, 4:]).max() < _SMALL * np.abs(hub[:, 3:]).max():
             page.text(f"{name} carries no moment in bending: its K_R is zero in all load cases.")
             continue
-        fit = secant_stiffness.fitted_spring(loads, motions)
+        fit = secant_stiffness.fitted_spring(loads, motions, weights)
         for a, axis in ((4, "y"), (5, "z")):
-            found = secant_stiffness.secant(loads, motions, a)
+            found = secant_stiffness.secant(loads, motions, a, weights)
             bracket = [1.0 / np.linalg.inv(k)[a, a] for k in (bound.soft, bound.stiff)]
             rows.append(
                 {
@@ -376,7 +376,7 @@ def secant_page(run: Run, page: Page, scene: Scene, hub: Floats, what: str) -> N
                 }
             )
             try:
-                parts = secant_stiffness.parts_of(loads, motions, fit.matrix, a)
+                parts = secant_stiffness.parts_of(loads, motions, fit.matrix, a, weights)
             except InputError as reason:
                 page.text(f"{name}, about {axis}: {reason}.")
                 continue

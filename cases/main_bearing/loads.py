@@ -15,10 +15,12 @@ from fe_drivetrain.common import (
 from fe_drivetrain.compare import statistics
 from fe_drivetrain.hub_loads import (
     Condition,
+    LoadHistory,
     assumptions,
     hub_load_set,
     not_kept,
     read_hub_load_files,
+    require_points,
     surrogate_grid,
 )
 from fe_drivetrain.report import Chart, rounded, trace
@@ -77,16 +79,21 @@ def own_hub_loads(run: Run, scene: Scene) -> HubLoads | None:
     ``--set skip=SECONDS`` leaves out the beginning of each; the scene says which point of the shaft
     they are about.
     """
-    skip = skip_of(run)
     if "loads" not in run.settings:
-        if skip:
-            raise InputError(
-                f"skip = {skip:g} leaves out the beginning of your own histories, and there are "
-                "none: give them with --set loads=FOLDER, or leave out skip"
-            )
+        skip_without_loads(run)
         return None
     with run.step("hub loads"):
-        return _read(str(run.settings["loads"]), skip, scene)
+        return _read(str(run.settings["loads"]), skip_of(run), scene)
+
+
+def skip_without_loads(run: Run) -> None:
+    """Refuse to leave out the beginning of histories that are not there."""
+    skip = skip_of(run)
+    if skip:
+        raise InputError(
+            f"skip = {skip:g} leaves out the beginning of your own histories, and there are "
+            "none: give them with --set loads=FOLDER, or leave out skip"
+        )
 
 
 def skip_of(run: Run) -> float:
@@ -140,9 +147,41 @@ def _make(run: Run, wind_speed: float, conditions: Sequence[Condition]) -> None:
         hub_load_set(conditions, progress=lambda done, of: run.report(f"{name} ({done} of {of})"))
 
 
-def _read(pattern: str, skip: float, scene: Scene) -> HubLoads:
+def own_histories(run: Run, scene: Scene) -> tuple[list[LoadHistory], str] | None:
+    """The user's files, of any length and step, and what they are; see `own_hub_loads`."""
+    if "loads" not in run.settings:
+        skip_without_loads(run)
+        return None
+    pattern, skip = str(run.settings["loads"]), skip_of(run)
+    with run.step("hub loads"):
+        histories = _histories(pattern, skip, scene)
+    count, samples = len(histories), sum(map(len, histories))
+    seconds = sum(history.seconds for history in histories)
+    return histories, (
+        f"Load cases: {samples:,} samples over {seconds:,.6g} s of {count} "
+        f"file{'s' if count > 1 else ''} of your own, each sample by the time that it stands for."
+        + _left_out(skip, scene)
+    )
+
+
+def _histories(pattern: str, skip: float, scene: Scene) -> list[LoadHistory]:
     front, at = scene.shaft.front, scene.loads_at
     histories = [history.moved(at, front) for history in read_hub_load_files(pattern, skip)]
+    require_points(histories, list(scene.bands))
+    if not any(history.loads.any() for history in histories):
+        raise InputError(f"loads = {pattern!r}: all hub loads are zero: give histories with loads")
+    return histories
+
+
+def _left_out(skip: float, scene: Scene) -> str:
+    left_out = f" The first {skip:g} s of each are left out." if skip else ""
+    if scene.loads_at != scene.shaft.front:
+        left_out += f" Their moments, about x = {scene.loads_at:g} m, are moved to the front face."
+    return left_out
+
+
+def _read(pattern: str, skip: float, scene: Scene) -> HubLoads:
+    histories = _histories(pattern, skip, scene)
     first = histories[0]
     for history in histories:
         if len(history) != len(first):
@@ -152,19 +191,14 @@ def _read(pattern: str, skip: float, scene: Scene) -> HubLoads:
                 "histories to one number of samples"
             )
     loads = np.stack([history.loads for history in histories])
-    if not loads.any():
-        raise InputError(f"loads = {pattern!r}: all hub loads are zero: give histories with loads")
     count = len(histories)
-    left_out = f" The first {skip:g} s of each are left out." if skip else ""
-    if at != front:
-        left_out += f" Their moments, about x = {at:g} m, are moved to the front face."
     return HubLoads(
         np.stack([history.time for history in histories]),
         loads,
         tuple(history.name for history in histories),
         (),
         f"Hub loads: {count} file{'s' if count > 1 else ''} of your own, "
-        f"{len(first):,} samples each.{left_out}",
+        f"{len(first):,} samples each.{_left_out(skip, scene)}",
         [],
         None,
         tuple(str(history.attributes["channels"]) for history in histories),
@@ -223,7 +257,6 @@ def rmse_charts(
 
     Where a beam and the FE model differ by round-off alone, a sentence says so instead.
     """
-    groups = [(c.wind_speed, c.turbulence, c.shear) for c in conditions]
     for label, (kind, model) in pairs.items():
         if is_round_off(fe[kind], model):
             page.text(
@@ -233,44 +266,69 @@ def rmse_charts(
             continue
         for plane, quantity, component in _PLANES:
             rmse = statistics.rmse(fe[kind][..., component], model[..., component]) / 1e3
-            by_group = statistics.by_group(rmse, groups)
-            traces = []
-            found: list[Any] = list(by_group.groups)
-            order = ("low", "medium", "high")
-            series = sorted({g[1:] for g in found}, key=lambda s: (s[1], order.index(s[0])))
-            for k, (turbulence, shear) in enumerate(series):
-                rows = [i for i, g in enumerate(found) if g[1:] == (turbulence, shear)]
-                # Staggered about the mean wind speed, as in the thesis, for clarity.
-                wind = [found[i][0] + 0.25 * (k - (len(series) - 1) / 2) for i in rows]
-                traces.append(
-                    trace(
-                        f"{turbulence} turbulence, shear {shear:g}",
-                        wind,
-                        by_group.mean[rows],
-                        mode="markers",
-                        marker={"symbol": "circle" if shear < 0.4 else "diamond", "size": 8},
-                        error_y={"type": "data", "array": rounded(by_group.std[rows])},
-                    )
-                )
-            page.add(
-                Chart(
-                    caption=f"RMSE, {label}, {plane} plane ({quantity}): mean and standard "
-                    "deviation over the seeds of each group, staggered about the mean wind speed",
-                    figure={
-                        "data": traces,
-                        "layout": {
-                            "xaxis": {
-                                "title": {"text": "mean wind speed [m/s]"},
-                                "tickvals": sorted({g[0] for g in groups}),
-                            },
-                            "yaxis": {
-                                "title": {"text": f"RMSE of {quantity} [kN]"},
-                                "rangemode": "tozero",
-                            },
-                        },
-                    },
-                )
+            group_chart(
+                page,
+                f"RMSE, {label}, {plane} plane ({quantity})",
+                conditions,
+                rmse,
+                f"RMSE of {quantity} [kN]",
             )
+
+
+def group_chart(
+    page: Page, caption: str, conditions: Sequence[Condition], values: Floats, y: str
+) -> None:
+    """A number of each history against mean wind speed, by turbulence and shear.
+
+    Parameters
+    ----------
+    page : Page
+        Where to.
+    caption : str
+        What it is; how it is shown is added.
+    conditions : Sequence[Condition]
+        (m,) of the histories.
+    values : Floats
+        (m,) numbers.
+    y : str
+        Their name, with the unit.
+    """
+    groups = [(c.wind_speed, c.turbulence, c.shear) for c in conditions]
+    by_group = statistics.by_group(values, groups)
+    traces = []
+    found: list[Any] = list(by_group.groups)
+    order = ("low", "medium", "high")
+    series = sorted({g[1:] for g in found}, key=lambda s: (s[1], order.index(s[0])))
+    for k, (turbulence, shear) in enumerate(series):
+        rows = [i for i, g in enumerate(found) if g[1:] == (turbulence, shear)]
+        # Staggered about the mean wind speed, as in the thesis, for clarity.
+        wind = [found[i][0] + 0.25 * (k - (len(series) - 1) / 2) for i in rows]
+        traces.append(
+            trace(
+                f"{turbulence} turbulence, shear {shear:g}",
+                wind,
+                by_group.mean[rows],
+                mode="markers",
+                marker={"symbol": "circle" if shear < 0.4 else "diamond", "size": 8},
+                error_y={"type": "data", "array": rounded(by_group.std[rows])},
+            )
+        )
+    page.add(
+        Chart(
+            caption=f"{caption}: mean and standard deviation over the seeds of each group, "
+            "staggered about the mean wind speed",
+            figure={
+                "data": traces,
+                "layout": {
+                    "xaxis": {
+                        "title": {"text": "mean wind speed [m/s]"},
+                        "tickvals": sorted({g[0] for g in groups}),
+                    },
+                    "yaxis": {"title": {"text": y}, "rangemode": "tozero"},
+                },
+            },
+        )
+    )
 
 
 def series_charts(

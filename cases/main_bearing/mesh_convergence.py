@@ -80,14 +80,13 @@ def run(run: Run, page: Page) -> None:
     for quantity, error in errors.items():
         is_stiffness = quantity.startswith("K_R")
         page.at_most(
-            f"{quantity}: estimated error of sizes x {last:g}",
+            f"{quantity}: estimated error of sizes x {last:g} [%]",
             abs(error),
             5.0 if is_stiffness else 2.0,
             why="a tenth of an error of K_R reaches the reactions of the beam that uses it"
             if is_stiffness
             else "small beside the difference between beam and solid",
             source="extrapolated to element size zero, first order",
-            unit="%",
             band=100.0 * found[quantity].uncertainty / abs(limits[quantity]),
         )
     largest_error = {

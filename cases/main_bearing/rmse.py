@@ -8,7 +8,15 @@ import numpy as np
 
 from fe_drivetrain.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, general, loads, reactions, shown, study
+from fe_drivetrain.cases.main_bearing import (
+    bands,
+    design_measures,
+    general,
+    loads,
+    reactions,
+    shown,
+    study,
+)
 from fe_drivetrain.cases.main_bearing.comparison import (
     MEAN_ERROR,
     PUBLISHED,
@@ -70,20 +78,18 @@ def check_beams(page: Page, found: Comparison, of_beams: bands.Series) -> None:
     """What is asked of the beams; `of_beams` has errors of two of them, and a correlation."""
     first, _, third = PUBLISHED
     page.vanishes(
-        f"{first}: mean error of the resultant",
+        f"{first}: mean error of the resultant [%]",
         found.mean_error[first],
         within=1e-6,
         why="loads act at the same points in both: solver accuracy",
         source="statics: the shaft is determinate",
-        unit="%",
     )
     page.at_most(
-        f"{third}: mean error of the resultant",
+        f"{third}: mean error of the resultant [%]",
         found.mean_error[third],
         2.0,
         why="asked of the torsional-spring model: under 2 %",
         source="FE of this study" + ("" if page.subject else "; the thesis reports 1.61 %"),
-        unit="%",
         band=of_beams.band(lambda f: float(f["beams"][1])),
     )
     if np.isfinite(found.correlation[third]):  # a load that never changes has no correlation
@@ -278,6 +284,7 @@ def run(run: Run, page: Page) -> None:
     loads.series_charts(page, hub, found.fe, found.pairs)
     page.section("FE against beam")
     loads.scatter_charts(page, found.fe, found.pairs)
+    design_measures.section(run, page, hub, found)
     page.section("What reactions do not show: stiffness, deflection, slope")
     shown.tilt_table(page, tilt, series["bonded"])
     page.table(

@@ -62,24 +62,22 @@ def check_scatter(page: Page, key: str, meshes: list[Reacted], shares: Floats) -
     unit = meshes[-1]
     page.equals(
         f"{TITLES[key]}: scatter of K_R about y over the load cases, against the lean "
-        "K_51 / K_11 times the thrust",
+        "K_51 / K_11 times the thrust [%]",
         100.0 * secants.vertical_scatter(unit),
         100.0 * secants.predicted_scatter(unit),
         within=0.1,
         why="seat average and condensed stiffness agree to a tenth",
         source="condensed 6x6 stiffness from unit loads without a gearbox: "
         "My = theta / C_55 + (K_51 / K_11) Fx",
-        unit="%",
         measure="stiffness",
         band=band_of(meshes, lambda u: 100.0 * secants.vertical_scatter(u)),
     )
     page.at_most(
-        f"{TITLES[key]}: scatter of K_R about y at the elastic centre",
+        f"{TITLES[key]}: scatter of K_R about y at the elastic centre [%]",
         100.0 * secants.scatter_at_centre(unit),
         100.0 * secant_stiffness.SCATTERS,
         why="from there on a single spring is called the wrong form",
         source="at the elastic centre thrust does not tilt: nothing is left to scatter",
-        unit="%",
         measure="stiffness",
         band=band_of(meshes, lambda u: 100.0 * secants.scatter_at_centre(u)),
     )
@@ -118,8 +116,8 @@ def check_springs(page: Page, made: dict[str, tuple[Floats, Floats]], coupled: F
 
 def secant_traces(key: str, unit: Reacted) -> list[Any]:
     """K_R of each load case at the axis and at the elastic centre."""
-    at_axis = secant_stiffness.secant(unit.loads, unit.motions, 4).secants
-    at_centre = secant_stiffness.secant(*secants.at_centre(unit), 4).secants
+    at_axis = unit.secant(4).secants
+    at_centre = secant_stiffness.secant(*secants.at_centre(unit), 4, unit.weights).secants
     slope = unit.loads[:, 0] / unit.motions[:, 4] / 1e6
     # seen: each case, at most as many as a page shows without weight
     chosen = np.linspace(0, len(slope) - 1, min(len(slope), 600)).astype(int)
@@ -142,27 +140,29 @@ def run(run: Run, page: Page) -> None:
     """Secants of three bearings and of made-up springs, and the beams that follow from them."""
     other = general.general_scene(run, page, "bonded", uniform=False)
     if other is not None:
-        general.secant_page(run, page, other, *secants.hub_loads(run, EVERY, other))
+        general.secant_page(run, page, other, secants.hub_loads(run, EVERY, other))
         return
     bonded = study.scene_of(run, page, "bonded", coarsen=False)
     spherical = study.scene_of(run, page, "spherical", coarsen=False)
-    hub, what = secants.hub_loads(run, EVERY, bonded)
+    cases = secants.hub_loads(run, EVERY, bonded)
+    hub = cases.hub
     factors = QUICK_FACTORS if run.quick else FACTORS
     units = {
-        "library": secants.series(run, bonded, factors["library"], hub),
-        "tall": secants.series(run, secants.tall(bonded, TALL), factors["tall"], hub),
+        "library": secants.series(run, bonded, factors["library"], cases),
+        "tall": secants.series(run, secants.tall(bonded, TALL), factors["tall"], cases),
     }
     with run.step("spherical"):
         free_loads, _, _ = secants.reacted(run, spherical, factors["tall"][-1], hub)
     finest = {key: meshes[-1] for key, meshes in units.items()}
     both = [(key, a) for key in units for a in (4, 5)]
-    found = {
-        (key, a): secant_stiffness.secant(finest[key].loads, finest[key].motions, a)
-        for key, a in both
-    }
+    found = {(key, a): finest[key].secant(a) for key, a in both}
     parts = {
         (key, a): secant_stiffness.parts_of(
-            finest[key].loads, finest[key].motions, finest[key].fit.matrix, a
+            finest[key].loads,
+            finest[key].motions,
+            finest[key].fit.matrix,
+            a,
+            finest[key].weights,
         )
         for key, a in both
     }
@@ -225,7 +225,7 @@ def run(run: Run, page: Page) -> None:
         f"{library[SINGLE][OF_FORM]:.2g} %, and what is left is the beam's.",
     )
     page.section("The secant over load cases")
-    page.text(what)
+    page.text(cases.statement)
     left_out = float(np.isnan(found["library", 4].secants).mean())
     page.chart(
         "K_R about y of each load case against the thrust on the bearing over its rotation: level "

@@ -14,6 +14,7 @@ from fe_drivetrain.cases.main_bearing import (
     study,
 )
 from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
+from fe_drivetrain.compare import sample_weights, weighted_rms
 from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, hub_load_set
 from fe_drivetrain.response import LOADS, bearing_unit_stiffness, secant_stiffness, without_gearbox
 from fe_drivetrain.scene import Scene, change_scene
@@ -44,6 +45,8 @@ class Reacted:
         (6, 6) condensed, from unit loads without a gearbox.
     fit : secant_stiffness.Spring
         The spring that the load cases show.
+    weights : Floats or None
+        (m,) share of each load case in the whole time; None where all are equal.
     """
 
     scene: Scene
@@ -51,25 +54,56 @@ class Reacted:
     motions: Floats
     stiffness: Floats
     fit: secant_stiffness.Spring
+    weights: Floats | None = None
+
+    def secant(self, component: int) -> secant_stiffness.Secant:
+        """Of the load cases, about one axis."""
+        return secant_stiffness.secant(self.loads, self.motions, component, self.weights)
 
 
-def hub_loads(run: Run, every: int, scene: Scene) -> tuple[Floats, str]:
-    """Load cases (m, 6) at the hub [N, N m], and what they are.
+@dataclass(frozen=True)
+class Cases:
+    """Load cases.
 
-    The user's own, where ``--set loads=FILE`` is given; else samples of made histories.
+    Attributes
+    ----------
+    hub : Floats
+        (m, 6) at the hub [N, N m].
+    weights : Floats or None
+        (m,) share of each in the whole time; None where all are equal.
+    statement : str
+        What they are.
     """
-    own = loads.own_hub_loads(run, scene)
+
+    hub: Floats
+    weights: Floats | None
+    statement: str
+
+
+def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
+    """Load cases at the hub.
+
+    The user's own, of any length and step, where ``--set loads=FILE`` is given; else samples of
+    made histories.
+    """
+    own = loads.own_histories(run, scene)
     if own is not None:
-        return own.loads.reshape(-1, 6), own.statement
+        histories, statement = own
+        steps = [history.step for history in histories]
+        unlike = np.ptp(steps) > 1e-9 * max(steps)
+        weights = sample_weights([len(h) for h in histories], steps) if unlike else None
+        return Cases(np.concatenate([h.loads for h in histories]), weights, statement)
     speeds = WIND_SPEEDS[1:2] if run.quick else WIND_SPEEDS
     conditions = [Condition(speed, "medium", shear, 1) for speed in speeds for shear in SHEARS]
     with run.step("hub loads"):
         history = hub_load_set(conditions)
     chosen = history.loads[:, ::every].reshape(-1, 6)
-    return chosen, (
+    return Cases(
+        chosen,
+        None,
         f"Load cases: {len(chosen):,} samples of {len(conditions)} made ten-minute histories (wind "
         f"of {', '.join(f'{s:g}' for s in speeds)} m/s, medium turbulence, both shear exponents, "
-        "one seed), each with the gearbox's weight. Your own: --set loads=FILE."
+        "one seed), each with the gearbox's weight. Your own: --set loads=FILE.",
     )
 
 
@@ -94,24 +128,24 @@ def reacted(run: Run, scene: Scene, factor: float, hub: Floats) -> tuple[Floats,
     )
 
 
-def solved(run: Run, scene: Scene, factor: float, hub: Floats) -> Reacted:
+def solved(run: Run, scene: Scene, factor: float, cases: Cases) -> Reacted:
     """A bonded bearing over load cases, with its condensed stiffness."""
-    on_bearing, motions, coarser = reacted(run, scene, factor, hub)
+    on_bearing, motions, coarser = reacted(run, scene, factor, cases.hub)
     free = study.solve_scene(run, without_gearbox(coarser), f"without gearbox, sizes x {factor:g}")
     stiffness = bearing_unit_stiffness(free.response, free.bearing)
-    fit = secant_stiffness.fitted_spring(on_bearing, motions)
-    return Reacted(coarser, on_bearing, motions, stiffness, fit)
+    fit = secant_stiffness.fitted_spring(on_bearing, motions, cases.weights)
+    return Reacted(coarser, on_bearing, motions, stiffness, fit, cases.weights)
 
 
-def series(run: Run, scene: Scene, factors: tuple[float, float], hub: Floats) -> list[Reacted]:
+def series(run: Run, scene: Scene, factors: tuple[float, float], cases: Cases) -> list[Reacted]:
     """`solved` on two meshes, the finer last; on that alone if the other is too coarse to mesh."""
     coarse, fine = factors
     found = []
     try:
-        found.append(solved(run, scene, coarse, hub))
+        found.append(solved(run, scene, coarse, cases))
     except InputError as reason:
         run.report(f"no coarser mesh: {reason}")
-    return [*found, solved(run, scene, fine, hub)]
+    return [*found, solved(run, scene, fine, cases)]
 
 
 def at_centre(unit: Reacted) -> tuple[Floats, Floats]:
@@ -122,12 +156,12 @@ def at_centre(unit: Reacted) -> tuple[Floats, Floats]:
 
 def vertical_scatter(unit: Reacted) -> float:
     """Of the secant about y, at the shaft's axis."""
-    return secant_stiffness.secant(unit.loads, unit.motions, 4).scatter
+    return unit.secant(4).scatter
 
 
 def scatter_at_centre(unit: Reacted) -> float:
     """Of the secant about y, at the elastic centre."""
-    return secant_stiffness.secant(*at_centre(unit), 4).scatter
+    return secant_stiffness.secant(*at_centre(unit), 4, unit.weights).scatter
 
 
 def predicted_scatter(unit: Reacted) -> float:
@@ -140,7 +174,7 @@ def predicted_scatter(unit: Reacted) -> float:
     moment = moment + secant_stiffness.elastic_centre(unit.stiffness) * thrust
     made = np.zeros_like(unit.loads)
     made[:, 4] = moment
-    return secant_stiffness.secant(made, unit.motions, 4).scatter
+    return secant_stiffness.secant(made, unit.motions, 4, unit.weights).scatter
 
 
 def springs(unit: Reacted) -> dict[str, Floats]:
@@ -149,7 +183,7 @@ def springs(unit: Reacted) -> dict[str, Floats]:
     single = 1.0 / np.linalg.inv(stiffness).diagonal()
     by_secant = single.copy()
     for a in (4, 5):
-        by_secant[a] = secant_stiffness.secant(unit.loads, unit.motions, a).stiffness
+        by_secant[a] = unit.secant(a).stiffness
     arm = np.array([0.0, 0.0, secant_stiffness.elastic_centre(stiffness)])
     there = stiffness_transport(stiffness, -arm)
     return {
@@ -180,13 +214,16 @@ def beam_errors(unit: Reacted, hub: Floats) -> dict[str, Mapping[str, float]]:
     beams = {form: on_beam(unit.scene, k, hub)[0] for form, k in springs(unit).items()}
     found: dict[str, Mapping[str, float]] = {}
     for form, beam in beams.items():
-        error = _error(beam, unit.loads)
+        error = _error(beam, unit.loads, unit.weights)
         by = {q: float(error[FORCES.index(q)]) for q in QUANTITIES}
-        found[form] = by | {OF_FORM: float(_error(beam, beams[FULL])[4])}
+        found[form] = by | {OF_FORM: float(_error(beam, beams[FULL], unit.weights)[4])}
     return found
 
 
-def _error(found: Floats, reference: Floats) -> Floats:
+def _error(found: Floats, reference: Floats, weights: Floats | None) -> Floats:
     """(6,) root mean square over that of the reference [%]."""
+    if weights is not None:
+        difference = weighted_rms(found - reference, weights)
+        return np.asarray(100.0 * difference / weighted_rms(reference, weights))
     size = np.sqrt((reference**2).mean(axis=0))
     return np.asarray(100.0 * np.sqrt(((found - reference) ** 2).mean(axis=0)) / size)

@@ -92,8 +92,21 @@ def any_scene(run: Run, kind: str) -> Scene:
         if key.partition(".")[0] in Scene.model_fields
     }
     if "scene" in run.settings:
-        return read_scene(str(run.settings["scene"]), changes)
-    return change_scene(library_scene(f"main_bearing_{kind}"), changes)
+        scene = read_scene(str(run.settings["scene"]), changes)
+    else:
+        scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
+    if scene.nose is not None:
+        raise InputError(
+            f"scene {scene.title!r} has a nose: the main-bearing cases compare solids on bearing "
+            "units; run fe-drivetrain advise, which takes both"
+        )
+    if scene.load_points:
+        raise InputError(
+            f"scene {scene.title!r} has loads at {', '.join(scene.bands)}: the main-bearing cases "
+            "load the hub and the gearbox alone; leave load_points out, or run fe-drivetrain "
+            "study, which takes any"
+        )
+    return scene
 
 
 def given_scene(run: Run, kind: str) -> Scene:

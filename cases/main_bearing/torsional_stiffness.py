@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
 from fe_drivetrain.cases.main_bearing.study import Solved
-from fe_drivetrain.report import Chart, rounded
+from fe_drivetrain.report import bars
 from fe_drivetrain.response import PLANES
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -16,13 +16,12 @@ def check_energies(page: Page, free: Solved, series: bands.Series) -> None:
     for plane in PLANES:
         load = plane.moment
         page.equals(
-            f"{plane.name}: work of the hub moment against energy stored",
+            f"{plane.name}: work of the hub moment against energy stored [rad/(N m)]",
             sum(float(e[load, load]) for e in response.strain_energy.values()),
             float(response.motions["hub"][load, load]),
             within=1e-8,
             why="no spring and no constraint does work: solver accuracy",
             source="Clapeyron: U = M theta / 2",
-            unit="rad/(N m)",
             measure="energy",
             band=series.band(
                 lambda f, k=load: sum(
@@ -126,17 +125,11 @@ def run(run: Run, page: Page) -> None:
     page.add(*shown.pictures_of(run, free, load_factors, "My = 1 MN m at the hub, no gearbox"))
     page.section("K_R by three estimators")
     shown.tilt_table(page, tilt, series)
-    bars = [
-        {
-            "type": "bar",
-            "name": plane,
-            "x": list(values),
-            "y": rounded([v / 1e6 for v in values.values()]),
-        }
+    by_plane = {
+        plane: {name: K / 1e6 for name, K in values.items()}
         for plane, values in tilt.by_plane.items()
-    ]
-    layout = {"yaxis": {"title": {"text": "K_R [MN m/rad]"}}, "barmode": "group"}
-    page.add(Chart(caption="K_R by plane and estimator", figure={"data": bars, "layout": layout}))
+    }
+    page.add(bars("K_R by plane and estimator", by_plane, "K_R [MN m/rad]"))
     page.text(
         "Four nodes: rotation of the line between two housing points"
         + ("" if page.subject else ", as in the thesis")

@@ -154,8 +154,10 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "The load history is made of cosines below 1.3 Hz; steps are 0.05 s. A step starts from "
         "the one before it, whose forces and tangent are known; rollers that lift off cost "
-        "nothing; powers come from a table. Roller loads scale with the loads where there is no "
-        "clearance, so that a table over three ratios serves all loads."
+        "nothing; ten places stand for the laminae of a roller that is loaded along all of its "
+        "length (Gauss's rule of their sum, to 1e-13); powers come from a table. Roller loads "
+        "scale with the loads where there is no clearance, so that a table over three ratios "
+        "serves all loads."
     )
 
 

@@ -162,15 +162,13 @@ def checked_reference(run: Run, page: Page, name: str, body: Shaft) -> tuple[Flo
             bounds = torsion_bounds(body, STEEL.shear_modulus, 0.05, 20)
         half = max(bounds.half_width, 1e-10 * bounds.middle) + band * bounds.middle
         page.between(
-            f"{name}: torsion of the reference between its bounds",
+            f"{name}: torsion of the reference between its bounds [N m/rad]",
             reference[3, 3],
             bounds.middle - half,
             bounds.middle + half,
             why="the distance of the bounds, 1e-10 at least, and on either side the reference's "
             "band",
             source="two bounds, by displacements and by the torsion function (Michell 1899)",
-            unit="N m/rad",
-            measure="stiffness",
             band=band * reference[3, 3],
         )
     page.at_most(

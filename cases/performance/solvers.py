@@ -142,12 +142,11 @@ def run(run: Run, page: Page) -> None:
     ratio = [t["multigrid"].total(MANY) / t["multigrid"].total(1) for t in timings]
     iterating = [t["multigrid"].many / t["multigrid"].one for t in timings]
     page.at_most(
-        f"multigrid, {MANY} right-hand sides against one, set-up included, worst of the grid",
+        f"multigrid, {MANY} right-hand sides against one, set-up included, worst of the grid [x]",
         max(ratio),
         4.0,
         why="all right-hand sides share the hierarchy and every pass over a matrix",
         source="measured side by side",
-        unit="x",
     )
     page.answer(
         f"Multigrid takes {min(ratio):.1f} to {max(ratio):.1f} times as long for {MANY} right-hand "
@@ -244,12 +243,11 @@ def check_choices(page: Page, problems: list[Problem], timings: list[dict[str, T
             )
     worst = max(column(choices, "times the best"))
     page.at_most(
-        "auto against the best solver, worst of the grid",
+        "auto against the best solver, worst of the grid [x]",
         worst,
         ALLOWED,
         why="times of one solver differ by about that much from run to run",
         source="every installed solver on every system of the grid, in this run",
-        unit="x",
     )
     page.answer(
         f"The solver that auto chose was at worst {worst:.2f} times as slow as the best one, over "

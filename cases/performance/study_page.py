@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.cases.performance.choices import ELEMENTS, P1, STEPS, Outcome
-from fe_drivetrain.cases.performance.precision import pareto_front
 from fe_drivetrain.cases.performance.studies import Study
-from fe_drivetrain.report import Chart, rounded, trace
+from fe_drivetrain.compare import pareto_front
+from fe_drivetrain.report import Chart, bars, rounded, trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.stiffness_choices import ELEMENTS, P1, STEPS, Outcome
 
 #: Errors that an engineer asks for.
 BOUNDS = (1e-2, 1e-3, 1e-4)
@@ -195,28 +195,12 @@ def split_chart(study: Study, quantity: int) -> Chart:
     front = front_of(study, quantity)
     # numbered: two choices may have one element and one rounded error
     names = [f"{k + 1}: {study.outcomes[j].element}, {error[j]:.0e}" for k, j in enumerate(front)]
-    return Chart(
-        caption=f"{study.quantities[quantity]}: where the time goes along the Pareto front, from "
-        "the quickest to the most exact",
-        figure={
-            "data": [
-                {
-                    "type": "bar",
-                    "orientation": "h",
-                    "name": step,
-                    "y": names,
-                    "x": rounded([study.outcomes[j].seconds[step] for j in front]),
-                }
-                for step in STEPS
-            ],
-            "layout": {
-                "barmode": "stack",
-                "height": 140 + 34 * max(len(front), 4),
-                "xaxis": {"title": {"text": "wall time [s]"}},
-                "yaxis": {"autorange": "reversed"},
-            },
-        },
-    )
+    groups = {
+        step: {name: study.outcomes[j].seconds[step] for name, j in zip(names, front, strict=True)}
+        for step in STEPS
+    }
+    caption = f"{study.quantities[quantity]}: where the time goes along the Pareto front, from the "
+    return bars(f"{caption}quickest to the most exact", groups, "wall time [s]", stacked=True)
 
 
 def show_reference(page: Page, study: Study) -> None:

@@ -7,15 +7,15 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance import studies
-from fe_drivetrain.cases.performance.choices import CURVED, STEPS, Outcome
-from fe_drivetrain.cases.performance.growth import STEPPED, Grown
-from fe_drivetrain.cases.performance.precision import growth_exponent
 from fe_drivetrain.cases.performance.studies import Setting, Study
 from fe_drivetrain.cases.performance.study_page import BOUNDS, percent, show
-from fe_drivetrain.cases.performance.tilt import BALANCED, sizes_in_words
 from fe_drivetrain.common import InputError
+from fe_drivetrain.compare import growth_exponent
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.validation.growing_shafts import STEPPED, Grown
+from fe_drivetrain.validation.stiffness_choices import CURVED, STEPS, Outcome
+from fe_drivetrain.validation.tilt_choices import BALANCED, sizes_in_words
 
 PARTS = ("shaft", "housing", "growth")
 
@@ -159,13 +159,12 @@ def check_growth(page: Page, grown: Sequence[Grown], judged: bool) -> None:
         )
     peak = max((g.peak_bytes for g in grown), default=0) or float("nan")
     page.at_most(
-        f"peak memory of the process at {largest:,} unknowns",
+        f"peak memory of the process at {largest:,} unknowns [GiB]",
         peak / 2**30,
         MEMORY_LIMIT,
         why="a million unknowns fit beside other programs in a computer of 16 GiB; interpreter and "
         "libraries included",
         source="goal of this project",
-        unit="GiB",
     )
 
 

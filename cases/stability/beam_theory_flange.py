@@ -7,14 +7,16 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability import beam_maps as maps
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import least_safe
 from fe_drivetrain.geometry import Flange, MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import fixed, rigid_face, rigid_point
 from fe_drivetrain.mesh import generate
+from fe_drivetrain.report import dashed, map_traces
 from fe_drivetrain.revolution import seat_stiffness
 from fe_drivetrain.solve import recovery_estimate, solve_solid
 from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation import end_flexibilities as shafts
 from fe_drivetrain.validation.clamped_plates import boss_rotation
 
 #: Flange over shaft diameter.
@@ -85,19 +87,21 @@ def by_elements(thickness: float, ratio: float, finer: bool = False) -> float:
     settings: dict[str, Any] = (
         {"size": 0.7 * size, "order": 7, "layers": 4} if finer else {"size": size, "layers": 3}
     )
-    K = seat_stiffness(shaft, maps.STEEL, [(0.0, thickness), (shaft.rear, shaft.rear)], **settings)
+    K = seat_stiffness(
+        shaft, shafts.STEEL, [(0.0, thickness), (shaft.rear, shaft.rear)], **settings
+    )
     return float(np.linalg.inv(K[6:, 6:])[4, 4])
 
 
 def by_beam(thickness: float, ratio: float) -> float:
     """The same of a beam that is clamped at the middle of the flange."""
-    half = maps.stepped((thickness / 2, LENGTH), (ratio, 1.0))
-    return float(maps.by_beam(half)[maps.ROTATION, maps.ROTATION])
+    half = shafts.stepped((thickness / 2, LENGTH), (ratio, 1.0))
+    return float(shafts.by_beam(half)[shafts.ROTATION, shafts.ROTATION])
 
 
 def by_plate(thickness: float, ratio: float, inset: float) -> float:
     """Rotation of the plate that reaches some of its thickness into the shaft."""
-    return boss_rotation(ratio / 2, 0.5 - inset * thickness, thickness, maps.STEEL)
+    return boss_rotation(ratio / 2, 0.5 - inset * thickness, thickness, shafts.STEEL)
 
 
 def inset_of(thickness: float, ratio: float, exact: float) -> float:
@@ -179,10 +183,9 @@ def check(page: Page, found: Map, worst: float) -> None:
     )
     page.at_most(
         "rotation by a moment, beam and yielding plate in series: worst error of all flanges up "
-        f"to {PLATE:g} d thick",
+        f"to {PLATE:g} d thick [%]",
         np.abs(found.thin).max(),
         5.0,
-        unit="%",
         why="5 % is the second line of a map; one constant, from one flange, serves for all",
         source="Fourier harmonics in the meridian",
         measure="rotation",
@@ -206,16 +209,15 @@ def check_solid(run: Run, page: Page) -> None:
         ]
         F = np.zeros((n + 6, 1))
         F[n + 4] = 1.0
-        found = solve_solid(mesh.points, mesh.cells, maps.STEEL.lame, constraints, F)
-        bodies = [(mesh.cells, maps.STEEL.lame)]
+        found = solve_solid(mesh.points, mesh.cells, shafts.STEEL.lame, constraints, F)
+        bodies = [(mesh.cells, shafts.STEEL.lame)]
         estimate = recovery_estimate(mesh.points, bodies, found.u[:, 0]).relative
     exact = by_elements(t, SHOWN)
     page.equals(
-        f"flange {SHOWN:g} d, t = {t:g} d: rotation by a moment, {n:,} unknowns",
+        f"flange {SHOWN:g} d, t = {t:g} d: rotation by a moment, {n:,} unknowns [rad/(N m)]",
         found.u[n + 4, 0],
         exact,
         within=3 * estimate,
-        unit="rad/(N m)",
         why=f"three times the estimated error of the solid, {estimate:.1g}",
         source="Fourier harmonics in the meridian",
         measure="rotation",
@@ -226,7 +228,7 @@ def check_solid(run: Run, page: Page) -> None:
 def show(page: Page, found: Map, shown: int, inset: float) -> None:
     """Answer, charts, table and limit."""
     thick, error, thin = found.thick, found.error, found.thick <= PLATE
-    low = maps.least_safe(thick, error[shown], 10.0)
+    low = least_safe(thick, error[shown], 10.0)
     worst = np.abs(found.thin).max()
     page.answer(
         f"A shaft of L = {LENGTH:g} d held by the rim of a flange of {SHOWN:g} d: the beam, "
@@ -258,23 +260,18 @@ def show(page: Page, found: Map, shown: int, inset: float) -> None:
         f"{MEASURED:g} d thick."
     )
     page.section("Results")
-    page.chart(
-        f"Error of the rotation by a moment, flange of {SHOWN:g} d, L = {LENGTH:g} d, against the "
-        "flange's thickness; shaded is where the beam alone is within 10 %",
-        [
-            maps.curve("beam", thick, error[shown]),
-            maps.curve(
-                "beam and yielding plate", thick[thin], found.with_plate[shown, thin], "dash"
-            ),
-        ],
-        "flange thickness over shaft diameter",
-        "error without its sign [%]",
-        "xy",
-        (low, None),
-    )
+    title = f"Error of the rotation by a moment, flange of {SHOWN:g} d, L = {LENGTH:g} d, against "
+    title += "the flange's thickness; shaded is where the beam alone is within 10 %"
+    with_plate = np.abs(found.with_plate[shown, thin])
+    curves = [
+        dashed("beam", thick, np.abs(error[shown])),
+        dashed("beam and yielding plate", thick[thin], with_plate, "dash"),
+    ]
+    x, y = "flange thickness over shaft diameter", "error without its sign [%]"
+    page.chart(title, curves, x, y, "xy", (low, None))
     page.chart(
         "Beam alone: lines of 1, 5 and 10 % error (too stiff)",
-        maps.map_traces(thick, found.ratios, error, 0.0),
+        map_traces(thick, found.ratios, error, 0.0),
         "flange thickness over shaft diameter",
         "flange over shaft diameter",
         "x",
@@ -286,8 +283,8 @@ def show(page: Page, found: Map, shown: int, inset: float) -> None:
         [
             {
                 "flange over d": ratio,
-                "beam: 5 %": maps.least_safe(thick, error[i], 5.0),
-                "beam: 10 %": maps.least_safe(thick, error[i], 10.0),
+                "beam: 5 %": least_safe(thick, error[i], 5.0),
+                "beam: 10 %": least_safe(thick, error[i], 10.0),
                 "beam and yielding plate [%]": np.abs(found.thin[i]).max(),
             }
             for i, ratio in enumerate(found.ratios)

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability import beam_maps as maps
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import least_safe
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
+from fe_drivetrain.report import dashed, map_traces
 from fe_drivetrain.revolution import dofs, harmonic_response, meridian, surface_loads
 from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation import end_flexibilities as shafts
 from fe_drivetrain.validation.torsion_meridian import torsion_bounds
 
 #: Large over small diameter.
@@ -27,7 +29,7 @@ QUICK_RADII = (1.0,)
 #: Length over the small diameter where the step's own flexibility is measured.
 MEASURED = 6.0
 
-OF = {"torsion": maps.TORSION, "bending": maps.ROTATION, "tension": maps.AXIAL}
+OF = {"torsion": shafts.TORSION, "bending": shafts.ROTATION, "tension": shafts.AXIAL}
 DASHES = {"torsion": "solid", "bending": "dash", "tension": "dot"}
 
 
@@ -53,23 +55,23 @@ class Map:
 
     def least(self, percent: Floats, level: float) -> float | None:
         """Least length from which on errors are below a level [%]."""
-        return maps.least_safe(self.lengths, percent, level)
+        return least_safe(self.lengths, percent, level)
 
 
 def stepped(length: float, ratio: float, fillet: float = 0.0) -> Shaft:
     """Half of the length before the step and half behind it."""
-    return maps.stepped((length / 2, length / 2), (ratio, 1.0), fillet)
+    return shafts.stepped((length / 2, length / 2), (ratio, 1.0), fillet)
 
 
 def beam(length: float, ratio: float) -> Floats:
     """Flexibilities (6,) of the beam."""
-    return np.asarray(maps.by_beam(stepped(length, ratio)).diagonal())
+    return np.asarray(shafts.by_beam(stepped(length, ratio)).diagonal())
 
 
 def of_ends() -> Floats:
     """What two rigid ends take off the flexibilities (6,) of a solid shaft of 1 m diameter."""
-    shaft = maps.uniform(3.0)
-    return np.asarray((maps.by_elements(shaft, 0.3) - maps.by_beam(shaft)).diagonal())
+    shaft = shafts.uniform(3.0)
+    return np.asarray((shafts.by_elements(shaft, 0.3) - shafts.by_beam(shaft)).diagonal())
 
 
 def without_ends(
@@ -78,7 +80,9 @@ def without_ends(
     """Flexibilities (6,) of the elements, less the ends'; of rotations and along x alone."""
     shaft = stepped(length, ratio, fillet)
     size = ratio / 3
-    found = maps.by_elements(shaft, size * 0.7, 8, 5) if finer else maps.by_elements(shaft, size)
+    found = (
+        shafts.by_elements(shaft, size * 0.7, 8, 5) if finer else shafts.by_elements(shaft, size)
+    )
     # along x as 1 / D, of rotations as 1 / D^3
     power = np.array([1.0, 1.0, 1.0, 3.0, 3.0, 3.0])
     return np.asarray(found.diagonal() - 0.5 * ends * (1 + ratio**-power))
@@ -96,7 +100,7 @@ def bent_by_tractions(length: float, ratio: float) -> float:
     loads = surface_loads(mesh, 1, ends, traction)
     rim = mesh.where(lambda x, r: (x < LENGTH_TOLERANCE) & (r > ratio / 2 - LENGTH_TOLERANCE))
     held = (np.concatenate([dofs(rim, 0), dofs(rim, 1)]), np.zeros(2))
-    return 2 * float(harmonic_response(mesh, maps.STEEL, 1, loads, held).energy[0])
+    return 2 * float(harmonic_response(mesh, shafts.STEEL, 1, loads, held).energy[0])
 
 
 def mapped(run: Run, lengths: Floats, ratios: Floats, ends: Floats) -> Map:
@@ -110,7 +114,7 @@ def mapped(run: Run, lengths: Floats, ratios: Floats, ends: Floats) -> Map:
             found = np.array([without_ends(length, ratio, ends) for length in lengths])
         of_beam = np.array([beam(length, ratio) for length in lengths])
         for name, k in OF.items():
-            thin = maps.by_beam(maps.uniform(1.0))[k, k]
+            thin = shafts.by_beam(shafts.uniform(1.0))[k, k]
             extra[name][i] = (measured[k] - beam(MEASURED, ratio)[k]) / thin
             error[name][i] = 100 * (of_beam[:, k] / found[:, k] - 1)
             corrected[name][i] = 100 * ((of_beam[:, k] + extra[name][i] * thin) / found[:, k] - 1)
@@ -153,7 +157,7 @@ def run(run: Run, page: Page) -> None:
         f"Error of the beam, which has no fillet, step {FILLETED:g}, L = {AT:g} d, against the "
         "fillet's radius: below zero it is too stiff",
         [
-            maps.curve(name, np.array([0.0, *radii]), error[:, k], DASHES[name], signed=True)
+            dashed(name, np.array([0.0, *radii]), error[:, k], DASHES[name])
             for name, k in OF.items()
         ],
         "fillet radius over height of the step",
@@ -172,28 +176,25 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
     for ratio in (1.5,) if run.quick else (1.2, 2.0):
         with run.step("bounds in torsion"):
             shaft = stepped(2.0, ratio)
-            bounds = torsion_bounds(shaft, maps.STEEL.shear_modulus, 0.12, 1 if run.quick else 4)
-        k = 1 / maps.by_elements(shaft, ratio / 3)[3, 3]
+            bounds = torsion_bounds(shaft, shafts.STEEL.shear_modulus, 0.12, 1 if run.quick else 4)
+        k = 1 / shafts.by_elements(shaft, ratio / 3)[3, 3]
         page.equals(
-            f"sharp step {ratio:g}, L = 2 d: torsional stiffness",
+            f"sharp step {ratio:g}, L = 2 d: torsional stiffness [N m/rad]",
             k,
             bounds.middle,
             within=bounds.half_width / bounds.middle + band,
-            unit="N m/rad",
             why=f"the truth lies between the bounds, and elements are too stiff by {band:.1g}",
             source="middle of two bounds by complementary energies (Michell 1899)",
-            measure="stiffness",
             band=band * k,
         )
     with run.step("Saint-Venant's ends"):
         direct = bent_by_tractions(AT, FILLETED)
     page.equals(
         f"sharp step {FILLETED:g}, L = {AT:g} d: rotation by a moment, ends taken out by those of "
-        "uniform shafts",
+        "uniform shafts [rad/(N m)]",
         sharp[OF["bending"]],
         direct,
         within=2e-4,
-        unit="rad/(N m)",
         why="what an end and the step feel of each other across the shorter half, 1 diameter of "
         "it: e^-5 (cylinder's slowest mode of bending) of an end's 1 %",
         source="the same shaft with linear tractions on both ends, which disturb nothing",
@@ -204,10 +205,9 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
     for name, percent in found.corrected.items():
         page.at_most(
             f"{name}: beam with the step's extra length, worst error of all steps where both "
-            "halves are as long as they are wide",
+            "halves are as long as they are wide [%]",
             np.abs(percent[usable]).max(),
             1.0,
-            unit="%",
             why="1 % is the first line of a map; Saint-Venant's principle keeps the step's field "
             "apart from the ends' a diameter away",
             source="Fourier harmonics in the meridian",
@@ -215,10 +215,10 @@ def check(run: Run, page: Page, found: Map, sharp: Floats, band: float) -> None:
             band=100 * band,
         )
     page.at_least(
-        "torsion: extra length of the largest step, against that of a rigid disc on a half-space",
+        "torsion: extra length of the largest step, against that of a rigid disc on a half-space "
+        "[d]",
         found.extra["torsion"][-1],
         3 * np.pi / 64 * (1 - found.ratios[-1] ** -3),
-        unit="d",
         why="a rigid disc on a half-space is stiffer than a shaft of any softness grown on to it",
         source="Reissner and Sagoci 1944, J. Appl. Phys. 15, 652-654: M = 16/3 G a^3 phi, so G J / "
         "M phi is 3 pi / 64 d; less what the half-space has beyond the larger shaft, which goes as "
@@ -265,7 +265,7 @@ def show_steps(page: Page, found: Map) -> None:
     page.chart(
         f"Error of the beam's flexibility, step {step:g}; shaded is where bending is within 5 %",
         [
-            maps.curve(name + words, lengths, percent[name][shown], DASHES[name], width)
+            dashed(name + words, lengths, np.abs(percent[name][shown]), DASHES[name], width)
             for name in OF
             for percent, words, width in (
                 (found.error, "", 2.5),
@@ -281,7 +281,7 @@ def show_steps(page: Page, found: Map) -> None:
         page.chart(
             f"{name.capitalize()} of a shaft with a sharp step: lines of 1, 5 and 10 % error of "
             "the beam (too stiff)",
-            maps.map_traces(lengths, found.ratios, found.error[name]),
+            map_traces(lengths, found.ratios, found.error[name]),
             along,
             "large over small diameter",
             "x",
@@ -310,7 +310,7 @@ def show_fillets(page: Page, radii: Sequence[float], filleted: dict[float, Float
     page.chart(
         f"Bending of a shaft of L = {AT:g} d with a fillet, which the beam has not: lines of 1, 5 "
         "and 10 % error",
-        maps.map_traces(np.array(radii), np.array(list(filleted)), np.array(bent), 0.0),
+        map_traces(np.array(radii), np.array(list(filleted)), np.array(bent), 0.0),
         "fillet radius over height of the step",
         "large over small diameter",
         "x",

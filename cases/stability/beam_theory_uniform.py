@@ -7,9 +7,10 @@ from functools import partial
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability import beam_maps as maps
 from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.compare import least_safe
 from fe_drivetrain.geometry import LENGTH_TOLERANCE
+from fe_drivetrain.report import dashed, map_traces
 from fe_drivetrain.revolution import (
     along_sides,
     dofs,
@@ -18,6 +19,7 @@ from fe_drivetrain.revolution import (
     surface_loads,
 )
 from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation import end_flexibilities as shafts
 from fe_drivetrain.validation import rigid_ended_shafts
 from fe_drivetrain.validation.shaft_theory import Tube, flexure_stress
 
@@ -32,7 +34,7 @@ MEASURED = (3.0, 6.0)
 SHORTEST = 1.0
 
 BENT, TURNED, PULLED = "deflection by a force", "rotation by a moment", "tension"
-OF = {BENT: maps.DEFLECTION, TURNED: maps.ROTATION, PULLED: maps.AXIAL}
+OF = {BENT: shafts.DEFLECTION, TURNED: shafts.ROTATION, PULLED: shafts.AXIAL}
 
 
 @dataclass(frozen=True)
@@ -88,21 +90,21 @@ class Map:
 
     def least(self, percent: Floats, level: float) -> float | None:
         """Least length from which on errors are below a level [%]."""
-        return maps.least_safe(self.lengths, percent, level)
+        return least_safe(self.lengths, percent, level)
 
 
 def flexibility(length: float, bore: float, finer: bool = False) -> Floats:
     """Of a shaft of 1 m diameter between rigid ends, by harmonics in the meridian."""
-    shaft = maps.uniform(length, bore)
+    shaft = shafts.uniform(length, bore)
     size = 0.34 if length < 5 else 0.5
-    return maps.by_elements(shaft, size * 0.7, 8, 5) if finer else maps.by_elements(shaft, size)
+    return shafts.by_elements(shaft, size * 0.7, 8, 5) if finer else shafts.by_elements(shaft, size)
 
 
 def rigid_end(measured: Sequence[Floats], bore: float) -> RigidEnd:
     """What a rigid end takes away, from the flexibilities of two lengths."""
-    tube = Tube(1.0, bore, 1.0, maps.STEEL)
+    tube = Tube(1.0, bore, 1.0, shafts.STEEL)
     excess = [
-        found - maps.by_beam(maps.uniform(length, bore))
+        found - shafts.by_beam(shafts.uniform(length, bore))
         for length, found in zip(MEASURED, measured, strict=True)
     ]
     a = -excess[0][4, 4] / 2 * tube.EI
@@ -126,8 +128,8 @@ def mapped(run: Run, lengths: Floats, bores: Floats) -> Map:
             found = [flexibility(length, bore) for length in lengths]
         ends.append(end)
         for j, length in enumerate(lengths):
-            exact, beam = found[j], maps.by_beam(maps.uniform(length, bore))
-            thin = maps.by_beam(maps.uniform(length, bore), shear=False)
+            exact, beam = found[j], shafts.by_beam(shafts.uniform(length, bore))
+            thin = shafts.by_beam(shafts.uniform(length, bore), shear=False)
             better = beam + end.flexibility(length)
             # against Saint-Venant's own solution, which Timoshenko's beam with Cowper's k is
             shear[i, j] = 100 * (thin[2, 2] / beam[2, 2] - 1)
@@ -168,19 +170,17 @@ def check(run: Run, page: Page, found: Map, band: float) -> None:
     """The beam's own theory, the law by which ends disturb it, and the corrected beam."""
     for bore in (0.0, 0.5):
         with run.step("Saint-Venant's flexure"):
-            tube = Tube(1.0, bore, 1.0, maps.STEEL)
+            tube = Tube(1.0, bore, 1.0, shafts.STEEL)
             tip, rough = flexure_tip(tube, 6), flexure_tip(tube, 4)
         page.equals(
             f"bore {bore:g} D, L = D, loads as Saint-Venant has them: mean deflection of the tip "
-            "from the mean slope at the root",
+            "from the mean slope at the root [m/N]",
             tip,
             tube.length**3 / (3 * tube.EI) + tube.length / tube.kGA,
             within=1e-6,
-            unit="m/N",
             why="the field is a cubic, or with a bore smooth enough that sixth order has it to "
             "rounding",
             source="L^3 / 3EI + L / kGA, k of Cowper 1966, J. Appl. Mech. 33, 335-340",
-            measure="deflection",
             band=abs(tip - rough),
         )
     # longer than 3 D the fields of the two ends do not overlap
@@ -203,10 +203,9 @@ def check(run: Run, page: Page, found: Map, band: float) -> None:
     usable = found.lengths >= SHORTEST
     for name, percent in found.corrected.items():
         page.at_most(
-            f"{name}: beam corrected by its ends, worst error from L = {SHORTEST:g} D on",
+            f"{name}: beam corrected by its ends, worst error from L = {SHORTEST:g} D on [%]",
             np.abs(percent[:, usable]).max(),
             1.0,
-            unit="%",
             why="1 % is the first line of a map; the ends' fields overlap by e^-2.6 or so at "
             "L = D, of an end's share of ten percent",
             source="Fourier harmonics in the meridian",
@@ -218,7 +217,7 @@ def check(run: Run, page: Page, found: Map, band: float) -> None:
 def check_solids(run: Run, page: Page) -> None:
     """Points of the map against curved tetrahedra."""
     for length, bore in () if run.quick else ((1.0, 0.0), (2.0, 0.5)):
-        shaft = maps.uniform(length, bore)
+        shaft = shafts.uniform(length, bore)
         with run.step("solids"):
             mesh = rigid_ended_shafts.meshed(shaft, 0.24, 12)
             solid = rigid_ended_shafts.solved(mesh, shaft, ("bending", "tension"))
@@ -300,7 +299,7 @@ def show(page: Page, found: Map) -> None:
     page.chart(
         "Error of the beam against its length; shaded is where Timoshenko's deflection is within "
         "1 % between rigid ends. Torsion has no error",
-        [maps.curve(name, lengths, of[solid], dash) for name, (dash, of) in curves.items()],
+        [dashed(name, lengths, np.abs(of[solid]), dash) for name, (dash, of) in curves.items()],
         "length over diameter",
         "error without its sign [%]",
         "xy",
@@ -311,18 +310,18 @@ def show(page: Page, found: Map) -> None:
     between = "Timoshenko's beam between rigid ends"
     page.chart(
         f"{between}, deflection by a force at the tip: lines of 1, 5 and 10 % error (too soft)",
-        maps.map_traces(lengths, bores, error[BENT]),
+        map_traces(lengths, bores, error[BENT]),
         *axes,
     )
     page.chart(
         f"{between}, tension: lines of 1, 5 and 10 % error (too soft)",
-        maps.map_traces(lengths, bores, error[PULLED]),
+        map_traces(lengths, bores, error[PULLED]),
         *axes,
     )
     page.chart(
         "Euler and Bernoulli's cantilever, deflection by a force at the tip, loads as Saint-Venant "
         "has them: lines of 1, 5 and 10 % error (too stiff)",
-        maps.map_traces(lengths, bores, shear, 2.0),
+        map_traces(lengths, bores, shear, 2.0),
         *axes,
     )
     beams = {"Euler-Bernoulli, deflection": shear}
@@ -365,7 +364,7 @@ def show(page: Page, found: Map) -> None:
 
 def flexure_tip(tube: Tube, order: int) -> float:
     """Mean deflection of the tip by 1 N [m], loads on both ends as Saint-Venant has them."""
-    mesh = meridian(maps.uniform(tube.length, tube.inner, tube.outer), order=order, layers=0)
+    mesh = meridian(shafts.uniform(tube.length, tube.inner, tube.outer), order=order, layers=0)
 
     def traction(at: Floats, normal: Floats) -> Floats:
         x, r = at.T
@@ -378,7 +377,7 @@ def flexure_tip(tube: Tube, order: int) -> float:
     loads = surface_loads(mesh, 1, np.vstack(ends), traction)
     rim = mesh.where(lambda x, r: (x < LENGTH_TOLERANCE) & (r > tube.outer / 2 - LENGTH_TOLERANCE))
     held = (np.concatenate([dofs(rim, 0), dofs(rim, 1)]), np.zeros(2))
-    u = harmonic_response(mesh, maps.STEEL, 1, loads, held).u[..., 0]
+    u = harmonic_response(mesh, shafts.STEEL, 1, loads, held).u[..., 0]
     means, slopes = [], []
     s, w = np.polynomial.legendre.leggauss(10)
     for end in ends:

@@ -7,8 +7,8 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, RollerRow, catalogue_bearing, equilibrium, forces
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import decades
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.compare import decades
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Sizes of axial force, radial forces and moments of random loads [N, N m].
@@ -65,12 +65,11 @@ def run(run: Run, page: Page) -> None:
     free = catalogue_bearing("bearing_s", clearance=20 * UM)
     at_rest = equilibrium(free, np.zeros(5))
     page.vanishes(
-        "no load in a clearance: tangent stiffness at rest",
+        "no load in a clearance: tangent stiffness at rest [N/m]",
         float(np.abs(forces(free, at_rest.displacements)[1]).max()),
         within=0.0,
         why="no roller touches",
         source="clearance",
-        unit="N/m",
     )
     worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
     tight = [row for row in rows if row["clearance [um]"] > 0.0]

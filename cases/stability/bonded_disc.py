@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases.stability import locking_curves as curves
-from fe_drivetrain.cases.stability.decades import crosses, last_within
 from fe_drivetrain.cases.stability.locking_curves import (
     AVERAGED,
     AXIS,
@@ -16,9 +15,9 @@ from fe_drivetrain.cases.stability.locking_curves import (
     largest,
     plain,
 )
-from fe_drivetrain.compare import DOUBTFUL
+from fe_drivetrain.compare import DOUBTFUL, last_within
 from fe_drivetrain.operator import incompressible
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.solve import MAX_ITERATIONS, TOLERANCE, direct_solvers
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation import locking_bars as bars

@@ -23,7 +23,7 @@ import numpy as np
 
 from fe_drivetrain.commands import run_and_print, show_steps
 from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions
-from fe_drivetrain.geometry import MeshSizes, Shaft
+from fe_drivetrain.geometry import NO_BANDS, MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
 from fe_drivetrain.interfaces import dofs
 from fe_drivetrain.mesh import cached_mesh, write
@@ -62,7 +62,7 @@ def small(run: Run, page: Page) -> None:
     page.data("stiffness", stiffness)
 
 
-MESH_CONTENT = _content(SHAFT, [], {}, SIZES, frozenset())
+MESH_CONTENT = _content(SHAFT, [], {}, SIZES, frozenset(), NO_BANDS)
 CASE_KILLED = Case("faults/small", "Small case", "Saint-Venant", small, settings=("mark",))
 
 

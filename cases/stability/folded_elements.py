@@ -124,14 +124,12 @@ def check(page: Page, rows: list[Record], of: Mapping[str, list[Record]], exact:
     )
     errors = column(of["refined"], TORSION)
     page.equals(
-        "torsional stiffness after that, from the coarsest size asked for",
+        "torsional stiffness after that, from the coarsest size asked for [N m/rad]",
         (1 + errors[-1]) * exact,
         exact,
         within=COARSE,
-        unit="N m/rad",
         why="5 %, the outer contour of the atlas, of the coarsest mesh that is sound",
         source="the meridian of the shaft in fourth-order elements",
-        measure="stiffness",
         band=abs(errors[-1] - errors[0]) * exact,
     )
 

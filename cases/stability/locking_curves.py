@@ -1,12 +1,12 @@
 """Errors of a stiffness by locking: curves and limits, over Poisson's ratio among others."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.cases.stability.decades import last_within
+from fe_drivetrain.compare import last_within
 from fe_drivetrain.operator import elasticity, incompressible
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page
@@ -46,6 +46,19 @@ def error_traces(of: Mapping[str, Sequence[float]], nus: Sequence[float]) -> lis
         curve(name, moduli, errors, dashed="averaged" in name or "modes" in name)
         for name, errors in of.items()
     ]
+
+
+def error_chart(
+    page: Page,
+    caption: str,
+    x: str,
+    curves: Mapping[str, tuple[Sequence[float], ArrayLike]],
+    dashed: Callable[[str], bool],
+    safe: Range | None,
+) -> None:
+    """Errors without their sign over x, both on logarithmic axes; some curves are dashed."""
+    traces = [curve(name, *of, dashed=dashed(name)) for name, of in curves.items()]
+    page.chart(caption, traces, x, "error [%]", "xy", safe)
 
 
 def shaded(nu: float | None) -> Range | None:

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import fitted_exponent, last_within
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import fitted_exponent, last_within
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.validation.tied_strips import TIES, tied_strip

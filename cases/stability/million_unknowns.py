@@ -147,11 +147,10 @@ def check_tube(page: Page, series: list[Record], oval: float, quick: bool) -> No
     """The oval pressure."""
     before, last = series[-2:]
     page.equals(
-        f"{TUBE_NAME}: work of the pressure cos 2t at {last['unknowns']:,.0f} unknowns",
+        f"{TUBE_NAME}: work of the pressure cos 2t at {last['unknowns']:,.0f} unknowns [J]",
         last["second compliance"],
         oval,
         within=0.2 if quick else 1e-3,
-        unit="J",
         why="coarse: a few per cent are what so few elements round a thin wall leave"
         if quick
         else "with a tenth of the unknowns it is 3e-3, and falls as the square of the element "
@@ -167,11 +166,10 @@ def check_rod(page: Page, series: list[Record], quick: bool) -> None:
     before, last = series[-2:]
     second_moment = 0.25 * np.pi / 16.0 * (ROUND**4 - (ROUND - 2.0 * WALL) ** 4)
     page.equals(
-        f"{ROD_NAME}: turn under a moment of 1 N m at {last['unknowns']:,.0f} unknowns",
+        f"{ROD_NAME}: turn under a moment of 1 N m at {last['unknowns']:,.0f} unknowns [rad/(N m)]",
         last["second compliance"],
         SLENDERNESS * ROUND / (bodies.STEEL.youngs_modulus * second_moment),
         within=5e-3 if quick else 1e-3,
-        unit="rad/(N m)",
         why="the held end reaches about a tenth of a diameter, D / L / 10; the circle's elements "
         "are right to 1e-3 where six go round, 1e-5 where 16",
         source="M L / (E I), Euler-Bernoulli, exact but for the held end",

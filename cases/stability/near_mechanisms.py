@@ -3,17 +3,10 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import (
-    FOUR_DIGITS,
-    crosses,
-    decades,
-    fitted_exponent,
-    safe_range,
-    shown,
-)
+from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
 from fe_drivetrain.interfaces import WEAK
 from fe_drivetrain.mesh import Mesh
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.response import mesh_scene
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.validation.soft_springs import Sprung, scene_of, sprung
@@ -96,10 +89,10 @@ def sweep(run: Run, page: Page, joint: str, mesh: Mesh) -> list[Record]:
             band=band,
         )
         page.vanishes(
-            f"{joint} joint, {motion}: digits lost, less those that the program names, mean",
+            f"{joint} joint, {motion}: digits lost, less those that the program names, mean "
+            "[digits]",
             lost.mean(),
             within=2.0,
-            unit="digits",
             why="an estimate of round-off without constants: the two digits that the threshold of "
             "the warning has to spare",
             source="2e-16 over the ratio that the warning gives",
@@ -217,7 +210,7 @@ def run(run: Run, page: Page) -> None:
     )
     page.answer(
         "A spring that is the only restraint of a motion leaves four digits of it down to "
-        f"{shown(max(column(rows, 'least safe')))} of the stiffness of what it holds (Young's "
+        f"{in_words(max(column(rows, 'least safe')))} of the stiffness of what it holds (Young's "
         f"modulus times length). The program warns from {WEAK:.0e} down, names the motion and the "
         "digits that it costs, and refuses where none is left.",
         "The error is 2e-16 over that ratio, within two digits, for each form of the joint.",

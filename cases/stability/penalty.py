@@ -5,16 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import (
-    FOUR_DIGITS,
-    crosses,
-    decades,
-    fitted_exponent,
-    safe_range,
-    shown,
-)
 from fe_drivetrain.common import InputError
-from fe_drivetrain.report import trace
+from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.scene import change_scene, library_scene
 from fe_drivetrain.solve import System, solve
 from fe_drivetrain.suite import Page, Record, Run
@@ -60,7 +53,7 @@ def run(run: Run, page: Page) -> None:
     )
     check_protection(run, page)
     words = (
-        f"{kind} {shown(found['safe from'])} to {shown(found['to'])}"
+        f"{kind} {in_words(found['safe from'])} to {in_words(found['to'])}"
         for kind, found in zip(KINDS, ranges, strict=True)
     )
     page.answer(

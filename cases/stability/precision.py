@@ -3,8 +3,8 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, fitted_exponent, safe_range, shown
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.validation import other_precisions
@@ -94,16 +94,16 @@ def run(run: Run, page: Page) -> None:
     }
     page.answer(
         "Four digits of the bending stiffness of a tube survive up to L/D = "
-        f"{shown(highest['bending'][SHORT])} in 32 bits and "
-        f"{shown(highest['bending'][DOUBLE])} in 64; of its torsional stiffness up to "
-        f"{shown(highest['torsion'][SHORT])} in 32, and "
-        + ("at all lengths tried in 64." if in_double is None else f"{shown(in_double)} in 64."),
+        f"{in_words(highest['bending'][SHORT])} in 32 bits and "
+        f"{in_words(highest['bending'][DOUBLE])} in 64; of its torsional stiffness up to "
+        f"{in_words(highest['torsion'][SHORT])} in 32, and "
+        + ("at all lengths tried in 64." if in_double is None else f"{in_words(in_double)} in 64."),
         "Round-off takes the fourth power of L/D in bending and the second in torsion; the mesh "
         f"matters little: {digits[SHORT].min():.1f} to {digits[SHORT].max():.1f} digits of bending "
         f"in 32 bits and {digits[DOUBLE].min():.1f} to {digits[DOUBLE].max():.1f} in 64 on "
         f"{len(meshes)} meshes of L/D = 4.",
         "A factor in 32 bits with residuals in 64 gives all digits back up to L/D = "
-        f"{shown(highest['bending'][MIXED])}.",
+        f"{in_words(highest['bending'][MIXED])}.",
     )
 
 
@@ -131,12 +131,11 @@ def compare(run: Run, page: Page, rows: list[Record], load: str) -> dict[str, fl
     both = (of[SHORT] < 0.1) & (of[DOUBLE] > 0.0)
     decades_apart = np.log10(of[SHORT][both] / of[DOUBLE][both])
     page.equals(
-        f"{load}: digits between 32 and 64 bits, mean",
+        f"{load}: digits between 32 and 64 bits, mean [digits]",
         decades_apart.mean(),
         float(29 * np.log10(2.0)),
         within=1.0,
         relative=False,
-        unit="digits",
         why="round-off scatters by about a decade",
         source="29 bits more of the mantissa",
         measure="identity",

@@ -7,8 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import FOUR_DIGITS, fitted_exponent, safe_range, shown
-from fe_drivetrain.cases.stability.fingerprints import (
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_range
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.fingerprints import (
     STIFFNESS,
     Arrays,
     different,
@@ -16,9 +19,6 @@ from fe_drivetrain.cases.stability.fingerprints import (
     methods,
     tube_answers,
 )
-from fe_drivetrain.common import Floats
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
 
 #: Lengths over diameters of the tubes that other processes solve.
 LENGTHS = (5.0, 200.0)
@@ -153,7 +153,7 @@ def run(run: Run, page: Page) -> None:
         else f"With two threads these change in their last bits: {', '.join(changing) or 'none'}; "
         f"these do not: {', '.join(part for part in parts if part not in changing)}.",
         "What another order of the operations changes grows as the fourth power of L/D: "
-        f"stiffnesses agree to four digits up to L/D = {shown(high)}.",
+        f"stiffnesses agree to four digits up to L/D = {in_words(high)}.",
     )
     page.section("Runs")
     page.table(

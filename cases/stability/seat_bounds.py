@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import last_within
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import GridConvergence, grid_convergence
+from fe_drivetrain.compare import GridConvergence, grid_convergence, last_within
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation import seat_couplings as seat

@@ -21,8 +21,8 @@ from fe_drivetrain.cases.stability.bent_shafts import (
     round_tetrahedra,
     shear_part,
 )
-from fe_drivetrain.cases.stability.decades import last_within
-from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, curve, limit
+from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, error_chart, limit
+from fe_drivetrain.compare import last_within
 from fe_drivetrain.operator import elasticity, incompatible, incompressible
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import recovery_estimate
@@ -361,53 +361,32 @@ def show_square(page: Page, square: Square) -> None:
     """Charts and data of the square bar."""
     lengths, most = square.lengths, square.most
     page.section("Square bar in pure bending")
-    page.chart(
-        "Hexahedra: error of the bending stiffness; dashed, the remedies with one across (shaded: "
-        f"8 nodes, {most} across, within 1 %)",
-        [
-            curve("8 nodes, 1 across, theory", lengths, square.theory),
-            *(curve(f"8 nodes, {n} across", lengths, v) for n, v in square.linear[8].items()),
-            *(
-                curve(name, lengths, values, dashed=True)
-                for name, values in square.held.items()
-                if not name.startswith("tetra")
-            ),
-        ],
-        OVER_DEPTH,
-        "error [%]",
-        "xy",
-        shaded(lengths, square.linear[8][most]),
-    )
-    quadratic = square.held["tetrahedra of 10 nodes"]
-    page.chart(
-        "Tetrahedra, six in each hexahedron: error of the bending stiffness; those of 4 nodes are "
-        "within 1 % nowhere",
-        [
-            *(curve(f"4 nodes, {n} across", lengths, v) for n, v in square.linear[4].items()),
-            curve("10 nodes, 1 across", lengths, quadratic, dashed=True),
-        ],
-        OVER_DEPTH,
-        "error [%]",
-        "xy",
-        shaded(lengths, square.linear[4][most]),
-    )
+    hexahedra = {"8 nodes, 1 across, theory": (lengths, square.theory)}
+    hexahedra |= {f"8 nodes, {n} across": (lengths, v) for n, v in square.linear[8].items()}
+    held = {name: (lengths, v) for name, v in square.held.items()}
+    ten = "tetrahedra of 10 nodes"
+    hexahedra |= {name: of for name, of in held.items() if name != ten}
+    tetrahedra = {f"4 nodes, {n} across": (lengths, v) for n, v in square.linear[4].items()}
+    tetrahedra["10 nodes, 1 across"] = held[ten]
+    title = "Hexahedra: error of the bending stiffness; dashed, the remedies with one across "
+    title += f"(shaded: 8 nodes, {most} across, within 1 %)"
+    safe = shaded(lengths, square.linear[8][most])
+    error_chart(page, title, OVER_DEPTH, hexahedra, lambda name: name in REMEDIES, safe)
+    title = "Tetrahedra, six in each hexahedron: error of the bending stiffness; those of 4 nodes "
+    safe = shaded(lengths, square.linear[4][most])
+    title += "are within 1 % nowhere"
+    error_chart(page, title, OVER_DEPTH, tetrahedra, lambda name: name.startswith("10"), safe)
     page.text(
         "Edges of linear elements stay straight, so a bent element shears, by its curvature times "
         "the distance from its middle. The energy of that grows with the square of its length and "
         "drowns the energy of bending."
     )
-    page.chart(
-        "Cubes: error of the bending stiffness against their number across; averaged dilatations "
-        "are no remedy here (shaded: 8 nodes within 1 %)",
-        [
-            curve(name, square.across[name], values, dashed="averaged" in name)
-            for name, values in square.cubes.items()
-        ],
-        "cubes across, for tetrahedra of six each [-]",
-        "error [%]",
-        "xy",
-        (first_within(square.across["8 nodes"], square.cubes["8 nodes"]), None),
-    )
+    title = "Cubes: error of the bending stiffness against their number across; averaged "
+    title += "dilatations are no remedy here (shaded: 8 nodes within 1 %)"
+    across = "cubes across, for tetrahedra of six each [-]"
+    cubes = {name: (square.across[name], values) for name, values in square.cubes.items()}
+    low = first_within(*cubes["8 nodes"])
+    error_chart(page, title, across, cubes, lambda name: "averaged" in name, (low, None))
     page.data("lengths", lengths)
     page.data("linear", square.linear)
     page.data("theory", square.theory)
@@ -425,28 +404,17 @@ def show_others(
 ) -> None:
     """Charts and data of cantilever and round shafts."""
     page.section("Cantilever")
-    page.chart(
-        f"Error of the tip stiffness, {ALONG} elements along (shaded: 8 nodes, {square.most} "
-        "across, within 1 %)",
-        [curve(name, slenderness, v, dashed=name in REMEDIES) for name, v in tip.items()],
-        "length over depth [-]",
-        "error [%]",
-        "xy",
-        shaded(slenderness, tip[f"8 nodes, {square.most} across"]),
-    )
+    title = f"Error of the tip stiffness, {ALONG} elements along (shaded: 8 nodes, {square.most} "
+    title += "across, within 1 %)"
+    loaded = {name: (slenderness, values) for name, values in tip.items()}
+    safe = shaded(*loaded[f"8 nodes, {square.most} across"])
+    error_chart(page, title, "length over depth [-]", loaded, lambda name: name in REMEDIES, safe)
     page.section("Round shafts in pure bending")
-    page.chart(
-        "Hexahedra: error of the bending stiffness against E I of the mesh (shaded: incompatible "
-        "modes, 16 round a turn, within 1 %)",
-        [
-            curve(name, round_lengths, values, dashed=not name.startswith("8"))
-            for name, values in shafts.items()
-        ],
-        OVER_DIAMETER,
-        "error [%]",
-        "xy",
-        shaded(round_lengths, shafts["8 nodes, incompatible modes, 16 round a turn"]),
-    )
+    title = "Hexahedra: error of the bending stiffness against E I of the mesh (shaded: "
+    title += "incompatible modes, 16 round a turn, within 1 %)"
+    by_length = {name: (round_lengths, values) for name, values in shafts.items()}
+    safe = shaded(*by_length["8 nodes, incompatible modes, 16 round a turn"])
+    error_chart(page, title, OVER_DIAMETER, by_length, lambda name: not name.startswith("8"), safe)
     page.data("slenderness", slenderness)
     page.data("cantilever", tip)
     page.data("round_lengths", round_lengths)

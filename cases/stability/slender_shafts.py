@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import solver_sweep as sweep
-from fe_drivetrain.cases.stability.decades import fitted_exponent
+from fe_drivetrain.compare import fitted_exponent
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation import solver_trials as trials
 from fe_drivetrain.validation import thin_bodies as bodies

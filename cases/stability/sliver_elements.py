@@ -3,8 +3,8 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import fitted_exponent
 from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.compare import fitted_exponent
 from fe_drivetrain.mesh import FLATTEST, find_faults, flatness
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import MAX_ITERATIONS

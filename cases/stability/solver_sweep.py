@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.cases.stability.decades import FOUR_DIGITS
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.compare import FOUR_DIGITS
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import solvers
 from fe_drivetrain.suite import Page, Record

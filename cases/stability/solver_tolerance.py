@@ -5,14 +5,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import (
-    FOUR_DIGITS,
-    decades,
-    fitted_exponent,
-    safe_range,
-    shown,
-)
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import TOLERANCE
 from fe_drivetrain.suite import Page, Record, Run
@@ -48,7 +42,7 @@ def run(run: Run, page: Page) -> None:
     }
     page.answer(
         "Four digits of a stiffness need a tolerance of the energy error of "
-        + "; ".join(f"{shown(value)} ({name})" for name, value in loosest.items())
+        + "; ".join(f"{in_words(value)} ({name})" for name, value in loosest.items())
         + ".",
         f"The loosest that suffices for all of them is {min(loosest.values()):.1g}. The program "
         f"stops at {TOLERANCE:.0e}.",
@@ -130,10 +124,9 @@ def check_estimate(page: Page, name: str, steps: solver_steps.Steps) -> None:
     usable = (steps.energy_error > 1e-8) & (steps.estimate > 0)
     effectivity = steps.estimate[usable] / steps.energy_error[usable]
     page.vanishes(
-        f"{name}: estimated over true energy error, the least",
+        f"{name}: estimated over true energy error, the least [decades]",
         float(np.log10(effectivity.min())),
         within=0.5,
-        unit="decades",
         why="half a decade: the estimate is of use where the tolerance is known to that",
         source="true energy error, from the direct solution",
     )

@@ -6,16 +6,9 @@ import numpy as np
 
 from fe_drivetrain.beam import Support, beam_of_scene, unit_load_response
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import (
-    FOUR_DIGITS,
-    crosses,
-    decades,
-    fitted_exponent,
-    safe_range,
-    shown,
-)
 from fe_drivetrain.common import Bools, Floats, InputError
-from fe_drivetrain.report import trace
+from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.response import mesh_scene
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Run
@@ -178,7 +171,7 @@ def spherical(run: Run, page: Page) -> None:
         criterion="error of the hub's motion below 1e-4",
         beyond="the error of the motion grows tenfold a decade; then the solver finds the matrix "
         "singular",
-        program=f"names the motion and the digits lost up to {shown(first_warned)} N/m, refuses "
+        program=f"names the motion and the digits lost up to {in_words(first_warned)} N/m, refuses "
         f"below {stiffness[answered].min():.1g} N/m; none at all is a mechanism by geometry",
         remedy=f"force method (beam): right to {np.nanmax(beam_error):.0e} from "
         f"{stiffness[by_beam].min():.1g} N/m on",
@@ -186,8 +179,8 @@ def spherical(run: Run, page: Page) -> None:
     limit_stiff(page, "spherical", high)
     page.answer(
         "On a spherical bearing the hub's motion and the gearbox's reaction keep four digits "
-        f"from {shown(low)} to {shown(high)} N/m of radial gearbox stiffness. No spring at "
-        f"all is refused as a mechanism; up to {shown(first_warned)} N/m the program names the "
+        f"from {in_words(low)} to {in_words(high)} N/m of radial gearbox stiffness. No spring at "
+        f"all is refused as a mechanism; up to {in_words(first_warned)} N/m the program names the "
         f"motion that is hardly held, and below {stiffness[answered].min():.1g} N/m it refuses "
         "to answer."
     )
@@ -305,7 +298,7 @@ def bonded(run: Run, page: Page) -> None:
     page.answer(
         "On a bonded bearing the free and the held shaft are recovered, first order in the "
         "spring and in its compliance; the reaction of the spring keeps four digits up to "
-        f"{shown(high)} N/m, and a scene may have 1e16."
+        f"{in_words(high)} N/m, and a scene may have 1e16."
     )
     page.section("Bonded bearing: from a free end to a held one")
     page.text(

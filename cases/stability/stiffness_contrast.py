@@ -9,16 +9,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import (
-    FOUR_DIGITS,
-    crosses,
-    decades,
-    fitted_exponent,
-    safe_range,
-    shown,
-)
 from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.report import trace
+from fe_drivetrain.compare import FOUR_DIGITS, decades, fitted_exponent, in_words, safe_range
+from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation import layers
@@ -295,15 +288,15 @@ def state_limits(
     (_, chain_high), (_, chain_m_high) = of_chain.safe, of_chain.safe_iterated
     rigid_low, _ = safe_range(of_chain.contrast, of_chain.rigid, FOUR_DIGITS)
     page.answer(
-        f"Four digits of stiffness survive a ring down to {shown(low)} of the shaft's modulus "
-        f"with a direct factor and {shown(m_low)} with multigrid, stiff bodies up to "
-        f"{shown(chain_high)} and {shown(chain_m_high)} times that of soft ones between them, "
-        f"and {COUNT} bodies of random stiffness a ratio of {shown(many_high)}.",
+        f"Four digits of stiffness survive a ring down to {in_words(low)} of the shaft's modulus "
+        f"with a direct factor and {in_words(m_low)} with multigrid, stiff bodies up to "
+        f"{in_words(chain_high)} and {in_words(chain_m_high)} times that of soft ones between "
+        f"them, and {COUNT} bodies of random stiffness a ratio of {in_words(many_high)}.",
         "Beyond, round-off of the stiff bodies exceeds the stiffness of the soft ones: the error "
         "grows tenfold a decade. A ring stiffer than the shaft does no harm, however stiff.",
         "Made rigid by elimination, the stiff bodies leave the soft ones right: an error of one "
-        f"over the contrast, below 1e-4 from {shown(rigid_low)} on, where elastic bodies are still "
-        "right.",
+        f"over the contrast, below 1e-4 from {in_words(rigid_low)} on, where elastic bodies are "
+        "still right.",
     )
     program = (
         f"moduli in a scene are limited to a ratio of {allowed:.0e}; a direct solver refuses a "
@@ -340,7 +333,7 @@ def state_limits(
         beyond="the error grows tenfold a decade; no answer from "
         f"{of_chain.contrast[of_chain.refused].min():.0e} on",
         program=program,
-        remedy=f"stiff bodies rigid: below 1e-4 from {shown(rigid_low)} on",
+        remedy=f"stiff bodies rigid: below 1e-4 from {in_words(rigid_low)} on",
     )
     page.limit(
         "multigrid: chain of soft and stiff bodies",

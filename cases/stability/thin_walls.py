@@ -4,8 +4,8 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import solver_sweep as sweep
-from fe_drivetrain.cases.stability.decades import fitted_exponent
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import fitted_exponent
 from fe_drivetrain.solve import multigrid, schwarz, solvers
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation import solver_trials as trials

@@ -159,14 +159,12 @@ def check_estimators(page: Page, meshes: list[housing.Tilted], chosen: Choices) 
         )
         page.equals(
             f"remedy: {p} plane, K_R by the averaged seat against the motion of the unloaded shaft "
-            "behind the bearing",
+            "behind the bearing [MN m/rad]",
             seat[p] / 1e6,
             finest.condensed[p] / 1e6,
             within=MISLEADS,
-            unit="MN m/rad",
             why=USEFUL,
             source="condensed 6x6 stiffness, in which no mean over the seat enters",
-            measure="stiffness",
             band=band[p] / 1e6,
         )
     page.equals(

@@ -9,9 +9,8 @@ import numpy as np
 from scipy.special import erf
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.stability.decades import fitted_exponent
 from fe_drivetrain.common import FORCES, Floats, InputError
-from fe_drivetrain.compare import statistics
+from fe_drivetrain.compare import fitted_exponent, statistics
 from fe_drivetrain.hub_loads import UNITS, read_hub_loads
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -209,12 +208,11 @@ def check_crossing(page: Page, found: Crossing) -> float:
     # each factor e of the cut adds twice the density at zero
     theory = float(100 * NOISE * np.sqrt(2 / np.pi) * 2 / np.sqrt(2 * np.pi))
     page.equals(
-        "zero mean: growth of the mean percentage error for each factor e less left out",
+        "zero mean: growth of the mean percentage error for each factor e less left out [%]",
         found.slope,
         theory,
         within=3 * float(np.std(slopes) / np.sqrt(histories)),
         relative=False,
-        unit="%",
         why=f"three standard errors of the mean of {histories} histories",
         source="E|d| times the integral of the normal density over |r|, which is 2 / sqrt(2 pi) "
         "for each factor e: the mean of 1 / |r| does not exist",

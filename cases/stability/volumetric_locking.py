@@ -7,7 +7,6 @@ from pydantic import ValidationError
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.bonded_disc import bent_shaft, disc, iterations
-from fe_drivetrain.cases.stability.decades import crosses, last_within
 from fe_drivetrain.cases.stability.locking_curves import (
     AVERAGED,
     AXIS,
@@ -22,9 +21,9 @@ from fe_drivetrain.cases.stability.locking_curves import (
     shaded,
 )
 from fe_drivetrain.common import InputError
-from fe_drivetrain.compare import band_of
+from fe_drivetrain.compare import band_of, last_within
 from fe_drivetrain.operator import incompatible
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.scene import HIGHEST_POISSON_RATIO
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation import locking_solids as solids

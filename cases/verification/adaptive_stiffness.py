@@ -98,7 +98,7 @@ def run(run: Run, page: Page) -> None:
     )
     k, estimate = solved.stiffness[LOAD], solved.estimate[LOAD]
     page.equals(
-        "bending stiffness on the last adaptive mesh",
+        "bending stiffness on the last adaptive mesh [N m/rad]",
         k,
         exact,
         within=estimate.band(k) / exact,
@@ -106,8 +106,6 @@ def run(run: Run, page: Page) -> None:
         "estimate, which must cover the true error",
         source="the shaft's meridian in fourth-order elements, graded to its corners; "
         f"uncertain by {abs(rough / exact - 1):.1g}",
-        unit="N m/rad",
-        measure="stiffness",
         basis="self-consistency",
         band=estimate.band(k),
     )

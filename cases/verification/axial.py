@@ -1,102 +1,75 @@
 """Tension of a uniform shaft against EA / L, and the effect of clamped ends."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
-from fe_drivetrain.compare import GridConvergence, grid_convergence
-from fe_drivetrain.mesh import Grading, face_weights
-from fe_drivetrain.operator import nodal_stresses, traction_loads
-from fe_drivetrain.report import trace
+from fe_drivetrain.common import Floats
+from fe_drivetrain.mesh import Grading
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.suite import Page, Record, Run, column, grouped
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import Tube, parabola_shortfall
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.validation import end_loaded, solid_shafts
+from fe_drivetrain.validation import shaft_theory as theory
 
 STEEL = MATERIALS["steel"]
-OUTER, BORES = 0.4, (0.0, 0.28)
+OUTER, BORES = 0.4, {"solid": 0.0, "bored": 0.28}  # m
 #: Lengths over the outer diameter: free ends, held ends in three dimensions, held ends.
 FREE, HELD = 2.0, 1.0
-RATIOS = (0.5, 1.0, 2.0, 4.0, 8.0)
-QUICK_RATIOS = (1.0, 4.0, 8.0)
-SIGMA = 1e8  # Pa
+RATIOS, QUICK_RATIOS = (0.5, 1.0, 2.0, 4.0, 8.0), (1.0, 4.0, 8.0)
+SIGMA, PULL = 1e8, 1e-4  # Pa, m
 
 SHAFT, RATIO = "shaft", "length over diameter"
 STIFFER, SHORTER = "stiffer by [%]", "length taken off, over diameter"
+SOLIDS = "hexahedra, stiffer by [%]"
+REFINEMENT, STIFFNESS = "refinement", "axial stiffness [N/m]"
+MOVED = "largest difference from the exact displacements, over the largest"
+STRESSED = "largest difference from the uniform stress, over it"
 
 
-class Pulled(NamedTuple):
-    """A shaft with free ends under uniform traction: stiffness [N/m], relative errors, arcs."""
-
-    stiffness: GridConvergence
-    displacement: float
-    stress: float
-    per_turn: int
+def traction(positions: Floats, normals: Floats) -> Floats:
+    """Uniform tension."""
+    return SIGMA * normals
 
 
-def pulled(run: Run, tube: Tube, name: str) -> Pulled:
-    """Uniform traction on both ends, on three meshes."""
-    refinements = (1, 2, 3) if run.quick else (2, 3, 4)
-    E, nu = STEEL.youngs_modulus, STEEL.poisson_ratio
+def pulled(tube: theory.Tube, refinement: int) -> Record:
+    """Uniform traction on both ends of one mesh."""
     shaft = solid_shafts.straight((0.0, tube.length), OUTER, tube.inner)
-    found = []
-    for refinement in refinements:
-        with run.step(f"{name}: mesh and solve"):
-            mesh = solid_shafts.solid(shaft, refinement, size=tube.length)
-            points = mesh.points
-            x, y, z = points.T
-            exact = SIGMA / E * np.column_stack([x, -nu * y, -nu * z])
-            front, rear = (mesh.section_facets(end) for end in (mesh.front, mesh.rear))
-            pull = np.array([SIGMA, 0.0, 0.0])
-            F = traction_loads(points, rear, pull) - traction_loads(points, front, pull)
-            held = solid_shafts.pinned_like(mesh, exact)
-            solution = solve_solid(points, mesh.cells, STEEL.lame, [], F, held)
-        u = solution.u[:, 0].reshape(-1, 3)
-        area = float(face_weights(points, rear, len(points)).sum())
-        weights = face_weights(points, rear, len(points)) / area
-        found.append(SIGMA * area / float(weights @ u[:, 0]))
-    s = nodal_stresses(points, mesh.cells, solution.u[:, 0], STEEL.lame)
-    return Pulled(
-        grid_convergence(1.0 / np.array(refinements), found, expected_order=4.0),
-        float(np.abs(u - exact).max()) / float(np.abs(exact).max()),
-        float(np.abs(s - SIGMA * np.array([1, 0, 0, 0, 0, 0])).max()) / SIGMA,
-        mesh.per_turn,
-    )
+    mesh = solid_shafts.solid(shaft, refinement, size=tube.length)
+    nu = STEEL.poisson_ratio
+    exact = SIGMA / STEEL.youngs_modulus * mesh.points * [1.0, -nu, -nu]
+    front, rear = end_loaded.end_forces(mesh, traction)
+    found = end_loaded.solve_loaded(mesh, STEEL, front + rear, like=exact)
+    force = SIGMA * end_loaded.section_area(mesh, mesh.rear)
+    uniform = SIGMA * np.array([1, 0, 0, 0, 0, 0])
+    return {
+        REFINEMENT: refinement,
+        "per turn": mesh.per_turn,
+        STIFFNESS: force / float(found.means(mesh.rear)[0][0]),
+        MOVED: found.error(exact),
+        STRESSED: float(np.abs(found.stress - uniform).max()) / SIGMA,
+    }
 
 
-def held_in_the_meridian(name: str, tube: Tube, ratio: float) -> Record:
+def held_in_the_meridian(name: str, ratio: float) -> Record:
     """Ends held flat and round, by Fourier harmonics."""
-    shaft = solid_shafts.straight((0.0, ratio * OUTER), OUTER, tube.inner)
-    stiffer = float(end_stiffness(shaft, STEEL)[6, 6] * ratio * OUTER / tube.EA - 1)
+    tube = theory.Tube(OUTER, BORES[name], ratio * OUTER, STEEL)
+    shaft = solid_shafts.straight((0.0, tube.length), OUTER, tube.inner)
+    stiffer = float(end_stiffness(shaft, STEEL)[6, 6] * tube.length / tube.EA - 1)
     # a shaft of length L - e: k = E A / (L - e)
     shorter = ratio * stiffer / (1 + stiffer)
-    return {SHAFT: name, RATIO: ratio, STIFFER: 100 * stiffer, SHORTER: shorter}
+    return {SHAFT: name, RATIO: ratio, STIFFER: 100 * stiffer, SOLIDS: None, SHORTER: shorter}
 
 
-def held_solid(tube: Tube, refinement: int, layers: int) -> float:
+def held_solid(name: str, refinement: int, layers: int) -> float:
     """Stiffness over E A / L of a solid with its ends held flat and round."""
-    shaft = solid_shafts.straight((0.0, HELD * OUTER), OUTER, tube.inner)
+    shaft = solid_shafts.straight((0.0, HELD * OUTER), OUTER, BORES[name])
     mesh = solid_shafts.solid(shaft, refinement, Grading(ends=layers), size=OUTER)
-    field = np.zeros_like(mesh.points)
-    rear = mesh.section_nodes(mesh.rear)
-    field[rear, 0] = 1e-4
-    nodes = np.concatenate([mesh.section_nodes(mesh.front), rear])
-    solution = solve_solid(
-        mesh.points,
-        mesh.cells,
-        STEEL.lame,
-        [],
-        np.zeros(mesh.n_unknowns),
-        solid_shafts.prescribed_on(mesh, nodes, field),
-    )
-    k = 2 * float(solution.energy[0]) / 1e-8
+    stretch = PULL / (HELD * OUTER) * mesh.points * [1.0, 0.0, 0.0]
+    found = end_loaded.solve_displaced(mesh, STEEL, stretch).static
     # of the meshed area: what is left is the effect of the ends
-    area = face_weights(mesh.points, mesh.section_facets(0.0), len(mesh.points)).sum()
-    return float(k * HELD * OUTER / (STEEL.youngs_modulus * area))
+    EA = STEEL.youngs_modulus * end_loaded.section_area(mesh, 0.0)
+    return 2 * float(found.energy[0]) / PULL**2 * HELD * OUTER / EA
 
 
 @case(
@@ -105,34 +78,25 @@ def held_solid(tube: Tube, refinement: int, layers: int) -> float:
 )
 def run(run: Run, page: Page) -> None:
     """Uniform traction on the ends, then ends that are held flat and round."""
-    length = FREE * OUTER
-    layers = 1 if run.quick else 2
+    refinements, layers = ((1, 2, 3), 1) if run.quick else ((2, 3, 4), 2)
     rows: list[Record] = []
-    solids = []
-    for bore in BORES:
-        name = "bored" if bore else "solid"
-        tube = Tube(OUTER, bore, length, STEEL)
-        free = pulled(run, tube, name)
+    off, errors = {}, []
+    for name, bore in BORES.items():
+        tube = theory.Tube(OUTER, bore, FREE * OUTER, STEEL)
+        free = [run.timed(f"{name}: tension", pulled, tube, r) for r in refinements]
+        errors.append(abs(free[-1][STIFFNESS] / (tube.EA / tube.length) - 1))
         check_free(page, name, tube, free)
         with run.step(f"{name}: ends held flat and round, meridian"):
             ratios = QUICK_RATIOS if run.quick else RATIOS
-            held = [held_in_the_meridian(name, tube, ratio) for ratio in ratios]
-        by_mesh = []
-        for refinement in (1, 2):
-            with run.step(f"{name}: ends held flat and round, mesh and solve"):
-                by_mesh.append(held_solid(tube, refinement, layers))
+            held = [held_in_the_meridian(name, ratio) for ratio in ratios]
+        with run.step(f"{name}: ends held flat and round, mesh and solve"):
+            by_mesh = [held_solid(name, refinement, layers) for refinement in (1, 2)]
+        held[ratios.index(HELD)][SOLIDS] = 100 * (by_mesh[-1] - 1)
         check_held(page, name, held, by_mesh, layers)
+        off[name] = held[-1][SHORTER]
         rows += held
-        solids.append(
-            trace(f"{name}, hexahedra", [HELD], [100 * (by_mesh[-1] - 1)], True, marker={"size": 9})
-        )
-        if not bore:
-            error = abs(free.stiffness.finest / (tube.EA / length) - 1)
-
-    by_shaft = dict(grouped(rows, SHAFT))
-    off = {name: of[-1][SHORTER] for name, of in by_shaft.items()}
     page.answer(
-        f"E A / L is met to {error:.1g}, and the exact linear displacements to round-off. Ends "
+        f"E A / L is met to {errors[0]:.1g}, and the exact linear displacements to round-off. Ends "
         f"that are held flat and round take {off['solid']:.3f} diameters off a solid shaft's "
         f"length, {off['bored']:.3f} off a bored one's."
     )
@@ -140,23 +104,14 @@ def run(run: Run, page: Page) -> None:
     show_inputs(
         page,
         ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-        ("bore of the bored shaft", BORES[-1], "m", "chosen"),
-        ("length of the free-ended shaft", length, "m", "chosen"),
+        ("bore of the bored shaft", BORES["bored"], "m", "chosen"),
+        ("length of the free-ended shaft", FREE * OUTER, "m", "chosen"),
         ("tension on the ends", SIGMA / 1e6, "MPa", "chosen"),
         *steel_rows(STEEL),
     )
-    page.chart(
-        "What ends that can neither contract nor warp add to E A / L",
-        [
-            trace(f"{name}, meridian", column(of, RATIO), column(of, STIFFER))
-            for name, of in by_shaft.items()
-        ]
-        + solids,
-        RATIO,
-        STIFFER,
-        ("x", "y"),
-    )
-    page.table("Ends held flat and round, against E A / L, by Fourier harmonics", rows)
+    title = "What ends that can neither contract nor warp add to E A / L"
+    curves = {STIFFER: "meridian", SOLIDS: "hexahedra"}
+    page.sweep(title, rows, RATIO, curves, by=SHAFT, log="xy", axis=STIFFER)
     page.text(
         "Traction leaves the ends free to contract, and the stress is uniform to the ends. A rigid "
         "flange does not: the shaft is stiffer, as if shorter by a fixed part of its diameter."
@@ -164,31 +119,23 @@ def run(run: Run, page: Page) -> None:
     page.data("held_ends_diameters_solid", off["solid"])
 
 
-def check_free(page: Page, name: str, tube: Tube, found: Pulled) -> None:
+def check_free(page: Page, name: str, tube: theory.Tube, series: list[Record]) -> None:
     """Stiffness, displacements and stress under uniform traction."""
-    shortfall = 2 * parabola_shortfall(found.per_turn)
-    page.equals(
-        f"{name}: axial stiffness",
-        found.stiffness.finest,
-        tube.EA / tube.length,
-        within=2 * shortfall,
-        why=f"{found.per_turn} parabolic arcs round a turn: the area is {shortfall:.2g} too small "
-        "by their formula; twice that is allowed",
-        source="closed form E A / L",
-        unit="N/m",
-        measure="stiffness",
-        band=found.stiffness.uncertainty,
-    )
+    best, closed = series[-1], tube.EA / tube.length
+    within, arcs = theory.within_arcs(best["per turn"], "the area", 2)
+    title = f"{name}: axial stiffness"
+    target = Target(STIFFNESS, closed, within, arcs, "closed form E A / L", title, order=4.0)
+    page.finest(MeshSeries(series, REFINEMENT), target)
     page.vanishes(
-        f"{name}: largest difference from the exact displacements, over the largest",
-        found.displacement,
+        f"{name}: {MOVED}",
+        best[MOVED],
         within=1e-8,
         why="the exact displacements are linear, and so the elements': round-off of the solver",
         source="u = sigma / E (x, -nu y, -nu z)",
     )
     page.vanishes(
-        f"{name}: largest difference from the uniform stress, over it",
-        found.stress,
+        f"{name}: {STRESSED}",
+        best[STRESSED],
         within=1e-7,
         why="round-off of the solver, magnified by the derivative over an element",
         source="sigma_x = F / A and nothing else",
@@ -215,9 +162,9 @@ def check_held(
         band=solid_shafts.mesh_band((1, 2), by_mesh, 1.4),
     )
     before, last = held[-2:]
+    title = f"{name}: length that held ends take off, L = {last[RATIO]:g} D against "
     page.equals(
-        f"{name}: length that held ends take off, L = {last[RATIO]:g} D against {before[RATIO]:g} "
-        "D",
+        f"{title}{before[RATIO]:g} D [diameters]",
         last[SHORTER],
         before[SHORTER],
         within=1e-3,
@@ -227,6 +174,5 @@ def check_held(
         "2 (1 - nu) J1^2: 2e-5 over two diameters; and the meridian's own error at held edges",
         source="Saint-Venant's principle: the ends' disturbance dies out within a few diameters, "
         "and is then the same whatever the length",
-        unit="diameters",
         measure="deflection",
     )

@@ -1,6 +1,7 @@
 """How often the bands of assemblies hold: random scenes against much finer meshes."""
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from fe_drivetrain.cases.verification.band_coverage import (
     WIDE,
     counted,
 )
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Cache, Floats, InputError
 from fe_drivetrain.fidelity import (
     LevelModel,
     Quantity,
@@ -79,7 +80,8 @@ def reference(scene: Scene, asked: list[Quantity]) -> list[tuple[Floats, Floats]
     sizes = []
     for factor in FINER:
         mesh = scene.mesh.scaled(factor)
-        level, model, _ = solved_assembly(scene.model_copy(update={"mesh": mesh}))
+        # 36 MB each: their figures are kept, and not the user's other solutions pushed out
+        level, model, _ = solved_assembly(scene.model_copy(update={"mesh": mesh}), Cache(None))
         levels.append(level)
         sizes.append(mean_size(model.mesh))
         if max(sizes) > APART * sizes[-1]:
@@ -97,8 +99,8 @@ def reference(scene: Scene, asked: list[Quantity]) -> list[tuple[Floats, Floats]
 def judged(run: Run, seed: int, scene: Scene) -> list[Record]:
     """Bands and errors of one scene's quantities."""
     asked, length = quantities(scene), scene.shaft.length
-    level, _, bands = run.timed("assemblies with bands", banded_assembly, scene, asked)
-    exact = run.timed("references", reference, scene, asked)
+    level, _, bands = run.clocked("assemblies with bands", banded_assembly, scene, asked)
+    exact = run.clocked("references", reference, scene, asked)
     rows: list[Record] = []
     for quantity, band, (value, left) in zip(asked, bands, exact, strict=True):
         size = float(np.linalg.norm(value))
@@ -134,9 +136,10 @@ def run(run: Run, page: Page) -> None:
     """Random scenes on every interface, each figure with its band, against the reference."""
     count = int(run.settings.get("scenes", QUICK if run.quick else SCENES))
     rows: list[Record] = []
-    for seed, scene in drawn(run, count):
-        run.report(f"scene {seed}")
-        rows += judged(run, seed, scene)
+    for number, (seed, scene) in enumerate(drawn(run, count), 1):
+        run.report(f"scenes ({number} of {count})")
+        content = {"case": "band_coverage_scenes", "scene": scene.model_dump(mode="json")}
+        rows += run.kept(content, partial(judged, run, seed, scene))
     kinds = grouped(rows, "kind")
     found: list[Record] = [
         {

@@ -141,15 +141,13 @@ def run(run: Run, page: Page) -> None:
         traces.append(trace(label, np.arange(1, 13), shown, mode="lines+markers"))
     twist, twist_coarse = fine.by_energy[9, 9], coarse.by_energy[9, 9]
     page.equals(
-        "bored shaft: twist of one end against the other",
+        "bored shaft: twist of one end against the other [N m/rad]",
         float(twist),
         manufactured.LAME[1] * np.pi / 32.0 * (OUTER**4 - BORE**4) / LENGTH,
         within=2e-3 if run.quick else 5e-4,
         why="the circle as parabolas: its order is 4 in the elements round the axis, and "
         f"{turns[1]} of them leave some 1e-4",
         source="exact: GJ/L; rigid ends do not disturb torsion (Saint-Venant)",
-        unit="N m/rad",
-        measure="stiffness",
         # order 4 in the elements round the axis: (16 / 12)^4 - 1 = 2.2, (12 / 8)^4 - 1 = 4.1
         band=float(abs(twist - twist_coarse) / ((turns[1] / turns[0]) ** 4 - 1.0)),
     )

@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.common import GRAVITY, Floats
-from fe_drivetrain.report import Chart
+from fe_drivetrain.report import bars
 from fe_drivetrain.response import LOADS
 from fe_drivetrain.suite import Page, Run
 
@@ -48,13 +48,12 @@ def run(run: Run, page: Page) -> None:
             band=response.diagnostics.energy_error,
         )
         page.equals(
-            f"{kind}: energy stored under a working load, gravity and gearbox weight",
+            f"{kind}: energy stored under a working load, gravity and gearbox weight [J]",
             float(kept),
             float(done),
             within=1e-9,
             why="the energy error at which the solver stops",
             source="Clapeyron: half the work of the loads is stored",
-            unit="J",
             measure="energy",
             band=response.diagnostics.energy_error * float(done),
         )
@@ -75,7 +74,9 @@ def run(run: Run, page: Page) -> None:
                 }
             )
         shares = {part: 100.0 * e / works for part, e in energies.items()}
-        page.add(_stacked(f"{kind}: where the work of each load is stored", shares))
+        groups = {part: dict(zip(LABELS, share, strict=True)) for part, share in shares.items()}
+        title = f"{kind}: where the work of each load is stored"
+        page.add(bars(title, groups, "share of the work [%]", stacked=True))
     page.table("Work of each load and energy stored", rows)
     page.answer(
         "Half the work of the loads is found again in parts and springs to "
@@ -88,15 +89,3 @@ def run(run: Run, page: Page) -> None:
 def _of_each(loads: Floats, energy: Floats) -> Floats:
     """(m,) half of the quadratic form of each load."""
     return np.asarray(0.5 * np.einsum("li,ij,lj->l", loads, energy, loads))
-
-
-def _stacked(caption: str, shares: dict[str, Floats]) -> Chart:
-    """Shares [%] of each part, as bars on one another."""
-    bars = [
-        {"type": "bar", "name": part, "x": LABELS, "y": [round(float(v), 4) for v in values]}
-        for part, values in shares.items()
-    ]
-    axis = {"title": {"text": "share of the work [%]"}}
-    return Chart(
-        caption=caption, figure={"data": bars, "layout": {"barmode": "stack", "yaxis": axis}}
-    )

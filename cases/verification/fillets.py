@@ -115,23 +115,21 @@ def check(page: Page, load: str, factors: Sequence[Factor], judged: Sequence[Any
             continue
         for source, formula, tolerance, why in PUBLISHED[load]:
             page.equals(
-                f"K_t, D/d = {f.wide:g}, r/d = {f.radius:g}",
+                f"K_t, D/d = {f.wide:g}, r/d = {f.radius:g} [-]",
                 f.peak.factor,
                 formula(load, f.wide, f.radius),
                 within=tolerance(load, f.wide, f.radius),
                 why=why,
                 source=source,
-                unit="-",
                 measure="stress",
                 band=f.band,
             )
     page.at_most(
-        "largest band of any K_t, relative",
+        "largest band of any K_t, relative [-]",
         max(f.band / f.peak.factor for f in factors),
         1e-3,
         why="a tenth of a per cent, so that any larger difference is due to the formulae",
         source="the same with three quarters of the elements along the fillet",
-        unit="-",
     )
 
 

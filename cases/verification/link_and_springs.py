@@ -121,14 +121,13 @@ def run(run: Run, page: Page) -> None:
             }
         )
         page.equals(
-            f"{load}: split that meets both deflection and rotation of the tip, solid",
+            f"{load}: split that meets both deflection and rotation of the tip, solid [-]",
             by_mesh[-1],
             needed,
             within=(section + slack[load]) * (1 - needed),
             relative=False,
             why=arcs,
             source="1 - w / (phi L) of Timoshenko's cantilever, evenly held (Hutchinson 2001)",
-            unit="-",
             measure="deflection",
             band=band,
         )

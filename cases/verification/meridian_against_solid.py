@@ -109,12 +109,11 @@ def run(run: Run, page: Page) -> None:
         if not has_fillets(shaft):  # the bounds are of straight outlines
             check_torsion(run, page, name, shaft, flat[3, 3], bands[3, 3])
         page.vanishes(
-            f"{name}: force under a rigid motion of the 12 x 12, over its terms",
+            f"{name}: force under a rigid motion of the 12 x 12, over its terms [-]",
             imbalance(flat, shaft),
             within=1e-9,
             why="round-off of a direct solve: 1e-16 times a condition number of 1e6 or so",
             source="equilibrium of the free body",
-            unit="-",
         )
         cost.append(
             {
@@ -162,13 +161,11 @@ def check_torsion(
         bounds = torsion_bounds(shaft, STEEL.shear_modulus, 0.15, 6 if run.quick else 10)
     reach = max(bounds.half_width, ROUND_OFF * bounds.middle) + band
     page.between(
-        f"{name}: torsion between its bounds",
+        f"{name}: torsion between its bounds [N m/rad]",
         stiffness,
         bounds.middle - reach,
         bounds.middle + reach,
         why="the two bounds, each wider by the band of the meridian",
         source="two bounds, by displacements and by the torsion function (Michell 1899)",
-        unit="N m/rad",
-        measure="stiffness",
         band=band,
     )

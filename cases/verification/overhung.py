@@ -37,6 +37,7 @@ BEAM = Beam(
 #: What is judged at the hub: name, component of a section's motion and of the frame's, unit.
 MOTIONS = (("deflection", 0, 2, "m"), ("rotation", 1, 4, "rad"))
 SHEARED = "closed form with shear"
+STATICS = "statics: Stirling 2023, Eq 3.1, (M + (L1 + L2) B) / L2"
 BRACKETS = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001)"
 
 
@@ -50,23 +51,18 @@ def closed_forms() -> dict[str, tuple[float, float]]:
     }
 
 
-def solids(
-    run: Run, refinements: tuple[int, ...]
-) -> tuple[dict[str, list[solid_shafts.Supported]], int]:
-    """Both loads on ever finer meshes, and the arcs round a turn of the finest."""
+def solids(refinement: int) -> tuple[int, dict[str, solid_shafts.Supported]]:
+    """Arcs round a turn of a mesh, and the solid under each load."""
     shaft = solid_shafts.straight(STATIONS, OUTER)
-    stiffness = np.zeros((len(STATIONS), 2))
+    mesh = solid_shafts.solid(shaft, refinement, size=2.75 * OUTER)
+    C = solid_shafts.sectional_compliance(mesh, STEEL, STATIONS)
+    stiffness, none = np.zeros((2, len(STATIONS), 2))
     stiffness[[1, 3], 0] = RIGID
-    found: dict[str, list[solid_shafts.Supported]] = {name: [] for name in LOADS}
-    for refinement in refinements:
-        with run.step("mesh and solve"):
-            mesh = solid_shafts.solid(shaft, refinement, size=2.75 * OUTER)
-            C = solid_shafts.sectional_compliance(mesh, STEEL, STATIONS)
-        for name, load in LOADS.items():
-            at = np.zeros((len(STATIONS), 2))
-            at[0] = load
-            found[name].append(solid_shafts.on_springs(C, stiffness, at))
-    return found, mesh.per_turn
+    hub = np.arange(len(STATIONS))[:, None] == 0
+    return mesh.per_turn, {
+        name: solid_shafts.on_springs(C, stiffness, np.where(hub, load, none))
+        for name, load in LOADS.items()
+    }
 
 
 @case(
@@ -76,7 +72,8 @@ def solids(
 def run(run: Run, page: Page) -> None:
     """A force and a moment at the hub."""
     refinements = (1, 2) if run.quick else (1, 2, 3)
-    meshed, turn = solids(run, refinements)
+    meshes = [run.timed("mesh and solve", solids, refinement) for refinement in refinements]
+    turn, finest = meshes[-1]
     section = 2 * 4 * parabola_shortfall(turn)
     local = solid_shafts.local_compliance(TUBE)
     evenly = f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
@@ -99,7 +96,7 @@ def run(run: Run, page: Page) -> None:
         for part, which, component, unit in MOTIONS:
             value = closed_forms()[name][which]
             by_frame = float(frame.displacements[0, component])
-            by_mesh = [float(s.motions[0, which]) for s in meshed[name]]
+            by_mesh = [float(found[name].motions[0, which]) for _, found in meshes]
             band = solid_shafts.mesh_band(refinements, by_mesh)
             title = f"{part} of the hub by a {name}"
             exact, even_value = "the frame's sections are exact: round-off", even[which]
@@ -118,27 +115,19 @@ def run(run: Run, page: Page) -> None:
                 }
             )
         statics = float(pinned_reaction(force, moment, OVERHANG, SPAN))
-        for who, value, within in (
-            ("frame", float(bearing[2]), 1e-10),
-            ("solid", -float(meshed[name][-1].reactions[1, 0]), 1e-7),
+        left = "what the iterations leave of the solid's balance"
+        by_solid = -float(finest[name].reactions[1, 0])
+        for who, value, within, why in (
+            ("frame", float(bearing[2]), 1e-10, "round-off of a few equations"),
+            ("solid", by_solid, 1e-7, left),
         ):
-            page.equals(
-                f"load on the bearing by a {name}, {who}",
-                value,
-                statics,
-                within=within,
-                why="statically determinate: round-off of a few equations"
-                if who == "frame"
-                else "statically determinate: what the iterations leave of the solid's balance",
-                source="statics: Stirling 2023, Eq 3.1, (M + (L1 + L2) B) / L2",
-                unit="N",
-                measure="reaction",
-            )
+            title, why = f"load on the bearing by a {name}", f"statically determinate: {why}"
+            page.meets(value, Target(f"{title}, {who} [N]", statics, within, why, STATICS))
         fine = np.linspace(0.0, LENGTH, 96)
         curve = macaulay(LENGTH, TUBE.EI, TUBE.kGA, SUPPORTS, load, fine).deflection
         traces += [
             trace(f"{name}, beam", fine, 1e3 * curve),
-            trace(f"{name}, solid", STATIONS, 1e3 * meshed[name][-1].motions[:, 0], True),
+            trace(f"{name}, solid", STATIONS, 1e3 * finest[name].motions[:, 0], True),
         ]
     met = ", ".join(f"{r['quantity']} {100 * (r['solid'] / r['frame'] - 1):+.3f} %" for r in rows)
     page.answer(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
@@ -152,12 +141,8 @@ def run(run: Run, page: Page) -> None:
         ("force and moment at the hub", 1, "MN, MN m", "chosen"),
         *steel_rows(STEEL),
     )
-    page.chart(
-        "Deflection: Macaulay's beam with shear, and the means of the solid's sections",
-        traces,
-        "x from the hub [m]",
-        "u_z [mm]",
-    )
+    title = "Deflection: Macaulay's beam with shear, and the means of the solid's sections"
+    page.chart(title, traces, "x from the hub [m]", "u_z [mm]")
     page.table("Hub [m, rad]", rows)
     page.text(
         "Both cross terms, deflection by a moment and rotation by a force, are one number, as "

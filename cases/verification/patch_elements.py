@@ -3,34 +3,27 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import STRESSES, Floats, Ints
-from fe_drivetrain.interfaces import dofs
+from fe_drivetrain.common import STRESSES
 from fe_drivetrain.mesh import element_kind
-from fe_drivetrain.operator import tensor, traction_loads
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.distorted_blocks import (
-    Patch,
-    constant_traction,
+    SIGMAS,
     inner_forces,
+    patch_test,
     patches,
     quadratic_error,
-    worst_errors,
 )
-from fe_drivetrain.validation.manufactured import LAME
 
 #: Degrees of quadrature that are tried for the forces on nodes inside.
 DEGREES = (1, 2, 3, 4, 5, 6)
-
-LAM, MU = LAME
-STRAINS = tensor(np.eye(6))  # one component of the tensor each, shear ones both ways
-SIGMAS = LAM * np.trace(STRAINS, axis1=1, axis2=2)[:, None, None] * np.eye(3) + 2 * MU * STRAINS
 
 ROUND_OFF = "round-off: some thousand operations of 1e-16 each"
 CONDITIONED = (
     "round-off times the condition number of a block on six degrees of freedom, 1e5 to 1e6"
 )
+CONSTANT = "exact: linear displacement, constant stress (patch test)"
+CONTAINED = "exact: the element contains all quadratic polynomials in this shape"
 #: Allowed error of each check, and why.
 CHECKS = {
     "displacements given, displacement": (1e-12, ROUND_OFF),
@@ -39,33 +32,6 @@ CHECKS = {
     "tractions given, stress": (1e-10, CONDITIONED),
     "tractions given, reaction of the supports": (1e-12, ROUND_OFF),
 }
-
-
-def errors(run: Run, patch: Patch) -> tuple[float, ...]:
-    """Largest errors over the six strain states, in the order of `CHECKS`."""
-    block = patch.block
-    points, cells, n = block.points, block.cells, 3 * len(block.points)
-    exact = np.einsum("kij,nj->nik", STRAINS, points).reshape(n, 6)
-
-    def solve(F: Floats, columns: Ints) -> tuple[Floats, Floats]:
-        given = columns, exact[columns]
-        found = solve_solid(points, cells, LAME, [], F, prescribed=given, method="superlu")
-        return found.u, found.reactions["prescribed"]
-
-    with run.step("displacements given all round"):
-        strong, _ = solve(np.zeros((n, 6)), dofs(patch.outer).ravel())
-    with run.step("tractions, six degrees of freedom held"):
-        F = np.zeros((n, 6))
-        for k, sigma in enumerate(SIGMAS):
-            for facets in block.faces.values():
-                F[:, k] += traction_loads(points, facets, constant_traction(sigma))
-        origin, along_x, along_y = dofs(patch.holders)
-        weak, reaction = solve(F, np.array([*origin, along_x[1], along_x[2], along_y[2]]))
-    return (
-        *worst_errors(patch, strong, exact, SIGMAS),
-        *worst_errors(patch, weak, exact, SIGMAS),
-        float(np.abs(reaction).max() / np.abs(F).sum(axis=0).min()),
-    )
 
 
 @case(
@@ -78,24 +44,14 @@ def run(run: Run, page: Page) -> None:
     traces = []
     for patch in patches():
         cells = patch.block.cells
-        found = dict(zip(CHECKS, errors(run, patch), strict=True))
+        found = dict(zip(CHECKS, run.timed("six strain states", patch_test, patch), strict=True))
         for what, (within, why) in CHECKS.items():
-            page.vanishes(
-                f"{patch.label}: {what}, largest error of six strain states",
-                found[what],
-                within=within,
-                why=why,
-                source="exact: linear displacement, constant stress (patch test)",
-            )
+            title = f"{patch.label}: {what}, largest error of six strain states"
+            page.vanishes(title, found[what], within=within, why=why, source=CONSTANT)
         quadratic = quadratic_error(patch)
         if patch.holds_quadratics:
-            page.vanishes(
-                f"{patch.label}: interpolated quadratic field, largest error of strain",
-                quadratic,
-                within=1e-12,
-                why=ROUND_OFF,
-                source="exact: the element contains all quadratic polynomials in this shape",
-            )
+            title = f"{patch.label}: interpolated quadratic field, largest error of strain"
+            page.vanishes(title, quadratic, within=1e-12, why=ROUND_OFF, source=CONTAINED)
         rows.append(
             {
                 "element": patch.label,
@@ -149,12 +105,8 @@ def run(run: Run, page: Page) -> None:
         "integrate just 5). One point less a direction, the usual reduced integration, and curved "
         "quadratic hexahedra fail."
     )
-    page.chart(
-        "Force of a constant stress on nodes inside, by degree of the quadrature, relative to the "
-        "largest of one element on a node; the large marker is the assembly's own rule",
-        traces,
-        "degree asked of the quadrature",
-        "false force on nodes inside [-]",
-        "y",
-    )
+    title = "Force of a constant stress on nodes inside, by degree of the quadrature, relative to "
+    title += "the largest of one element on a node; the large marker is the assembly's own rule"
+    x, y = "degree asked of the quadrature", "false force on nodes inside [-]"
+    page.chart(title, traces, x, y, "y")
     page.data("largest errors", rows)

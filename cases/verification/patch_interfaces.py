@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.report import chart
+from fe_drivetrain.report import bars
 from fe_drivetrain.suite import Page, Run, column
 from fe_drivetrain.validation.patched_interfaces import (
     averaged_block,
@@ -81,7 +81,10 @@ def run(run: Run, page: Page) -> None:
         f"converges with order {order:.1f}."
     )
     page.section("Interfaces under constant stress")
-    add_bars(page, exact, by_nodes)
+    title = "Largest error of the stress, of unit stress; interfaces that pass, and ties node by "
+    title += "node beside them"
+    groups = {"passes by design": exact, "tied node by node": by_nodes}
+    page.add(bars(title, groups, "error of the stress", least=1e-17))
     page.table(
         "Meshes that do not match, tied node by node: not judged, the error is the point",
         list(by_nodes.items()),
@@ -96,13 +99,8 @@ def run(run: Run, page: Page) -> None:
         "without lateral contraction, here with Poisson's ratio zero."
     )
     page.section("Pressure through a sliding sphere")
-    page.sweep(
-        "Root mean square of the stress error, of the pressure: sliding sphere, tet10",
-        spheres,
-        DIVISIONS,
-        ERROR,
-        log="xy",
-    )
+    title = "Root mean square of the stress error, of the pressure: sliding sphere, tet10"
+    page.sweep(title, spheres, DIVISIONS, ERROR, log="xy")
     page.text(
         "An isotropic strain fulfils the joint exactly, sliding and averaged. The forces do not "
         "balance exactly: the sliding joint pushes each node along the sphere's radius, the "
@@ -111,31 +109,3 @@ def run(run: Run, page: Page) -> None:
         "presses on both faces."
     )
     page.data("stress errors", exact | by_nodes)
-
-
-def add_bars(page: Page, exact: dict[str, float], by_nodes: dict[str, float]) -> None:
-    """Horizontal bars, on a logarithmic scale, of interfaces that pass and of those that do not."""
-    bars = [
-        {
-            "type": "bar",
-            "orientation": "h",
-            "name": name,
-            "y": list(found),
-            "x": [max(float(f"{error:.3g}"), 1e-17) for error in found.values()],
-        }
-        for name, found in (("passes by design", exact), ("tied node by node", by_nodes))
-    ]
-    figure = chart(
-        "Largest error of the stress, of unit stress; interfaces that pass, and ties node by node "
-        "beside them",
-        bars,
-        "error of the stress",
-        "",
-        "x",
-    )
-    figure.figure["layout"] |= {
-        "height": 24 * (len(exact) + len(by_nodes)) + 160,
-        "margin": {"l": 330},
-        "yaxis": {"autorange": "reversed"},
-    }
-    page.add(figure)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.suite import Page, Run, Target
 from fe_drivetrain.validation.shaft_theory import polar_moment
 from fe_drivetrain.validation.twisted_tubes import TwistedTube, twisted_tube
 
@@ -40,40 +40,19 @@ def main_shaft(run: Run, given: Mapping[str, float]) -> MainShaft:
 
 def check_torsion(page: Page, name: str, found: TwistedTube, reference: float, source: str) -> None:
     """The stiffness by finite elements against a closed form or a published figure."""
-    page.equals(
-        name,
-        found.stiffness,
-        reference,
-        within=found.tolerance,
-        why=found.reason,
-        source=source,
-        unit="N m/rad",
-        measure="stiffness",
-        band=found.band,
+    key = f"{name} [N m/rad]"
+    page.meets(
+        found.stiffness, Target(key, reference, found.tolerance, found.reason, source), found.band
     )
 
 
 def check_digits(
-    page: Page,
-    name: str,
-    computed: float,
-    published: float,
-    half: float,
-    source: str,
-    unit: str = "N m/rad",
-    shown: str = "",
+    page: Page, key: str, computed: float, published: float, half: float, source: str
 ) -> None:
-    """A closed form against a published stiffness, to half of its last digit."""
-    page.equals(
-        name,
-        computed,
-        published,
-        within=half / published,
-        why=f"{DIGITS}{shown}",
-        source=source,
-        unit=unit,
-        measure="stiffness",
-    )
+    """A closed form against a published figure, to half of its last digit."""
+    digit = f" ({2 * half:g} N m/rad)" if half >= 0.5 else ""
+    why = f"{DIGITS}{digit}"
+    page.meets(computed, Target(key, published, half / published, why, source, measure="stiffness"))
 
 
 def check_free_free(page: Page, by_eigenvalues: float, closed: float) -> None:
@@ -85,4 +64,14 @@ def check_free_free(page: Page, by_eigenvalues: float, closed: float) -> None:
         why="round-off of the eigenvalues of two masses: both are the same formula",
         source="sqrt(k (1 / J_rotor + 1 / n^2 J_generator)) / 2 pi",
         basis="self-consistency",
+    )
+
+
+def compare_stiffness(
+    page: Page, caption: str, heading: str, by: Mapping[str, float], over: str, reference: float
+) -> None:
+    """A table of stiffness by description, and each over a reference of that name."""
+    page.table(
+        caption,
+        [{heading: name, STIFFNESS: k, f"over {over}": k / reference} for name, k in by.items()],
     )

@@ -13,7 +13,7 @@ from fe_drivetrain.cases.verification.published_checks import (
     check_free_free,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.suite import Page, Record, Target
 from fe_drivetrain.validation.shaft_theory import (
     chain_frequencies,
     polar_moment,
@@ -27,24 +27,19 @@ STEEL_DENSITY = 7850.0  # kg/m^3
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
     """Two masses in closed form, by eigenvalues, and with the shaft's own inertia."""
     stiffness, rotor, polar = given["stiffness"], given["rotor"], given["polar"]
+    source, found = sources["stiffness"], shaft.found
     generator = given["generator"] * given["ratio"] ** 2
     free, fixed = two_mass_frequencies(stiffness, rotor, generator)
     by_eigenvalues = float(chain_frequencies([rotor, generator], [stiffness])[1])
     held = float(chain_frequencies([rotor], [], stiffness)[0])
     own = STEEL_DENSITY * polar * shaft.length
     with_shaft = rod_frequency(stiffness, own, rotor, generator)
-    for name, computed in (("free-free", free), ("free-fixed", fixed)):
-        page.equals(
-            f"{name} frequency, two masses",
-            computed,
-            given[name.replace("-", "_")],
-            within=0.0005,
-            relative=False,
-            why=DIGITS,
-            source=sources["stiffness"],
-            unit="Hz",
-            measure="frequency",
-        )
+    published = [given["free_free"], given["free_fixed"]]
+    for name, computed, value in zip(
+        ("free-free", "free-fixed"), (free, fixed), published, strict=True
+    ):
+        key = f"{name} frequency, two masses [Hz]"
+        page.meets(computed, Target(key, value, 0.0005, DIGITS, source, relative=False))
     check_free_free(page, by_eigenvalues, free)
     page.vanishes(
         "free-fixed frequency by eigenvalues against the closed form",
@@ -54,35 +49,14 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         source="sqrt(k / J_rotor) / 2 pi",
         basis="self-consistency",
     )
-    check_digits(
-        page,
-        "stiffness from K G / L of the turbine's HAWC2 shaft",
-        polar * shaft.G / shaft.length,
-        stiffness,
-        0.5,
-        sources["stiffness"],
-        shown=" (1 N m/rad)",
-    )
-    check_digits(
-        page,
-        f"polar moment of a solid shaft of {shaft.outer:g} m",
-        polar_moment(shaft.outer),
-        polar,
-        0.5e-4,
-        sources["polar"],
-        unit="m^4",
-    )
-    page.equals(
-        f"finite elements, solid shaft of {shaft.outer:g} m",
-        shaft.found.stiffness,
-        stiffness,
-        within=shaft.found.tolerance + 0.5e-4 / polar,
-        why=f"{shaft.found.per_turn} parabolic arcs round a turn, and {DIGITS} of K",
-        source=sources["stiffness"],
-        unit="N m/rad",
-        measure="stiffness",
-        band=shaft.found.band,
-    )
+    title = "stiffness from K G / L of the turbine's HAWC2 shaft [N m/rad]"
+    check_digits(page, title, polar * shaft.G / shaft.length, stiffness, 0.5, source)
+    title = f"polar moment of a solid shaft of {shaft.outer:g} m [m^4]"
+    check_digits(page, title, polar_moment(shaft.outer), polar, 0.5e-4, sources["polar"])
+    title = f"finite elements, solid shaft of {shaft.outer:g} m [N m/rad]"
+    arcs = f"{found.per_turn} parabolic arcs round a turn, and {DIGITS} of K"
+    within = found.tolerance + 0.5e-4 / polar
+    page.meets(found.stiffness, Target(title, stiffness, within, arcs, source), found.band)
     page.answer(
         f"Two masses give {free:.4f} Hz free-free and {fixed:.4f} Hz free-fixed, as published. "
         f"The stiffness is K G / L of a solid shaft of {shaft.outer:g} m over {shaft.length:g} m "
@@ -91,18 +65,13 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     )
     sweep = np.logspace(8.5, 11, 60)
     lines = np.array([two_mass_frequencies(k, rotor, generator) for k in sweep])
-    published = [given["free_free"], given["free_fixed"]]
-    page.chart(
-        "Frequencies of the two masses by the stiffness between them",
-        [
-            trace("free-free", sweep, lines[:, 0]),
-            trace("free-fixed", sweep, lines[:, 1]),
-            trace("published", [stiffness] * 2, published, True, marker={"size": 10}),
-        ],
-        STIFFNESS,
-        "frequency [Hz]",
-        "xy",
-    )
+    curves = [
+        trace("free-free", sweep, lines[:, 0]),
+        trace("free-fixed", sweep, lines[:, 1]),
+        trace("published", [stiffness] * 2, published, True, marker={"size": 10}),
+    ]
+    title = "Frequencies of the two masses by the stiffness between them"
+    page.chart(title, curves, STIFFNESS, "frequency [Hz]", "xy")
     page.table(
         "Frequencies [Hz]",
         [

@@ -7,11 +7,11 @@ import numpy as np
 
 from fe_drivetrain.cases.verification.published_checks import (
     CLOSED_FORM,
-    STIFFNESS,
     USUAL_G,
     MainShaft,
     check_digits,
     check_torsion,
+    compare_stiffness,
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record
@@ -33,39 +33,27 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     )
     low, high = shaft.closed * USUAL_G / shaft.G
     check_torsion(page, "finite elements, tube over 3.0 m", found, shaft.closed, CLOSED_FORM)
-    check_digits(
-        page,
-        "what the placeholder is: K G / L of the DTU 10 MW turbine's shaft",
-        G * given["dtu_polar"] / length,
-        placeholder,
-        500.0,
-        sources["placeholder"],
-        shown=" (1000 N m/rad)",
-    )
+    dtu = "what the placeholder is: K G / L of the DTU 10 MW turbine's shaft [N m/rad]"
+    by_dtu = G * given["dtu_polar"] / length
+    check_digits(page, dtu, by_dtu, placeholder, 500.0, sources["placeholder"])
     page.answer(
         f"DTTorSpr for the main shaft alone: {found.stiffness:.4g} N m/rad (numerical band "
         f"± {found.band:.1g}; {low:.4g} to {high:.4g} for any usual G). The published "
         f"{placeholder:.4g} is the DTU 10 MW turbine's, carried over, and "
         f"{found.stiffness / placeholder:.1f} times softer."
     )
-    descriptions = {
+    later = shaft.G * polar_moment(2.5, 2.3) / 2.2
+    by = {
         "finite elements, 3.0 m, wall 0.1 m, over 3.0 m": found.stiffness,
         "closed form of it": shaft.closed,
         "closed form, G = 79.3 GPa": low,
         "closed form, G = 80.8 GPa": high,
-        "WISDEM's later shaft, 2.5 m, wall 0.1 m, over 1.0 + 1.2 m": (
-            shaft.G * polar_moment(2.5, 2.3) / 2.2
-        ),
+        "WISDEM's later shaft, 2.5 m, wall 0.1 m, over 1.0 + 1.2 m": later,
         "the turbine's HAWC2 shaft, by its sections over 5.4 m": G / flexibility.sum(),
         "placeholder in the OpenFAST model": placeholder,
     }
-    page.table(
-        "Torsional stiffness by description of the shaft",
-        [
-            {"shaft": name, STIFFNESS: k, "over the placeholder": k / placeholder}
-            for name, k in descriptions.items()
-        ],
-    )
+    title = "Torsional stiffness by description of the shaft"
+    compare_stiffness(page, title, "shaft", by, "the placeholder", placeholder)
     fine = np.linspace(0.0, x[-1], 400)
     along = np.interp(fine, x, polar)
     twist = np.cumsum(np.diff(fine) / (G * 0.5 * (along[1:] + along[:-1])))

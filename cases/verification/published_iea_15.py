@@ -5,14 +5,15 @@ from typing import Any
 
 from fe_drivetrain.cases.verification.published_checks import (
     DIGITS,
-    STIFFNESS,
     MainShaft,
     check_digits,
     check_torsion,
+    compare_stiffness,
 )
-from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record
 from fe_drivetrain.validation.shaft_theory import polar_moment
+
+TURN, ERROR = "elements round a turn", "relative error"
 
 
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
@@ -23,54 +24,33 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     J = polar_moment(shaft.outer, shaft.inner)
     as_filed, as_run = G * polar / section, G * polar / body
     ratio = as_filed / published
-    check_digits(
-        page,
-        "G J / L of the tube",
-        shaft.closed,
-        published,
-        50.0,
-        sources["published"],
-        shown=" (100 N m/rad)",
-    )
-    check_torsion(page, "finite elements", found, published, sources["published"])
-    check_digits(
-        page,
-        "the same tube over 3.0 m",
-        shaft.G * J / 3.0,
-        earlier,
-        5.0,
-        f"DTTorSpr of an earlier release: {sources['earlier']}",
-        shown=" (10 N m/rad)",
-    )
-    check_digits(
-        page,
-        "I_p of the HAWC2 shaft from DTTorSpr times length over G",
-        earlier * body / G,
-        polar,
-        0.5e-4,
-        f"{sources['polar']}: 'I_p = DTTorSpr*ShftLen/G'; length of the body in "
-        f"{sources['body_length']}",
-        unit="m^4",
-    )
+    over_three = f"DTTorSpr of an earlier release: {sources['earlier']}"
+    by_length = f"{sources['polar']}: 'I_p = DTTorSpr*ShftLen/G'; length of the body in "
+    by_length += sources["body_length"]
+    title, today = "G J / L of the tube [N m/rad]", sources["published"]
+    check_digits(page, title, shaft.closed, published, 50.0, today)
+    check_torsion(page, "finite elements", found, published, today)
+    title, stiffness = "the same tube over 3.0 m [N m/rad]", shaft.G * J / 3.0
+    check_digits(page, title, stiffness, earlier, 5.0, over_three)
+    title = "I_p of the HAWC2 shaft from DTTorSpr times length over G [m^4]"
+    check_digits(page, title, earlier * body / G, polar, 0.5e-4, by_length)
     page.equals(
-        "I_p that the OpenFAST figure needs over the section file's length",
+        "I_p that the OpenFAST figure needs over the section file's length [m^4]",
         published * section / G,
         4.5008,
         within=0.5e-4 / 4.5008,
         why=DIGITS,
         source="a list of reference values (second-hand: its own source was not read)",
-        unit="m^4",
         measure="stiffness",
         basis="second-hand",
     )
     page.equals(
-        "HAWC2 shaft as filed over the OpenFAST figure",
+        "HAWC2 shaft as filed over the OpenFAST figure [-]",
         ratio,
         (shaft.length / 3.0) * (body / section),
         within=0.5e-4 / polar + 1e-8,
         why=f"{DIGITS} of I_p",
         source="2.2 m over 3.0 m, times 6.130 m over 5.118 m",
-        unit="-",
         measure="stiffness",
     )
     page.answer(
@@ -82,33 +62,22 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         f"(factor {body / section:.4f}). Over the length of its body, it is "
         f"{100 * (1 - as_run / published):.1f} % softer.",
     )
-    page.table(
-        "Torsional stiffness of the main shaft",
-        [
-            {"model": name, STIFFNESS: k, "over OpenFAST today": k / published, "what": what}
-            for name, k, what in (
-                ("OpenFAST, today", published, "G J over 1.0 + 1.2 m"),
-                ("OpenFAST, earlier", earlier, "G J over 3.0 m"),
-                ("HAWC2, length of the body file", as_run, "the earlier figure again"),
-                ("HAWC2, length of the section file", as_filed, "the same I_p over 5.118 m"),
-                ("finite elements, 2.2 m", found.stiffness, "three meshes"),
-            )
-        ],
-    )
-    page.chart(
-        "Finite elements against G J / L by elements round a turn",
-        [
-            trace(
-                "three meshes",
-                [1 / s for s in found.series.sizes],
-                [abs(v / shaft.closed - 1) for v in found.series.values],
-                marker={"size": 9},
-            )
-        ],
-        "elements round a turn",
-        "relative error",
-        "xy",
-    )
+    by = {
+        "OpenFAST, today: G J over 1.0 + 1.2 m": published,
+        "OpenFAST, earlier: G J over 3.0 m": earlier,
+        "HAWC2, length of the body file: the earlier figure again": as_run,
+        "HAWC2, length of the section file: the same I_p over 5.118 m": as_filed,
+        "finite elements, 2.2 m: three meshes": found.stiffness,
+    }
+    title = "Torsional stiffness of the main shaft"
+    compare_stiffness(page, title, "model", by, "OpenFAST today", published)
+    series = found.series
+    errors = [
+        {TURN: 1 / size, ERROR: abs(value / shaft.closed - 1)}
+        for size, value in zip(series.sizes, series.values, strict=True)
+    ]
+    title = "Finite elements against G J / L by elements round a turn"
+    page.sweep(title, errors, TURN, ERROR, log="xy", table=False)
     page.text(
         f"I_p of the tube itself is {J:.4f} m^4; the HAWC2 figure is an equivalent that carries a "
         "stiffness, not a section. It serves one length and one G only. A further version of the "

@@ -11,10 +11,11 @@ from fe_drivetrain.cases.verification.published_checks import (
     USUAL_G,
     MainShaft,
     check_torsion,
+    compare_stiffness,
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.revolution import end_stiffness
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.suite import Page, Record, Target
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import polar_moment
 from fe_drivetrain.validation.twisted_tubes import material_of
@@ -23,76 +24,46 @@ from fe_drivetrain.validation.twisted_tubes import material_of
 def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaft) -> None:
     """The thin tube by finite elements and by its closed forms."""
     found, wall, G, length = shaft.found, given["wall"], shaft.G, shaft.length
-    placeholder, earlier = given["placeholder"], given["earlier"]
+    placeholder, earlier, closed = given["placeholder"], given["earlier"], shaft.closed
     radius = (shaft.outer - wall) / 2
     thin = float(G * 2 * np.pi * radius**3 * wall / length)
     tube = solid_shafts.straight((0.0, length), shaft.outer, shaft.inner)
     by_meridian = float(end_stiffness(tube, material_of(G))[9, 9])
-    low, high = shaft.closed * USUAL_G / G
-    page.equals(
-        "G J / L of the tube",
-        shaft.closed,
-        earlier,
-        within=1e-9,
-        why="the same formula with the same inputs, all digits given: round-off",
-        source=sources["earlier"],
-        unit="N m/rad",
-        measure="stiffness",
-    )
+    low, high = closed * USUAL_G / G
+    same = "the same formula with the same inputs, all digits given: round-off"
+    linear = "the angle of twist is linear, which the elements hold exactly: round-off"
+    square = "it leaves out terms of the square of wall over radius"
+    thick, title = (wall / radius) ** 2, "thin-walled formula 2 pi G r^3 t / L [N m/rad]"
+    filed = Target("G J / L of the tube [N m/rad]", earlier, 1e-9, same, sources["earlier"])
+    meridian = "Fourier harmonics in the meridian [N m/rad]"
+    page.meets(closed, filed)
     check_torsion(page, "finite elements", found, earlier, sources["earlier"])
-    page.equals(
-        "Fourier harmonics in the meridian",
-        by_meridian,
-        shaft.closed,
-        within=1e-8,
-        why="the angle of twist is linear, which the elements hold exactly: round-off",
-        source=CLOSED_FORM,
-        unit="N m/rad",
-        measure="stiffness",
-    )
-    page.equals(
-        "thin-walled formula 2 pi G r^3 t / L",
-        thin,
-        shaft.closed,
-        within=(wall / radius) ** 2,
-        why="it leaves out terms of the square of wall over radius",
-        source=CLOSED_FORM,
-        unit="N m/rad",
-        measure="stiffness",
-    )
+    page.meets(by_meridian, Target(meridian, closed, 1e-8, linear, CLOSED_FORM))
+    page.meets(thin, Target(title, closed, thick, square, CLOSED_FORM))
     page.answer(
         f"DTTorSpr for the main shaft alone: {found.stiffness:.5g} N m/rad (numerical band "
         f"± {found.band:.1g}; {low:.4g} to {high:.4g} for any usual G). The released model holds "
         f"{placeholder:.0e} with the degree of freedom off, {placeholder / found.stiffness:.0f} "
         f"times as much; one before it held {earlier:,.0f}, which is G J / L to round-off."
     )
-    page.table(
-        "Torsional stiffness",
-        [
-            {"by": name, STIFFNESS: k, "over G J / L": k / shaft.closed}
-            for name, k in (
-                ("finite elements", found.stiffness),
-                ("meridian", by_meridian),
-                ("G J / L", shaft.closed),
-                ("thin-walled formula", thin),
-                ("earlier release", earlier),
-                ("placeholder", placeholder),
-            )
-        ],
-    )
+    by = {
+        "finite elements": found.stiffness,
+        "meridian": by_meridian,
+        "G J / L": closed,
+        "thin-walled formula": thin,
+        "earlier release": earlier,
+        "placeholder": placeholder,
+    }
+    compare_stiffness(page, "Torsional stiffness", "by", by, "G J / L", closed)
     walls = np.array([0.01, 0.02, 0.05, 0.1, 0.2, 0.3])
     by_wall = [G * polar_moment(shaft.outer, shaft.outer - 2 * w) / length for w in walls]
-    page.chart(
-        "G J / L of the shaft by its wall, and what other walls would give",
-        [
-            trace("G J / L", walls, by_wall),
-            trace("finite elements", [wall], [found.stiffness], True, marker={"size": 10}),
-            trace("placeholder", walls[[0, -1]], [placeholder] * 2),
-        ],
-        "wall [m]",
-        STIFFNESS,
-        "xy",
-    )
+    curves = [
+        trace("G J / L", walls, by_wall),
+        trace("finite elements", [wall], [found.stiffness], True, marker={"size": 10}),
+        trace("placeholder", walls[[0, -1]], [placeholder] * 2),
+    ]
+    title = "G J / L of the shaft by its wall, and what other walls would give"
+    page.chart(title, curves, "wall [m]", STIFFNESS, "xy")
     page.text(
         "A wall of 20 mm on 3.1 m is thin enough to buckle or ovalise before it yields; torsion "
         "between rigid ends knows nothing of that."

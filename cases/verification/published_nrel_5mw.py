@@ -11,6 +11,7 @@ from fe_drivetrain.cases.verification.published_checks import (
     MainShaft,
     check_free_free,
     check_torsion,
+    compare_stiffness,
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record
@@ -35,7 +36,7 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     length_needed = G * polar_moment(shaft.outer) / stiffness
     diameter_needed = solid_diameter(stiffness * length / G)
     page.equals(
-        "damping ratio of the free-free mode",
+        "damping ratio of the free-free mode [-]",
         float(given["damping"] / (2 * np.sqrt(stiffness * both))),
         0.05,
         within=0.0005,
@@ -43,7 +44,6 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         why="the published 5 % to two figures",
         source="Jonkman et al. 2009, NREL/TP-500-38060, section 5: stiffness and damping for 5 % "
         "(second-hand: the section itself was not read)",
-        unit="-",
         measure="frequency",
         basis="second-hand",
     )
@@ -57,55 +57,36 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         f"the published figure would need that shaft to be {length_needed:.2f} m long, or "
         f"{diameter_needed:.2f} m thick, with all else rigid."
     )
-    page.table(
-        "Stiffness, on the rotor's side",
-        [
-            {"part": name, STIFFNESS: k, "over the published": k / stiffness}
-            for name, k in (
-                ("published, whole drivetrain", stiffness),
-                ("low-speed shaft, G J / L", shaft.closed),
-                ("low-speed shaft, finite elements", found.stiffness),
-                ("high-speed shaft, G J n^2 / L", high),
-                ("both in series, as WISDEM does", series),
-            )
-        ],
-    )
+    by = {
+        "published, whole drivetrain": stiffness,
+        "low-speed shaft, G J / L": shaft.closed,
+        "low-speed shaft, finite elements": found.stiffness,
+        "high-speed shaft, G J n^2 / L": high,
+        "both in series, as WISDEM does": series,
+    }
+    title = "Stiffness, on the rotor's side"
+    compare_stiffness(page, title, "part", by, "the published", stiffness)
+    frequencies = ("published", free), ("WISDEM's shafts in series", soft)
     page.table(
         "Free-free frequency of rotor and generator",
-        [
-            {"stiffness": name, "frequency [Hz]": frequency}
-            for name, frequency in (
-                ("published", free),
-                ("WISDEM's shafts in series", soft),
-                ("published, generator held", fixed),
-            )
-        ],
+        [*frequencies, ("published, generator held", fixed)],
+        ["stiffness", "frequency [Hz]"],
     )
     diameters = np.linspace(0.4, 1.2, 60)
-    page.chart(
-        "Stiffness of a solid main shaft by its diameter, for several lengths, beside the "
-        "published figure of the drivetrain",
-        [
-            *(
-                trace(f"{L:g} m", diameters, [G * polar_moment(d) / L for d in diameters])
-                for L in (1.0, 2.28, 4.0)
-            ),
-            trace("published", diameters[[0, -1]], [stiffness] * 2),
-            trace("finite elements", [shaft.outer], [found.stiffness], True, marker={"size": 10}),
-        ],
-        "diameter [m]",
-        STIFFNESS,
-        "y",
-    )
+    by_diameter = G * np.array([polar_moment(d) for d in diameters])
+    curves = [trace(f"{L:g} m", diameters, by_diameter / L) for L in (1.0, 2.28, 4.0)]
+    curves += [
+        trace("published", diameters[[0, -1]], [stiffness] * 2),
+        trace("finite elements", [shaft.outer], [found.stiffness], True, marker={"size": 10}),
+    ]
+    title = "Stiffness of a solid main shaft by its diameter, for several lengths, beside the "
+    title += "published figure of the drivetrain"
+    page.chart(title, curves, "diameter [m]", STIFFNESS, "y")
     page.text(
         "A shaft can only be softer than all of itself: compliances add. With the published "
         "figure and a shaft that takes half of the compliance, it would be "
         f"{solid_diameter(2 * stiffness * length / G):.2f} m thick over {length:.2f} m. Gearbox "
         "and generator have the other half then; no published split is known."
     )
-    page.assume(
-        "bore of the low-speed shaft",
-        "none",
-        "",
-        "a wall of 0.288 m leaves 1 mm of 0.577 m: 1e-11 of J",
-    )
+    solid = "a wall of 0.288 m leaves 1 mm of 0.577 m: 1e-11 of J"
+    page.assume("bore of the low-speed shaft", "none", "", solid)

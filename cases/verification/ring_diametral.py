@@ -5,13 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
 from fe_drivetrain.report import Measure, trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.validation.plane_rings import plane_strain
-from fe_drivetrain.validation.ring_solids import plane_strain_hold, ring_sector, sector_symmetry
 from fe_drivetrain.validation.squeezed_rings import (
     ACROSS,
     ALONG,
@@ -26,7 +23,6 @@ RADIUS = 0.33  # m, of the wall's middle
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=0.0)
 PLANE = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)
 FORCE = 1e6  # N/m of width
-QUARTER = 0.5 * np.pi
 
 #: Mean radius over wall thickness, from a thick ring to a thin one.
 RATIOS = (2.0, 5.0, 10.0, 20.0)
@@ -58,30 +54,8 @@ def shown(found: dict[str, float]) -> Record:
 
 def solve(ratio: float, level: int) -> Record:
     """A quarter of solids."""
-    squeezed = ring(ratio)
-    a, b = squeezed.inner, squeezed.outer
-    # a thick ring is loaded over more than its radius allows to call smooth: finer
-    through = (3 if ratio < 4.0 else 2) * level
-    width = (b - a) / through
-    around = squeezed.boundaries(level) / QUARTER
-    divisions = (through, len(around) - 1, 1)
-    block = ring_sector(a, b, width, QUARTER, divisions, edges=(None, around, None))
-
-    def traction(x: Floats, normal: Floats) -> Floats:
-        return np.asarray(-squeezed.pressure(np.arctan2(x[:, 2], x[:, 1]))[:, None] * normal)
-
-    held = [*sector_symmetry(block, QUARTER), plane_strain_hold(block)]
-    found = solve_block(block, STEEL, face_loads(block, x1=traction), *held)
-    loaded = found.node(0.0, a, 0.0)
-    across, outside = (found.node(0.0, r * np.cos(QUARTER), r) for r in (a, b))
-    values = {
-        ALONG: 2.0 * float(found.u[loaded, 1]),
-        ACROSS: 2.0 * float(found.u[across, 2]),
-        UNDER: float(found.polar.hoop[loaded]),
-        OUTSIDE: float(found.polar.hoop[outside]),
-        STIFFNESS: 0.5 * FORCE**2 / (4.0 * found.energy / width),
-    }
-    return {THROUGH: through, **shown(values)}
+    through, found = ring(ratio).solid(level, STEEL)
+    return {THROUGH: through, **shown(found)}
 
 
 def target(title: str, value: float, name: str, quick: bool) -> Target:
@@ -105,6 +79,7 @@ def target(title: str, value: float, name: str, quick: bool) -> Target:
 def run(run: Run, page: Page) -> None:
     """Squeeze rings of several thicknesses, by finite elements and by four formulas."""
     ratios = QUICK_RATIOS if run.quick else RATIOS
+    page.section("Closing along the load")
     found: dict[float, MeshSeries] = {}
     exact: dict[float, Record] = {}
     for ratio in ratios:
@@ -112,8 +87,9 @@ def run(run: Run, page: Page) -> None:
         with run.step(f"elements, R/h = {ratio:g}"):
             rows = [solve(ratio, level) for level in ((1, 2, 3) if run.quick else (1, 2, 4))]
         found[ratio] = MeshSeries(rows, THROUGH)
-        for title, value in exact[ratio].items():
-            page.finest(found[ratio], target(title, value, f"R/h = {ratio:g}", run.quick))
+        name = f"R/h = {ratio:g}"
+        targets = [target(*of, name, run.quick) for of in exact[ratio].items()]
+        page.targets(f"By mesh against the series, {name}", found[ratio], targets, "series")
     thinnest = ratios[-1]
     closing = f"R/h = {thinnest:g}: change of the bore's diameter along the load"
     beam = "a beam leaves out radial stress and the spread of the load over half a wall, both of "
@@ -133,7 +109,6 @@ def run(run: Run, page: Page) -> None:
         f"(exact series {of_series[-1]:.5f}, thin ring 0.14878); one with R/h = {ratios[0]:g} by "
         f"{points[0]:.4f} (exact {of_series[0]:.4f}): there the thin ring is of no use."
     )
-    page.section("Closing along the load")
     many = [ring(float(ratio)) for ratio in np.geomspace(1.5, 30.0, 25)]
     theories: dict[str, Callable[[SqueezedRing], float]] = {
         "exact series": lambda of: of.series()[ALONG],
@@ -145,15 +120,10 @@ def run(run: Run, page: Page) -> None:
             trace(name, [of.ratio for of in many], [of.share(change(of)) for of in many])
             for name, change in theories.items()
         ]
-    page.chart(
-        "Change of the bore's diameter along the load over W R^3 / (E' I)",
-        [*lines, trace("finite elements", ratios, points, points=True)],
-        "mean radius over wall thickness",
-        "diameter change E' I / (W R^3)",
-        "x",
-    )
-    for ratio, of in found.items():
-        page.meshes(f"By mesh against the series, R/h = {ratio:g}", of, exact[ratio], "series")
+    title = "Change of the bore's diameter along the load over W R^3 / (E' I)"
+    curves = [*lines, trace("finite elements", ratios, points, points=True)]
+    x, y = "mean radius over wall thickness", "diameter change E' I / (W R^3)"
+    page.chart(title, curves, x, y, "x")
     page.text(
         "Plane strain, E' = E / (1 - nu^2). Each load is a smooth bump of pressure over one wall "
         f"thickness of arc, the same for elements and series ({ORDERS} even harmonics). A quarter "

@@ -1,5 +1,7 @@
 """Shaft on two simple supports: closed forms, frame and solid."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from fe_drivetrain.beam import Beam, BeamSection, BeamSolution, Support, solve
@@ -22,70 +24,84 @@ STEEL = MATERIALS["steel"]
 OUTER, LENGTH = 0.4, 2.4
 TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
 FORCE, MOMENT, GRAVITY = 1e6, 1e6, -9.80665  # N, N m, m/s^2
-WEIGHT = STEEL.density * TUBE.area * GRAVITY  # N/m
+WEIGHT = STEEL.density * TUBE.area * GRAVITY * LENGTH  # N
 STATIONS = [0.0, LENGTH / 4, LENGTH / 2, 3 * LENGTH / 4, LENGTH]
-MIDDLE = 2
+MIDDLE, END = 2, 4
+RIGID = np.inf
+BEAM = Beam(
+    [BeamSection(LENGTH, OUTER)],
+    [
+        Support("upwind", 0.0, (RIGID, RIGID, RIGID, RIGID, 0, 0)),
+        Support("downwind", LENGTH, (0, RIGID, RIGID, 0, 0, 0)),
+    ],
+    material=STEEL,
+)
+FRAME, EVEN, SOLID = "frame", "beam, evenly loaded", "solid"
+BRACKETS = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, as "
+BRACKETS += "quoted by Stephen 2001; derived again)"
 
-AT_MIDDLE, AT_END, OWN = "force at mid span", "moment at the end", "own weight"
-#: For `macaulay`: station, force and moment of the load, and load per length.
-LOADS: dict[str, tuple[list[tuple[float, float, float]], float]] = {
-    AT_MIDDLE: ([(LENGTH / 2, FORCE, 0.0)], 0.0),
-    AT_END: ([(LENGTH, 0.0, -MOMENT)], 0.0),
-    OWN: ([], WEIGHT),
+
+class Load(NamedTuple):
+    """A load.
+
+    Attributes
+    ----------
+    station : int
+        Where force and moment act.
+    force, moment : float
+        Along z [N] and about y [N m].
+    gravity : float
+        Along z [m/s^2].
+    closed : float
+        Deflection at mid span in closed form, with shear [m].
+    local : float
+        The force of load and supports that enters evenly, and moves mid span [N].
+    """
+
+    station: int
+    force: float
+    moment: float
+    gravity: float
+    closed: float
+    local: float
+
+    def macaulay(self, kGA: float, at: float | Floats) -> Floats:
+        """Deflection [m] of the beam by Macaulay's brackets."""
+        ends = [Spring(0.0, RIGID), Spring(LENGTH, RIGID)]
+        load = [(STATIONS[self.station], self.force, -self.moment)]
+        weight = STEEL.density * TUBE.area * self.gravity
+        return macaulay(LENGTH, TUBE.EI, kGA, ends, load, at, weight).deflection
+
+    def frame(self) -> BeamSolution:
+        """The library's frame."""
+        load = np.array([0.0, 0.0, self.force, 0.0, self.moment, 0.0])
+        return solve(BEAM, STATIONS[self.station], load, STATIONS, (0.0, 0.0, self.gravity))
+
+    def solid(self, C: solid_shafts.Compliance) -> solid_shafts.Supported:
+        """A solid of that compliance."""
+        stiffness, at = np.zeros((2, len(STATIONS), 2))
+        stiffness[[0, -1], 0] = RIGID
+        at[self.station] = self.force, self.moment
+        return solid_shafts.on_springs(C, stiffness, at, self.gravity)
+
+
+BENT, SHEARED = LENGTH**3 / TUBE.EI, LENGTH / TUBE.kGA  # m/N
+#: A moment's reactions move both ends by the same amount, and the weight's are half of it each.
+LOADS = {
+    "force at mid span": Load(
+        MIDDLE, FORCE, 0.0, 0.0, FORCE * (BENT / 48 + SHEARED / 4), 1.5 * FORCE
+    ),
+    "moment at the end": Load(END, 0.0, MOMENT, 0.0, MOMENT / LENGTH * BENT / 16, MOMENT / LENGTH),
+    "own weight": Load(
+        MIDDLE, 0.0, 0.0, GRAVITY, WEIGHT * (5 * BENT / 384 + SHEARED / 8), abs(WEIGHT) / 2
+    ),
 }
 
-FRAME, EVEN, SOLID = "frame", "beam, evenly loaded", "solid"
 
-
-def closed_forms() -> dict[str, float]:
-    """Deflection at mid span, with shear [m]."""
-    L, EI, kGA = LENGTH, TUBE.EI, TUBE.kGA
-    return {
-        AT_MIDDLE: FORCE * (L**3 / (48 * EI) + L / (4 * kGA)),
-        AT_END: MOMENT * L**2 / (16 * EI),
-        OWN: WEIGHT * (5 * L**4 / (384 * EI) + L**2 / (8 * kGA)),
-    }
-
-
-def macaulay_deflection(name: str, kGA: float, at: float | Floats) -> Floats:
-    """Deflection [m] of the beam by Macaulay's brackets."""
-    loads, per_length = LOADS[name]
-    ends = [Spring(0.0, np.inf), Spring(LENGTH, np.inf)]
-    return macaulay(LENGTH, TUBE.EI, kGA, ends, loads, at, per_length).deflection
-
-
-def by_frame() -> dict[str, BeamSolution]:
-    """The library's frame under each load."""
-    rigid, at = np.inf, [LENGTH / 2, LENGTH]
-    beam = Beam(
-        [BeamSection(LENGTH, OUTER)],
-        [
-            Support("upwind", 0.0, (rigid, rigid, rigid, rigid, 0, 0)),
-            Support("downwind", LENGTH, (0, rigid, rigid, 0, 0, 0)),
-        ],
-        material=STEEL,
-    )
-    force, moment, none = np.zeros((3, 2, 6))
-    force[0, 2], moment[1, 4] = FORCE, MOMENT
-    return {
-        AT_MIDDLE: solve(beam, at, force, STATIONS),
-        AT_END: solve(beam, at, moment, STATIONS),
-        OWN: solve(beam, at, none, STATIONS, (0.0, 0.0, GRAVITY)),
-    }
-
-
-def by_solid(refinement: int) -> tuple[int, dict[str, solid_shafts.Supported]]:
-    """Elements round a turn of a mesh, and the solid under each load."""
+def meshed(refinement: int) -> tuple[int, solid_shafts.Compliance]:
+    """Elements round a turn of a mesh, and how its sections move."""
     mesh = solid_shafts.solid(solid_shafts.straight(STATIONS, OUTER), refinement)
-    C = solid_shafts.sectional_compliance(mesh, STEEL, STATIONS)
-    stiffness, force, moment, none = np.zeros((4, len(STATIONS), 2))
-    stiffness[[0, -1], 0] = np.inf
-    force[MIDDLE, 0], moment[-1, 1] = FORCE, MOMENT
-    return mesh.per_turn, {
-        AT_MIDDLE: solid_shafts.on_springs(C, stiffness, force),
-        AT_END: solid_shafts.on_springs(C, stiffness, moment),
-        OWN: solid_shafts.on_springs(C, stiffness, none, GRAVITY),
-    }
+    return mesh.per_turn, solid_shafts.sectional_compliance(mesh, STEEL, STATIONS)
 
 
 @case(
@@ -95,15 +111,13 @@ def by_solid(refinement: int) -> tuple[int, dict[str, solid_shafts.Supported]]:
 )
 def run(run: Run, page: Page) -> None:
     """A force at mid span, a moment at an end, and the shaft's weight."""
-    frames = run.timed("frame", by_frame)
     refinements = (1, 2) if run.quick else (1, 2, 3)
-    with run.step("mesh and solve"):
-        meshes = [by_solid(refinement) for refinement in refinements]
-    turn = meshes[-1][0]
+    meshes = [run.timed("mesh and solve", meshed, refinement) for refinement in refinements]
+    turn, finest = meshes[-1]
     rows = []
-    for name, closed in closed_forms().items():
-        series = [solids[name] for _, solids in meshes]
-        rows.append(check(page, name, closed, frames[name], series, refinements, turn))
+    for name, load in LOADS.items():
+        solids = [load.solid(C) for _, C in meshes]
+        rows.append(check(page, name, load, solids, refinements, turn))
     differences = {row["load"]: row[SOLID] / row[FRAME] - 1 for row in rows}
     page.answer(
         "The frame meets the closed forms with shear to round-off. The solid, held and loaded "
@@ -124,21 +138,13 @@ def run(run: Run, page: Page) -> None:
     )
     fine = np.linspace(0.0, LENGTH, 81)
     traces = []
-    for name in LOADS:
-        curve = macaulay_deflection(name, TUBE.kGA, fine)
+    for name, load in LOADS.items():
+        curve, found = load.macaulay(TUBE.kGA, fine), load.solid(finest).motions[:, 0]
         size = np.abs(curve).max()
-        found = meshes[-1][1][name].motions[:, 0]
-        traces += [
-            trace(f"{name}, beam", fine, curve / size),
-            trace(f"{name}, solid", STATIONS, found / size, True),
-        ]
-    page.chart(
-        "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
-        "sections",
-        traces,
-        "x [m]",
-        "deflection over the largest",
-    )
+        traces.append(trace(f"{name}, beam", fine, curve / size))
+        traces.append(trace(f"{name}, solid", STATIONS, found / size, True))
+    title = "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
+    page.chart(f"{title}sections", traces, "x [m]", "deflection over the largest")
     page.table("Deflection at mid span [m]", rows)
     page.text(
         "The solid's sections keep their freedom to warp: supports and loads act on their mean "
@@ -154,53 +160,37 @@ def run(run: Run, page: Page) -> None:
 def check(
     page: Page,
     name: str,
-    closed: float,
-    frame: BeamSolution,
+    load: Load,
     solids: list[solid_shafts.Supported],
     refinements: tuple[int, ...],
     turn: int,
 ) -> Record:
     """Deflection of frame and solid, and the reaction, under one load."""
-    section = 2 * 4 * parabola_shortfall(turn)
-    local = solid_shafts.local_compliance(TUBE)
-    # of the force and of its two reactions; a moment's reactions move both ends by the same
-    # amount, and the weight's are half of it each
-    slack = {
-        AT_MIDDLE: FORCE * local * 1.5,
-        AT_END: MOMENT / LENGTH * local,
-        OWN: abs(WEIGHT) * LENGTH / 2 * local,
-    }[name]
+    section, frame = 2 * 4 * parabola_shortfall(turn), load.frame()
+    slack = load.local * solid_shafts.local_compliance(TUBE)
     of_frame = float(frame.displacements[MIDDLE, 2])
-    even = float(macaulay_deflection(name, evenly_loaded_shear(TUBE), LENGTH / 2)[0])
+    even = float(load.macaulay(evenly_loaded_shear(TUBE), LENGTH / 2)[0])
     by_mesh = [float(s.motions[MIDDLE, 0]) for s in solids]
+    reactions = [float(s.reactions[-1, 0]) for s in solids]
     band = solid_shafts.mesh_band(refinements, by_mesh)
-    title, within = f"{name}: deflection at mid span", section + slack / abs(closed)
-    exact = "the frame's sections are exact: round-off"
+    title, within = f"{name}: deflection at mid span", section + slack / abs(load.closed)
+    exact, sheared = "the frame's sections are exact: round-off", "closed form with shear"
     evenly = f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
     evenly += f"{solid_shafts.LOCAL:.0%} of what one diameter shears"
-    brackets = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, as "
-    brackets += "quoted by Stephen 2001; derived again)"
-    sheared = "closed form with shear"
-    page.meets(of_frame, Target(f"{title}, frame [m]", closed, 1e-10, exact, sheared))
-    page.meets(by_mesh[-1], Target(f"{title}, solid [m]", even, within, evenly, brackets), band)
-    reactions = [float(s.reactions[-1, 0]) for s in solids]
-    of_mesh = name == OWN
-    page.equals(
-        f"{name}: reaction of the downwind support, solid",
-        reactions[-1],
-        -float(frame.reaction("downwind")[2]),
-        within=section if of_mesh else 1e-7,
-        why="statically determinate: "
-        + ("the meshed section's weight" if of_mesh else "round-off of the solver"),
-        source="Timoshenko frame of the library",
-        unit="N",
-        measure="reaction",
-        # the mesh enters the reaction by its weight only
-        band=solid_shafts.mesh_band(refinements, reactions) if of_mesh else None,
-    )
+    page.meets(of_frame, Target(f"{title}, frame [m]", load.closed, 1e-10, exact, sheared))
+    page.meets(by_mesh[-1], Target(f"{title}, solid [m]", even, within, evenly, BRACKETS), band)
+    title, why = f"{name}: reaction of the downwind support, solid [N]", "statically determinate: "
+    by_frame, timoshenko = -float(frame.reaction("downwind")[2]), "Timoshenko frame of the library"
+    if load.gravity:  # the mesh enters the reaction by its weight only
+        why += "the meshed section's weight"
+        weight = Target(title, by_frame, section, why, timoshenko)
+        page.meets(reactions[-1], weight, solid_shafts.mesh_band(refinements, reactions))
+    else:
+        why += "round-off of the solver"
+        page.meets(reactions[-1], Target(title, by_frame, 1e-7, why, timoshenko))
     return {
         "load": name,
-        "closed form": closed,
+        "closed form": load.closed,
         FRAME: of_frame,
         EVEN: even,
         SOLID: by_mesh[-1],

@@ -28,6 +28,18 @@ HUB = [LOADS.index(load) for load in LOADS if load.startswith("hub")]
 #: Gravity along x is no load of a drivetrain, and its lever arm is the mesh's asymmetry.
 JUDGED = [k for k, load in enumerate(LOADS) if load != "gravity.x"]
 
+#: Why a check allows only round-off, and its source.
+SPHERE = (
+    "each form passes its forces on through the centre exactly: round-off of a direct solver, of "
+    "nodal forces of some 1 N",
+    "a sphere without friction carries no moment",
+)
+DETERMINATE = (
+    "the shaft is determinate: round-off of a direct solver, relative to the largest reaction to "
+    "each load",
+    "Stirling 2023, Eq 3.1, for hub loads and gearbox weight; moment balance about the gearbox for "
+    "self-weight",
+)
 MOMENT, DISTANCE = "largest moment [N m]", "largest distance [m]"
 #: Axis of the force through the joint, and load, of the table.
 SHARES = {
@@ -101,22 +113,15 @@ def run(run: Run, page: Page) -> None:
         "Reactions are those of statics (Eq 3.1) to round-off, and say nothing about the mesh.",
     )
     page.section("What the joint carries")
-    page.chart(
-        "Moment that the interface carries about the joint's centre",
-        [
-            trace(form, [], np.maximum(of, 1e-18), True, marker={"color": COLOURS[form], "size": 9})
-            | {"x": list(LOADS)}
-            for form, of in moments.items()
-        ],
-        "unit load",
-        "moment [N m]",
-        "y",
-    )
-    page.table(
-        "Force through the joint for unit hub loads, its moment, and the distance of its line from "
-        "the centre",
-        rows,
-    )
+    points = [
+        trace(form, [], np.maximum(of, 1e-18), True, marker={"color": COLOURS[form], "size": 9})
+        | {"x": list(LOADS)}
+        for form, of in moments.items()
+    ]
+    title = "Moment that the interface carries about the joint's centre"
+    page.chart(title, points, "unit load", "moment [N m]", "y")
+    title = "Force through the joint for unit hub loads, its moment, and the distance of its line "
+    page.table(f"{title}from the centre", rows)
     page.text(
         "Sliding: each pair of nodes passes a force along its normal, and all normals meet in the "
         "centre. Averaged: one force, spread over each face with weights whose centroid is the "
@@ -140,43 +145,27 @@ def check(page: Page, form: str, model: Model, response: Response) -> Record:
     worst = float(moment[HUB].max())
     loaded = size > 1e-6
     distance = float((moment[loaded] / size[loaded]).max())
-    page.vanishes(
-        f"{form}: moment about the joint's centre, largest of six unit hub loads",
-        worst,
-        within=1e-9,
-        why="each form passes its forces on through the centre exactly: round-off of a direct "
-        "solver, of nodal forces of some 1 N",
-        source="a sphere without friction carries no moment",
-        unit="N m",
-        band=0.0,
-    )
-    page.vanishes(
-        f"{form}: distance of the line of the force from the joint's centre, over the joint's "
-        "radius",
-        distance / (0.5 * bearing.raceway_diameter),
-        within=1e-9,
-        why="as for the moment",
-        source="a force that carries no moment about a point passes through it",
-        band=0.0,
-    )
-    page.vanishes(
-        f"{form}: radial reactions of unit hub loads, self-weight and gearbox weight against "
-        "statics",
-        difference(base, statics(model)),
-        within=1e-9,
-        why="the shaft is determinate: round-off of a direct solver, relative to the largest "
-        "reaction to each load",
-        source="Stirling 2023, Eq 3.1, for hub loads and gearbox weight; moment balance about the "
-        "gearbox for self-weight",
-        band=0.0,
-    )
-    page.vanishes(
-        f"{form}: joint and base of the housing carry the same force and moment, hub loads",
-        float(np.abs((base - joint)[:, HUB]).max() / np.abs(joint[:, HUB]).max()),
-        within=1e-9,
-        why="round-off of a direct solver",
-        source="equilibrium of the housing, on which no load acts in between",
-        band=0.0,
-    )
+    apart = np.abs((base - joint)[:, HUB]).max() / np.abs(joint[:, HUB]).max()
+    for what, computed, why, source in (
+        ("moment about the joint's centre, largest of six unit hub loads [N m]", worst, *SPHERE),
+        (
+            "distance of the line of the force from the joint's centre, over the joint's radius",
+            distance / (0.5 * bearing.raceway_diameter),
+            "as for the moment",
+            "a force that carries no moment about a point passes through it",
+        ),
+        (
+            "radial reactions of unit hub loads, self-weight and gearbox weight against statics",
+            difference(base, statics(model)),
+            *DETERMINATE,
+        ),
+        (
+            "joint and base of the housing carry the same force and moment, hub loads",
+            float(apart),
+            "round-off of a direct solver",
+            "equilibrium of the housing, on which no load acts in between",
+        ),
+    ):
+        page.vanishes(f"{form}: {what}", computed, within=1e-9, why=why, source=source)
     shares = {name: float(joint[c, LOADS.index(load)]) for name, (c, load) in SHARES.items()}
     return {"form": form, **shares, MOMENT: worst, DISTANCE: distance}

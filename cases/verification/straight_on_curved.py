@@ -78,13 +78,12 @@ def run(run: Run, page: Page) -> None:
     )
     change = abs(curved - error["curved"][-2])
     page.equals(
-        f"shaft, curved P2, {sides} elements round: torsional rigidity",
+        f"shaft, curved P2, {sides} elements round: torsional rigidity [N m²]",
         torsion.rigidity * (1.0 + curved),
         torsion.rigidity,
         within=1e-3,
         why="a tenth of a percent is what a stiffness of the suite should be good for",
         source="exact: GJ, Saint-Venant",
-        unit="N m²",
         measure="stiffness",
         band=torsion.rigidity * change * ratio**4 / (1.0 - ratio**4),
     )

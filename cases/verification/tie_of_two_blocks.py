@@ -162,15 +162,13 @@ def check_twist(page: Page, found: Found, kind: TieKind) -> None:
     where, stiffness = worst(found, kind, "twist")
     exact, coarse = found.exact["twist"], found.coarse["twist"]
     page.equals(
-        f"{TITLES['twist']}: stiffness, {kind} multipliers, {where}",
+        f"{TITLES['twist']}: stiffness, {kind} multipliers, {where} [N m/rad]",
         stiffness,
         exact,
         within=2.0 * coarse,
         why="twice the error of the whole bar of the coarser mesh: a tie of optimal order adds no "
         "more than the elements' own error",
         source="St Venant's series for the square bar (Timoshenko and Goodier art 109)",
-        unit="N m/rad",
-        measure="stiffness",
         band=coarse * exact,
     )
 
@@ -180,14 +178,12 @@ def check_across(page: Page, found: Found, kind: TieKind) -> None:
     where, stiffness = worst(found, kind, "across")
     exact, coarse = found.exact["across"], found.coarse["across"]
     page.equals(
-        f"{TITLES['across']}: stiffness, {kind} multipliers, {where}",
+        f"{TITLES['across']}: stiffness, {kind} multipliers, {where} [N/m]",
         stiffness,
         exact,
         within=2.0 * coarse + found.across.extrapolated_uncertainty / exact,
         why="twice the error of the whole bar of the coarser mesh, and the band of the reference",
         source=f"whole bar, {found.across.sentence('N/m')}",
-        unit="N/m",
-        measure="stiffness",
         band=coarse * exact,
     )
 
@@ -202,15 +198,13 @@ def check_bending(page: Page, found: Found) -> None:
         source="E I / L; displacements are quadratic, tractions linear",
     )
     page.equals(
-        f"pure bending: stiffness, dual multipliers, {WORST}",
+        f"pure bending: stiffness, dual multipliers, {WORST} [N m/rad]",
         worst(found, "dual", "bend")[1],
         found.exact["bend"],
         within=2.0 * found.coarse["twist"],
         why="twice the error of torsion of the coarser mesh: dual multipliers hold only constant "
         "tractions; their error with linear ones is to stay below the elements'",
         source="E I / L",
-        unit="N m/rad",
-        measure="stiffness",
     )
 
 

@@ -5,9 +5,8 @@ from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_row
 from fe_drivetrain.cases.verification.torsion_bound import BOUNDS, check_plane_sections
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.mesh import Grading
-from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import parabola_shortfall, polar_moment
 from fe_drivetrain.validation.torsion_meridian import torsion_bounds
@@ -66,20 +65,13 @@ def bored_or_solid(run: Run, page: Page, bore: float) -> Record:
     summed = series(SMALL, bore)
     size = LARGE / 2 / 2 / refinements[-1] * 0.3
     corner = 0.1 * (2 * size / SMALL) ** (4 / 3)
-    page.equals(
-        f"{name}: torsional stiffness in three dimensions",
-        found[-1],
-        bounds.middle,
-        within=shortfall + corner + bounds.half_width / bounds.middle,
-        why=f"{mesh.per_turn} parabolic arcs fall short of the circle; the re-entrant corner is "
-        f"met by elements of {size * 1e3:.2g} mm, and the energy lost there goes as their size "
-        "over the radius to the power 4/3, of the tenth that the step adds at most; and the "
-        "bounds' own width",
-        source=BOUNDS,
-        unit="N m/rad",
-        measure="stiffness",
-        band=band,
-    )
+    why = f"{mesh.per_turn} parabolic arcs fall short of the circle; the re-entrant corner is met "
+    why += f"by elements of {size * 1e3:.2g} mm, and the energy lost there goes as their size over "
+    why += "the radius to the power 4/3, of the tenth that the step adds at most; and the bounds' "
+    why += "own width"
+    within = shortfall + corner + bounds.half_width / bounds.middle
+    title = f"{name}: torsional stiffness in three dimensions [N m/rad]"
+    page.meets(found[-1], Target(title, bounds.middle, within, why, BOUNDS), band)
     page.at_most(
         f"{name}: width of the bounds from the meridian, relative",
         2 * bounds.half_width / bounds.middle,
@@ -88,9 +80,8 @@ def bored_or_solid(run: Run, page: Page, bore: float) -> Record:
         source="exact stiffness lies between them",
         measure="identity",
     )
-    check_plane_sections(
-        page, f"{name}: excess of the upper bound over the series sum", bounds, summed
-    )
+    title = f"{name}: excess of the upper bound over the series sum"
+    check_plane_sections(page, title, bounds, summed)
     return {
         "shaft": name,
         SERIES: summed,
@@ -140,13 +131,10 @@ def run(run: Run, page: Page) -> None:
         ("fillet", 0.0, "m", "sharp step: the most that a step can add"),
         *steel_rows(STEEL),
     )
-    page.chart(
-        "Length of the thin part that twists as the step does beside the series sum, solid shaft, "
-        "sharp step: between the two bounds",
-        [trace(name, column(sweep, RATIO), column(sweep, name)) for name in (LEAST, MOST)],
-        RATIO,
-        ADDED,
-    )
+    title = "Length of the thin part that twists as the step does beside the series sum, solid "
+    title += "shaft, sharp step: between the two bounds"
+    curves = {LEAST: LEAST, MOST: MOST}
+    page.sweep(title, sweep, RATIO, curves, axis=ADDED, table=False)
     page.table("Torsional stiffness [N m/rad] between ends that turn as rigid planes", rows)
     page.text(
         "The bounds come from scalar problems in the meridian (Michell 1899), solved with "
@@ -155,4 +143,3 @@ def run(run: Run, page: Page) -> None:
         "but the outline."
     )
     page.data("added_length_over_small_diameter", solid[ADDED])
-    page.data("added length over small diameter, by ratio of diameters", sweep)

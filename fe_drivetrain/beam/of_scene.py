@@ -113,6 +113,8 @@ def main_bearing_beam(scene: Scene, tilt: float = 0.0, yaw: float = 0.0) -> Main
     axial, *radial = scene.gearbox.stiffness[:3]
     if len(scene.bearing_units) != 1:
         reason = f"{len(scene.bearing_units)} bearing units where the closed forms have one"
+    elif scene.load_points:
+        reason = f"loads at {', '.join(scene.bands)} where the closed forms have them at the hub"
     elif not uniform:
         reason = "a shaft of several diameters where the closed forms have one"
     elif any(k != 0 for k in scene.gearbox.stiffness[4:]):

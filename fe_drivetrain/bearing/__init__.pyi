@@ -7,6 +7,8 @@ from .answers import lamina_loads as lamina_loads
 from .answers import load_zones as load_zones
 from .answers import pressures as pressures
 from .answers import secant_stiffness as secant_stiffness
+from .answers import toroidal_clearance_loss as toroidal_clearance_loss
+from .answers import truncations as truncations
 from .arrangements import Arrangement as Arrangement
 from .arrangements import ball_row as ball_row
 from .arrangements import cylindrical as cylindrical

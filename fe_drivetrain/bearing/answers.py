@@ -11,6 +11,7 @@ from fe_drivetrain.bearing.contact import STEEL_E, PointContact, line_pressure, 
 from fe_drivetrain.bearing.contact_forces import elements, forces
 from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, angles, pitch_ratio
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
 
 _GAUSS_POINTS = 32
 
@@ -227,6 +228,98 @@ def pressures(
                 )
             )
     return found
+
+
+def truncations(
+    row: BallRow,
+    displacements: ArrayLike,
+    shoulders: tuple[float, float] = (0.2, 0.2),
+    youngs_modulus: float = STEEL_E,
+) -> tuple[Floats, Floats]:
+    """How far the contact ellipse of each ball runs over the shoulder of its groove.
+
+    Parameters
+    ----------
+    row : BallRow
+        The row, as of a bearing of its own.
+    displacements : array_like
+        (n, 5) or (5,) [m, rad].
+    shoulders : tuple of float
+        Height of the inner and of the outer ring's shoulder above the bottom of the groove, over
+        the ball's diameter; catalogues do not give it, a fifth is assumed.
+    youngs_modulus : float
+        Of balls and rings [Pa].
+
+    Returns
+    -------
+    inner, outer : Floats
+        (n, balls) share of the ellipse's long axis beyond the shoulder: 0 where it ends in the
+        groove. Contact is that of whole ellipses all the same: a share that is not zero says that
+        pressure and deflection are too low, and that the edge is loaded.
+
+    Raises
+    ------
+    InputError
+        A shoulder is not between 0 and half of the ball.
+
+    Notes
+    -----
+    The ellipse lies on a surface whose radius is the mean of ball and groove in curvature (Harris
+    and Kotzalas 2007, Rolling bearing analysis, section 6.3, as quoted); the shoulder begins where
+    the groove has risen to its height.
+    """
+    loads, _, contact_angles = elements(Bearing("balls", (row,)), displacements)
+    found = []
+    for contact, groove, height, name in zip(
+        ball_contacts(row, youngs_modulus),
+        (row.inner_groove, row.outer_groove),
+        shoulders,
+        ("inner", "outer"),
+        strict=True,
+    ):
+        if not 0.0 < height < 0.5:
+            raise InputError(
+                f"{name} shoulder is {height:g} of the ball's diameter: give more than 0 and less "
+                "than 0.5"
+            )
+        surface = 2.0 * groove * row.diameter / (2.0 * groove + row.diameter)
+        half = np.arcsin(np.minimum(contact.half_axes[0] * np.cbrt(loads) / surface, 1.0))
+        edge = np.arccos(1.0 - height * row.diameter / groove)
+        over = np.abs(contact_angles) + half - edge
+        share = np.divide(over, 2.0 * half, out=np.zeros_like(over), where=half > 0.0)
+        found.append(np.clip(share, 0.0, 1.0))
+    return found[0], found[1]
+
+
+def toroidal_clearance_loss(width: float, axial: ArrayLike, factor: float = 0.1) -> Floats:
+    """Radial internal clearance that a toroidal bearing (CARB) loses as it floats.
+
+    Parameters
+    ----------
+    width : float
+        B [m].
+    axial : array_like
+        Displacement of one ring from the middle of the other [m].
+    factor : float
+        k_2 of the catalogue, some 0.1.
+
+    Returns
+    -------
+    lost : Floats
+        k_2 s^2 / B [m], of the diametral clearance: what two circular profiles with centres B / k_2
+        apart lose. SKF's catalogue has B, k_2 and the loss (C 3052: 104 mm, 0.096); the formula is
+        recalled from it, not read again. Along the contact normal it is half of that, to be taken
+        from `RollerRow.clearance`; as long as some is left, floating needs no axial force.
+
+    Raises
+    ------
+    InputError
+        Width or factor is not positive.
+    """
+    for name, value in (("width", width), ("factor", factor)):
+        if not value > 0.0:
+            raise InputError(f"{name} of a toroidal bearing is {value:g}: it must be positive")
+    return np.asarray(factor * np.asarray(axial, dtype=float) ** 2 / width)
 
 
 def secant_stiffness(bearing: Bearing, displacements: ArrayLike) -> Floats:

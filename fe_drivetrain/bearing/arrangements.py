@@ -256,7 +256,8 @@ def toroidal(
     Returns
     -------
     bearing : Bearing
-        Carries radial force alone. That axial motion and tilt change its clearance is neglected.
+        Carries radial force alone. What floating takes from its clearance is not in it: see
+        `toroidal_clearance_loss`.
     """
     row = RollerRow(
         rollers,

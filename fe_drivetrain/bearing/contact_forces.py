@@ -136,8 +136,9 @@ def packed(bearing: Bearing) -> kernels.Packed:
         For the compiled loops; not to be written to.
     """
     data = np.zeros((len(bearing.rows), kernels.N_DATA))
+    nodes, node_shares = np.zeros((2, len(bearing.rows), kernels.NODES))
     xi, free, psi = [], [], []
-    for d, row in zip(data, bearing.rows, strict=True):
+    for r, (d, row) in enumerate(zip(data, bearing.rows, strict=True)):
         psi.append(angles(row))
         d[kernels.SIN], d[kernels.COS] = np.sin(row.angle), np.cos(row.angle)
         d[kernels.STIFF], d[kernels.EXPONENT] = row.law.stiffness, row.law.exponent
@@ -156,6 +157,10 @@ def packed(bearing: Bearing) -> kernels.Packed:
             d[kernels.LENGTH], d[kernels.GAP] = row.length, row.clearance
             xi.append(row.places)
             free.append(row.free)
+            few = 0 < row.laminae <= kernels.NODES
+            d[kernels.EVEN] = 0.0 if few or row.free.any() else 1.0
+            nodes[r], node_shares[r] = kernels.gauss_of_laminae(row.laminae)
+            nodes[r] *= row.length
     every = np.concatenate(psi)
     return kernels.Packed(
         data,
@@ -165,6 +170,9 @@ def packed(bearing: Bearing) -> kernels.Packed:
         np.cumsum([0, *(len(x) for x in xi)]),
         np.concatenate(xi),
         np.concatenate(free),
+        np.concatenate([np.full(len(x), 1.0 / max(len(x), 1)) for x in xi]),
+        nodes,
+        node_shares,
         np.stack([kernels.power_table(row.law.exponent - 1.0) for row in bearing.rows]),
     )
 

@@ -10,17 +10,20 @@ K delta_+^(n+1) / (n+1) over all laminae is convex in the motion, and its gradie
 forces and tangent stiffness.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, types
+from numba.extending import intrinsic
 
 from fe_drivetrain.common.arrays import Floats, Ints
 
 #: Kinds of rows, and where in a row of ``data`` its numbers are.
 LAMINAE, CLOSED, BALLS = 0, 1, 2
 KIND, SIN, COS, ARM, LEAN, STIFF, EXPONENT, LENGTH, GAP, AXIAL, RADIAL, DISTANCE, GROOVE = range(13)
-N_DATA = 13
+EVEN = 13  # 1 where the nodes of a row may stand for its laminae
+N_DATA = 14
 
 #: Load cases that are taken in turn, each starting from the one before it. A fixed number, so that
 #: results do not depend on how many threads share the chunks.
@@ -40,8 +43,12 @@ class Packed(NamedTuple):
         (total,) of the places of all rolling elements.
     lam : Ints
         (rows + 1,) where the laminae of each row begin.
-    xi, free : Floats
-        (laminae,) their places along the roller, and what each has to approach first [m].
+    xi, free, shares : Floats
+        (laminae,) their places along the roller, what each has to approach first [m], and its share
+        of the roller's stiffness.
+    nodes, node_shares : Floats
+        (rows, NODES) places and shares that stand for all laminae of a straight roller which is
+        loaded along all of its length: `gauss_of_laminae`.
     tables : Floats
         (rows, POWERS) of `power_table`.
     """
@@ -53,10 +60,33 @@ class Packed(NamedTuple):
     lam: Ints
     xi: Floats
     free: Floats
+    shares: Floats
+    nodes: Floats
+    node_shares: Floats
     tables: Floats
 
 
-# Gauss points of [-1, 1], for straight rollers that are nearly parallel to the race.
+NODES = 10
+"""Places that stand for the laminae of a roller. Where approaches along it are within half of their
+mean, sums of their powers are those over the laminae to 1e-13."""
+
+
+def gauss_of_laminae(count: int) -> tuple[Floats, Floats]:
+    """Gauss's rule of a sum over equal laminae: places over the length, -1/2 to 1/2, and weights.
+
+    Sums of polynomials up to degree 2 NODES - 1 are exact. The orthogonal polynomials are Gram's
+    (discrete Chebyshev), whose recurrence is that of Legendre as ``count`` grows; 0 laminae is
+    their integral.
+    """
+    k = np.arange(1.0, NODES)
+    beta = k**2 / (4.0 * (4.0 * k**2 - 1.0))
+    if count:
+        beta *= np.maximum(1.0 - (k / count) ** 2, 0.0)
+    x, vectors = np.linalg.eigh(np.diag(np.sqrt(beta), 1) + np.diag(np.sqrt(beta), -1))
+    return np.asarray(x), np.asarray(vectors[0] ** 2)
+
+
+# Gauss points of [-1, 1], for straight rollers whose load is smooth along them.
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(10)
 
 
@@ -70,7 +100,7 @@ _TO_MIDDLE, _OF_MIDDLE, _SERIES = 2048, 2048 + 2**_BITS, 2048 + 2 * 2**_BITS
 
 
 def power_table(q: float) -> Floats:
-    """What `powers` needs for the exponent q: (POWERS,)."""
+    """What `power` needs for the exponent q: (POWERS,)."""
     table = np.zeros(POWERS)
     with np.errstate(over="ignore", under="ignore"):
         table[1:_TO_MIDDLE] = 2.0 ** (q * (np.arange(1.0, 2048.0) - 1023.0))
@@ -82,18 +112,39 @@ def power_table(q: float) -> Floats:
     return table
 
 
+def _same_bits(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    return builder.bitcast(values[0], context.get_value_type(signature.return_type))
+
+
+def _float_to_bits(_context: Any, _x: Any) -> tuple[Any, Callable[..., Any]]:
+    return types.uint64(types.float64), _same_bits
+
+
+def _bits_to_float(_context: Any, _bits: Any) -> tuple[Any, Callable[..., Any]]:
+    return types.float64(types.uint64), _same_bits
+
+
+# The bits of a float as a whole number, and back.
+_bits: Any = intrinsic(_float_to_bits)
+_of_bits: Any = intrinsic(_bits_to_float)
+
+
+# Unsigned, so that an index needs no look whether it counts from the end.
+_TO_BIT, _IN_TABLE, _TO_EXPONENT = np.uint64(52 - _BITS), np.uint64(2**_BITS - 1), np.uint64(52)
+_MANTISSA, _ONE = np.uint64(2**52 - 1), np.uint64(1023 << 52)
+_FIRST, _SECOND = np.uint64(_TO_MIDDLE), np.uint64(_OF_MIDDLE)
+
+
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def powers(x: Floats, bits: Ints, n: int, table: Floats, out: Floats) -> None:
-    """out = x^q of the first n, all positive; ``bits`` is the same memory as x, and is spoilt."""
+def power(x: float, table: Floats) -> float:
+    """x^q of a positive x, and 0 of 0, from the table of q."""
     c1, c2, c3 = table[_SERIES], table[_SERIES + 1], table[_SERIES + 2]
     c4, c5, c6 = table[_SERIES + 3], table[_SERIES + 4], table[_SERIES + 5]
-    for k in range(n):
-        b = bits[k]
-        i = (b >> (52 - _BITS)) & (2**_BITS - 1)
-        out[k] = table[b >> 52] * table[_OF_MIDDLE + i]
-        bits[k] = (b & (2**52 - 1)) | (1023 << 52)
-        r = x[k] * table[_TO_MIDDLE + i] - 1.0
-        out[k] *= 1.0 + r * (c1 + r * (c2 + r * (c3 + r * (c4 + r * (c5 + r * c6)))))
+    b = _bits(x)
+    i = (b >> _TO_BIT) & _IN_TABLE
+    r = _of_bits((b & _MANTISSA) | _ONE) * table[_FIRST + i] - 1.0
+    series = 1.0 + r * (c1 + r * (c2 + r * (c3 + r * (c4 + r * (c5 + r * c6)))))
+    return float(table[b >> _TO_EXPONENT] * table[_SECOND + i] * series)
 
 
 @njit(cache=True, error_model="numpy")
@@ -138,67 +189,114 @@ def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
     s[4] = q * n * (i2 - 2.0 * b * i1 + b * b * i0) / (c * c)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def laminae(
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def lamina_sums(
     b: float,
     c: float,
     K: float,
     n: float,
     xi: Floats,
     free: Floats,
+    shares: Floats,
     table: Floats,
-    work: Floats,
     s: Floats,
 ) -> None:
-    """The same sums over laminae, `free` being what each has to approach first.
-
-    ``work`` is (3, 2 or more times the laminae): approaches twice, and powers.
-    """
-    z, spoilt, e = work[0], work[1], work[2]
-    bits = spoilt.view(np.int64)
-    count, first = 0, 0
-    for k in range(len(xi)):
-        here = b + c * xi[k] - free[k]
-        if here > 0.0:
-            if count == 0:
-                first = k
-            z[k] = spoilt[k] = here
-            count = k + 1
-        else:
-            z[k], spoilt[k] = 0.0, 1.0
-    count -= first
-    powers(spoilt[first:], bits[first:], count, table, e)
+    """The same sums over laminae, `free` being what each has to approach first."""
     s0 = s1 = s2 = s3 = s4 = 0.0
-    for k in range(count):
-        x, here, power = xi[first + k], z[first + k], e[k]
-        if here > 0.0:
-            q = power * here
-            s0 += q
-            s1 += q * x
-            s2 += power
-            power *= x
-            s3 += power
-            s4 += power * x
-    K /= len(xi)
+    for k in range(len(xi)):
+        x = xi[k]
+        z = b + c * x - free[k]
+        z = z if z > 0.0 else 0.0
+        e = shares[k] * power(z, table)
+        q, ex = e * z, e * x
+        s0 += q
+        s1 += q * x
+        s2 += e
+        s3 += ex
+        s4 += ex * x
     s[0], s[1] = K * s0, K * s1
     K *= n
     s[2], s[3], s[4] = K * s2, K * s3, K * s4
 
 
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def even_sums(
+    b: float, c: float, K: float, n: float, x: Floats, shares: Floats, table: Floats, s: Floats
+) -> None:
+    """The same at nodes that stand for all laminae, each of which is in contact."""
+    s0 = s1 = s2 = s3 = s4 = 0.0
+    for k in range(NODES):
+        at = x[k]
+        z = b + c * at
+        e = shares[k] * power(z, table)
+        q, ex = e * z, e * at
+        s0 += q
+        s1 += q * at
+        s2 += e
+        s3 += ex
+        s4 += ex * at
+    s[0], s[1] = K * s0, K * s1
+    K *= n
+    s[2], s[3], s[4] = K * s2, K * s3, K * s4
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def roller_sums(
+    d: Floats,
+    b: float,
+    c: float,
+    xi: Floats,
+    free: Floats,
+    shares: Floats,
+    nodes: Floats,
+    node_shares: Floats,
+    table: Floats,
+    s: Floats,
+) -> None:
+    """The same along a roller, in the cheapest way that is exact."""
+    if d[EVEN] == 1.0 and abs(c) * d[LENGTH] <= b:
+        even_sums(b, c, d[STIFF], d[EXPONENT], nodes, node_shares, table, s)
+    elif d[KIND] == CLOSED:
+        closed(b, c, d[STIFF], d[EXPONENT], d[LENGTH], s)
+    else:
+        lamina_sums(b, c, d[STIFF], d[EXPONENT], xi, free, shares, table, s)
+
+
+Row = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
+
+
 @njit(cache=True, error_model="numpy")
+def row_of(bearing: Packed, r: int) -> Row:
+    """Laminae, nodes and table of a row."""
+    laminae = slice(bearing.lam[r], bearing.lam[r + 1])
+    return (
+        bearing.xi[laminae],
+        bearing.free[laminae],
+        bearing.shares[laminae],
+        bearing.nodes[r],
+        bearing.node_shares[r],
+        bearing.tables[r],
+    )
+
+
+@njit(cache=True, error_model="numpy", inline="always")
 def _element(
     d: Floats,
     xi: Floats,
     free: Floats,
+    shares: Floats,
+    nodes: Floats,
+    node_shares: Floats,
     table: Floats,
     a: float,
     w: float,
     t: float,
-    work: Floats,
     s: Floats,
     f: Floats,
 ) -> float:
     """One rolling element: f becomes its forces and tangent over (a, w, t); returns its load.
+
+    Written into its callers: handing the arrays on takes longer than the work.
 
     f holds three forces, then the tangent's aa, aw, at, ww, wt, tt; untouched where the load is
     zero.
@@ -230,10 +328,7 @@ def _element(
     c = t * lean
     if b + 0.5 * abs(c) * d[LENGTH] <= 0.0:
         return 0.0
-    if d[KIND] == CLOSED:
-        closed(b, c, d[STIFF], d[EXPONENT], d[LENGTH], s)
-    else:
-        laminae(b, c, d[STIFF], d[EXPONENT], xi, free, table, work, s)
+    roller_sums(d, b, c, xi, free, shares, nodes, node_shares, table, s)
     Q = s[0]
     if Q <= 0.0:
         return 0.0
@@ -251,52 +346,59 @@ def evaluate(
     bearing: Packed,
     F: Floats,
     K: Floats,
-    work: Floats,
     s: Floats,
     f: Floats,
 ) -> float:
     """Forces and tangent stiffness at a motion u, into F and K; the sum of all loads."""
-    F[:] = 0.0
-    K[:] = 0.0
     total = 0.0
-    lam = bearing.lam
+    F0 = F1 = F2 = F3 = F4 = 0.0
+    K00 = K01 = K02 = K03 = K04 = K11 = K12 = K22 = 0.0
+    K13 = K14 = K23 = K24 = K33 = K34 = K44 = 0.0
     a, uy, uz, ty, tz = u
+    cosines, sines = bearing.cosines, bearing.sines
     for r in range(len(bearing.data)):
-        d, table = bearing.data[r], bearing.tables[r]
-        x, g = bearing.xi[lam[r] : lam[r + 1]], bearing.free[lam[r] : lam[r + 1]]
+        d = bearing.data[r]
+        xi, free, shares, nodes, node_shares, table = row_of(bearing, r)
+        sin, cos, arm, half = d[SIN], d[COS], d[ARM], 0.5 * d[LENGTH] * d[LEAN]
+        ball = d[KIND] == BALLS
         for i in range(bearing.first[r], bearing.first[r + 1]):
-            co, si = bearing.cosines[i], bearing.sines[i]
+            co, si = cosines[i], sines[i]
             # e_r = (-cos, sin) of (y, z), and the tangent e_x x e_r = (-sin, -cos)
             w = si * uz - co * uy
             t = -(si * ty + co * tz)
-            Q = _element(d, x, g, table, a, w, t, work, s, f)
+            if not ball and a * sin + w * cos + t * arm + abs(t) * half <= d[GAP]:
+                continue
+            Q = _element(d, xi, free, shares, nodes, node_shares, table, a, w, t, s, f)
             if Q <= 0.0:
                 continue
             total += Q
-            F[0] += f[0]
-            F[1] -= co * f[1]
-            F[2] += si * f[1]
-            F[3] -= si * f[2]
-            F[4] -= co * f[2]
+            F0 += f[0]
+            F1 -= co * f[1]
+            F2 += si * f[1]
+            F3 -= si * f[2]
+            F4 -= co * f[2]
             cc, cs, ss = co * co, co * si, si * si
-            K[0, 0] += f[3]
-            K[0, 1] -= co * f[4]
-            K[0, 2] += si * f[4]
-            K[0, 3] -= si * f[5]
-            K[0, 4] -= co * f[5]
-            K[1, 1] += cc * f[6]
-            K[1, 2] -= cs * f[6]
-            K[2, 2] += ss * f[6]
-            K[1, 3] += cs * f[7]
-            K[1, 4] += cc * f[7]
-            K[2, 3] -= ss * f[7]
-            K[2, 4] -= cs * f[7]
-            K[3, 3] += ss * f[8]
-            K[3, 4] += cs * f[8]
-            K[4, 4] += cc * f[8]
-    for i in range(5):
-        for j in range(i):
-            K[i, j] = K[j, i]
+            K00 += f[3]
+            K01 -= co * f[4]
+            K02 += si * f[4]
+            K03 -= si * f[5]
+            K04 -= co * f[5]
+            K11 += cc * f[6]
+            K12 -= cs * f[6]
+            K22 += ss * f[6]
+            K13 += cs * f[7]
+            K14 += cc * f[7]
+            K24 -= cs * f[7]
+            K23 -= ss * f[7]
+            K33 += ss * f[8]
+            K34 += cs * f[8]
+            K44 += cc * f[8]
+    F[0], F[1], F[2], F[3], F[4] = F0, F1, F2, F3, F4
+    K[0, 0], K[0, 1], K[0, 2], K[0, 3], K[0, 4] = K00, K01, K02, K03, K04
+    K[1, 0], K[1, 1], K[1, 2], K[1, 3], K[1, 4] = K01, K11, K12, K13, K14
+    K[2, 0], K[2, 1], K[2, 2], K[2, 3], K[2, 4] = K02, K12, K22, K23, K24
+    K[3, 0], K[3, 1], K[3, 2], K[3, 3], K[3, 4] = K03, K13, K23, K33, K34
+    K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = K04, K14, K24, K34, K44
     return total
 
 
@@ -308,14 +410,13 @@ def forces_of(
     tangents: Floats,
 ) -> None:
     """Loads (n, 5) and tangent stiffness (n, 5, 5) at given displacements (n, 5), filled."""
-    work, s, f = np.empty((3, len(bearing.xi) + 1)), np.zeros(5), np.zeros(9)
+    s, f = np.zeros(5), np.zeros(9)
     for i in range(len(displacements)):
         evaluate(
             displacements[i],
             bearing,
             loads[i],
             tangents[i],
-            work,
             s,
             f,
         )
@@ -330,18 +431,17 @@ def elements_of(
     angles: Floats,
 ) -> None:
     """Load, moment about its middle, and contact angle of each rolling element: (n, total)."""
-    work, s, f = np.empty((3, len(bearing.xi) + 1)), np.zeros(5), np.zeros(9)
-    lam = bearing.lam
+    s, f = np.zeros(5), np.zeros(9)
     for i in range(len(displacements)):
         a, uy, uz, ty, tz = displacements[i]
         for r in range(len(bearing.data)):
-            d, table = bearing.data[r], bearing.tables[r]
-            x, g = bearing.xi[lam[r] : lam[r + 1]], bearing.free[lam[r] : lam[r + 1]]
+            d = bearing.data[r]
+            xi, free, shares, nodes, node_shares, table = row_of(bearing, r)
             for j in range(bearing.first[r], bearing.first[r + 1]):
                 co, si = bearing.cosines[j], bearing.sines[j]
                 w = si * uz - co * uy
                 t = -(si * ty + co * tz)
-                Q = _element(d, x, g, table, a, w, t, work, s, f)
+                Q = _element(d, xi, free, shares, nodes, node_shares, table, a, w, t, s, f)
                 loads[i, j] = Q
                 moments[i, j] = s[1] if Q > 0.0 and d[KIND] != BALLS else 0.0
                 angles[i, j] = np.arctan2(d[SIN], d[COS])

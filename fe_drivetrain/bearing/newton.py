@@ -78,7 +78,6 @@ def _newton(
     known: float,
     F: Floats,
     K: Floats,
-    work: Floats,
     u: Floats,
 ) -> tuple[int, int, float, float]:
     """Minimise energy minus work over u = B w, from ``start``; u becomes the minimum.
@@ -96,7 +95,7 @@ def _newton(
     evaluations, steps, total = 0, 0, known
     _expanded(B, w, u)
     if known < 0.0:
-        total = evaluate(u, bearing, F, K, work, s, f)
+        total = evaluate(u, bearing, F, K, s, f)
         evaluations += 1
     while True:
         _projected(B, F, g)
@@ -131,7 +130,7 @@ def _newton(
             for i in range(m):
                 w[i] = base[i] + step * d[i]
             _expanded(B, w, u)
-            total = evaluate(u, bearing, F, K, work, s, f)
+            total = evaluate(u, bearing, F, K, s, f)
             evaluations += 1
             _projected(B, F, g)
             here = 0.0
@@ -193,12 +192,7 @@ def solve_cases(
         (n, 5), (n,), (n,), (n,): filled.
     """
     m = bases.shape[2]
-    start, F, K, work = (
-        np.zeros(m),
-        np.empty(5),
-        np.empty((5, 5)),
-        np.empty((3, len(bearing.xi) + 1)),
-    )
+    start, F, K = np.zeros(m), np.empty(5), np.empty((5, 5))
     total = -1.0
     for i in range(len(loads)):
         B = bases[i if len(bases) > 1 else 0]
@@ -230,6 +224,5 @@ def solve_cases(
             total if near else -1.0,
             F,
             K,
-            work,
             displacements[i],
         )

@@ -10,17 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from fe_drivetrain.bearing.kernels import (
-    CLOSED,
-    EXPONENT,
-    GAP,
-    KIND,
-    LENGTH,
-    STIFF,
-    Packed,
-    closed,
-    laminae,
-)
+from fe_drivetrain.bearing.kernels import GAP, LENGTH, Packed, roller_sums, row_of
 from fe_drivetrain.common.arrays import Floats, Ints
 
 MAX_STEPS = 100
@@ -56,22 +46,18 @@ def _dot(a: Floats, b: Floats) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def _sums(b: Floats, c: Floats, bearing: Packed, work: Floats, s: Floats) -> float:
+def _sums(b: Floats, c: Floats, bearing: Packed, s: Floats) -> float:
     """Load, moment and three of the tangent (total, 5) of rollers at approaches and leans."""
     total = 0.0
-    lam = bearing.lam
     for r in range(len(bearing.data)):
-        d, table = bearing.data[r], bearing.tables[r]
-        xi, free = bearing.xi[lam[r] : lam[r + 1]], bearing.free[lam[r] : lam[r + 1]]
+        d = bearing.data[r]
+        xi, free, shares, nodes, node_shares, table = row_of(bearing, r)
         for j in range(bearing.first[r], bearing.first[r + 1]):
             here = b[j] - d[GAP]
             s[j, 0] = 0.0
             if here + 0.5 * abs(c[j]) * d[LENGTH] <= 0.0:
                 continue
-            if d[KIND] == CLOSED:
-                closed(here, c[j], d[STIFF], d[EXPONENT], d[LENGTH], s[j])
-            else:
-                laminae(here, c[j], d[STIFF], d[EXPONENT], xi, free, table, work, s[j])
+            roller_sums(d, here, c[j], xi, free, shares, nodes, node_shares, table, s[j])
             total += s[j, 0]
     return total
 
@@ -148,7 +134,6 @@ def _newton(
     tolerance: float,
     damped: bool,
     s: Floats,
-    work: Floats,
 ) -> tuple[int, int, float]:
     """Minimise energy minus work from q, which becomes the minimum; s are the rollers there.
 
@@ -162,7 +147,7 @@ def _newton(
     steps = 0
     for j in range(n):
         b[j], c[j] = _dot(body.approach[j], q), _dot(body.lean[j], q)
-    total = _sums(b, c, bearing, work, s)
+    total = _sums(b, c, bearing, s)
     evaluations = 1
     while True:
         _gradient(q, load, body, s, g)
@@ -197,7 +182,7 @@ def _newton(
         for _trial in range(MAX_TRIALS):
             for j in range(n):
                 at_b[j], at_c[j] = b[j] + step * db[j], c[j] + step * dc[j]
-            total = _sums(at_b, at_c, bearing, work, s)
+            total = _sums(at_b, at_c, bearing, s)
             evaluations += 1
             here = rest + step * bend
             for j in range(n):
@@ -259,7 +244,7 @@ def solve_cases(
         (n, m), (n, total) twice, and (n,): filled.
     """
     m, n = len(body.stiffness), len(body.approach)
-    s, work, A = np.zeros((n, 5)), np.empty((3, len(bearing.xi) + 1)), np.empty((m, m))
+    s, A = np.zeros((n, 5)), np.empty((m, m))
     for i in range(len(loads)):
         near = False
         if warm and i > 0:
@@ -285,7 +270,6 @@ def solve_cases(
             tolerance,
             damped,
             s,
-            work,
         )
         for j in range(n):
             rollers[i, j] = s[j, 0]

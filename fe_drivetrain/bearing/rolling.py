@@ -59,6 +59,8 @@ class Equilibrium:
         (n,) Newton steps, and evaluations of all rollers.
     unbalanced : Floats
         (n, 5) loads less the forces of the bearing [N, N m]: of a reduction, what it leaves out.
+    phases : Floats or None
+        (n,) angle by which the rolling elements have moved on [rad]; None where they have not.
     """
 
     bearing: Bearing
@@ -68,16 +70,17 @@ class Equilibrium:
     converged: Bools
     iterations: Ints
     evaluations: Ints
+    phases: Floats | None = None
 
     @cached_property
     def unbalanced(self) -> Floats:
         """(n, 5) loads less the forces of the bearing [N, N m]."""
-        return self.loads - forces(self.bearing, self.displacements)[0]
+        return self.loads - forces(self.bearing, self.displacements, phases=self.phases)[0]
 
     @cached_property
     def rollers(self) -> Floats:
         """(n, total) load of each rolling element [N], row by row."""
-        return roller_loads(self.bearing, self.displacements)
+        return roller_loads(self.bearing, self.displacements, phases=self.phases)
 
 
 def equilibrium(
@@ -232,7 +235,8 @@ def _solved(
     n, m = len(loads), B.shape[2]
     if not 1e-14 <= tolerance < 1.0:
         raise InputError(f"tolerance is {tolerance:g}: give 1e-14 to 1, as 1e-8")
-    turned = loads if phases is None else turn(loads, -np.asarray(phases, dtype=float))
+    moved_on = None if phases is None else np.asarray(phases, dtype=float)
+    turned = loads if moved_on is None else turn(loads, -moved_on)
     B = np.ascontiguousarray(B)
     soft = np.stack([_linear(bearing, b) for b in B])
     # all contacts deflected by as much as carries the load
@@ -266,8 +270,8 @@ def _solved(
             whole[lost] = part
         refuse_lifted(bearing, loads[found.residuals > 1.0], np.flatnonzero(found.residuals > 1.0))
     u = found.displacements
-    if phases is not None:
-        u = turn(u, np.asarray(phases, dtype=float))
+    if moved_on is not None:
+        u = turn(u, moved_on)
     return Equilibrium(
         bearing,
         loads,
@@ -276,6 +280,7 @@ def _solved(
         found.residuals <= 1.0,
         found.steps,
         found.evaluations,
+        moved_on,
     )
 
 

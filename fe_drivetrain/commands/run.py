@@ -141,7 +141,9 @@ def run_and_print(
             junit.unlink(missing_ok=True)  # of an earlier run: it says nothing of this one
         cases = find()
         if resume and len(cases) == 1:
-            raise InputError("--resume is for several cases: leave it out")
+            raise InputError(
+                "--resume is for several cases, and a long one goes on by itself: leave it out"
+            )
         if junit is not None:
             from fe_drivetrain.report.junit import write_junit
             from fe_drivetrain.suite.suite import NOT_RUN

@@ -93,23 +93,33 @@ def describe(page: Page, model: Model) -> None:
         "Bearings",
         [_bearing_row(unit) for unit in scene.bearing_units],
     )
-    ends: list[Record] = [
+    points: list[Record] = [
         {
-            "end": "hub (front face), where the hub loads act",
+            "point": "hub (front face), where the hub loads act",
             "x [m]": scene.shaft.front,
             "coupling": scene.hub.coupling,
             "weight [N]": None,
             "held by": "nothing",
         },
         {
-            "end": "gearbox (rear face)",
+            "point": "gearbox (rear face)",
             "x [m]": scene.shaft.rear,
             "coupling": scene.gearbox.coupling,
             "weight [N]": scene.gearbox.weight,
             "held by": _springs(scene.gearbox.stiffness),
         },
     ]
-    page.table("Ends of the shaft", ends)
+    points[1:1] = [
+        {
+            "point": f"{point.name} (over {point.width:g} m)",
+            "x [m]": point.x,
+            "coupling": "averaged",
+            "weight [N]": point.weight,
+            "held by": "nothing",
+        }
+        for point in scene.load_points
+    ]
+    page.table("Where loads enter the shaft", points)
     page.text(
         "Frame: x downwind along the shaft, z up, y = z cross x. Lengths in m, forces in N, "
         "moments in N m, angles in rad."

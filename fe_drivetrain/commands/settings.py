@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -106,18 +106,20 @@ def _is_plain(value: object) -> bool:
     return value is None or isinstance(value, str | int | float | bool)
 
 
-def parse_loads(texts: Iterable[str]) -> Floats | None:
+def parse_loads(texts: Iterable[str], known: Sequence[str]) -> Floats | None:
     """Factors of the unit loads from ``--load NAME=VALUE``.
 
     Parameters
     ----------
     texts : iterable of str
         One "NAME=VALUE" for each option, in SI units.
+    known : sequence of str
+        Names of the n unit loads, see `fe_drivetrain.response.model.scene_loads`.
 
     Returns
     -------
     ndarray or None
-        (10,) factors of `fe_drivetrain.response.model.LOADS`; None if there are no texts.
+        (n,) factors of these; None if there are no texts.
 
     Raises
     ------
@@ -126,16 +128,14 @@ def parse_loads(texts: Iterable[str]) -> Floats | None:
     """
     import numpy as np
 
-    from fe_drivetrain.response.model import LOADS
-
-    factors = np.zeros(len(LOADS))
+    factors = np.zeros(len(known))
     values = parse_settings(texts, "--load")
     for name, value in values.items():
-        if name not in LOADS:
-            raise InputError(f"--load {name!r} is unknown: use one of {', '.join(LOADS)}")
+        if name not in known:
+            raise InputError(f"--load {name!r} is unknown: use one of {', '.join(known)}")
         if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e15:
             raise InputError(f"--load {name}: {value!r} must be a number, as in --load hub.Fz=-3e5")
-        factors[LOADS.index(name)] = value
+        factors[list(known).index(name)] = value
     if values and not factors.any():
         raise InputError("--load: all loads are zero: give at least one that is not zero")
     return factors if values else None

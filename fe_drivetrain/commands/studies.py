@@ -93,6 +93,13 @@ def study_command(
             "Default: 3, 4 and 10.",
         ),
     ] = None,
+    weight: Annotated[
+        bool,
+        typer.Option(
+            "--weight/--no-weight",
+            help="Whether reactions have the weight of gearbox, shaft, bearings and housings.",
+        ),
+    ] = True,
     quick: Quick = False,
     out: _OutFolder = None,
     set_: SceneSettings = None,
@@ -116,7 +123,7 @@ def study_command(
             )
         from fe_drivetrain.commands.study_loads import own_loads
         from fe_drivetrain.commands.study_page import studied
-        from fe_drivetrain.compare.cycles import SLOPES, check_slope
+        from fe_drivetrain.histories.damage import SLOPES, check_slope
 
         for exponent in slope or ():
             check_slope(exponent)
@@ -128,7 +135,7 @@ def study_command(
             scene,
             f"{found.title}: stiffness, reactions, and beams against FE",
             out,
-            lambda run, page: studied(run, page, found, own, slope or SLOPES),
+            lambda run, page: studied(run, page, found, own, slope or SLOPES, weight),
             quick,
         )
 
@@ -171,8 +178,9 @@ def advise_command(
         found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.commands.advice_page import advised
         from fe_drivetrain.fidelity.adviser import Quantity
+        from fe_drivetrain.response.model import scene_loads
 
-        asked = Quantity(quantity, parse_loads(load or ()))
+        asked = Quantity(quantity, parse_loads(load or (), scene_loads(found)))
         asked.check(found)
         share = parse_tolerance(tolerance)
         return _run_on_scene(
@@ -247,8 +255,9 @@ def uncertainty_command(
         hold_threads()
         found = named_scene(scene, parse_settings(set_ or ()))
         from fe_drivetrain.commands.uncertainty_page import uncertain
+        from fe_drivetrain.response.model import scene_loads
 
-        factors = parse_loads(load or ())
+        factors = parse_loads(load or (), scene_loads(found))
         share = parse_tolerance(tolerance)
         sobol_samples = 2 ** (samples.bit_length() - 1) if sobol else 0
         return _run_on_scene(

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.commands.study_measures import measures
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES, GRAVITY
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.compare.time_weighted import weighted_rms
 from fe_drivetrain.fidelity.over_loads import (
     COARSER_ASSEMBLY,
+    ROUND_OFF,
     Levels,
     reaction_history,
     relative_errors,
@@ -33,7 +35,9 @@ _LEVELS = {
 }
 
 
-def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
+def errors(
+    page: Page, scene: Scene, levels: Levels, loads: StudyLoads, slopes: Sequence[float]
+) -> int:
     """RMSE of each level against the assembly, and the cheapest level that is enough.
 
     Parameters
@@ -46,6 +50,8 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
         All levels.
     loads : StudyLoads
         Hub loads.
+    slopes : sequence of float
+        Of S-N curves.
 
     Returns
     -------
@@ -54,17 +60,17 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
     """
     page.section("Beams against FE")
     others = list(levels.models)[:-1]
-    hub = np.concatenate([history.loads for history in loads.histories])
+    hub = np.concatenate([entering(scene, history) for history in loads.histories])
     weights = loads.weights
     weight, length = scene.gearbox.weight, scene.shaft.length
     absolute: list[Record] = []
     shares: dict[str, dict[str, float]] = {}
     for name in levels.reference.reaction_matrices:
-        reference = reaction_history(levels.reference, name, hub, weight, GRAVITY)
+        reference = reaction_history(levels.reference, name, hub, weight, loads.gravity)
         rmse: dict[str, Floats] = {}
         relative: dict[str, Floats] = {}
         for label in others:
-            found = reaction_history(levels.models[label], name, hub, weight, GRAVITY)
+            found = reaction_history(levels.models[label], name, hub, weight, loads.gravity)
             rmse[label] = weighted_rms(found - reference, weights)
             relative[label] = relative_errors(reference, found, length, weights)
         size = weighted_rms(reference, weights)
@@ -73,6 +79,8 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
                 continue
             shares[f"{name}, {kind}"] = {label: float(relative[label][k]) for label in others}
             for c in range(3 * k, 3 * k + 3):
+                if size[c] <= ROUND_OFF * size[3 * k : 3 * k + 3].max():
+                    continue
                 absolute.append(
                     {
                         "reaction": f"{name}, {FORCES[c]} [{_SHOWN_UNITS[c]}]",
@@ -104,6 +112,7 @@ def errors(page: Page, scene: Scene, levels: Levels, loads: StudyLoads) -> int:
     worst = {label: max(of[label] for of in shares.values()) for label in others}
     page.answer(_enough(worst))
     _advice(page, levels, shares)
+    measures(page, scene, levels, loads, slopes, _LEVELS, ENOUGH)
     errors_of = {n: max(worst[m] for m in _LEVELS[label]) for n, label in _SAMPLED.items()}
     enough = [level for level, error in errors_of.items() if error <= ENOUGH]
     return enough[0] if enough else min(errors_of, key=lambda level: errors_of[level])
@@ -152,8 +161,8 @@ def _enough(worst: Mapping[str, float]) -> str:
         largest = max(worst[label] for label in labels)
         if largest <= ENOUGH:
             return (
-                f"Over these loads {' and '.join(labels)}: every reaction is within {share} of the "
-                f"assembly's (root mean square of force and of moment; the worst "
+                f"Over these loads {' and '.join(labels)} is enough: every reaction is within "
+                f"{share} of the assembly's (root mean square of force and of moment; the worst "
                 f"{100 * largest:.2g} %)."
             )
     compared = [label for labels in _LEVELS.values() for label in labels]

@@ -5,17 +5,49 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.time_weighted import sample_weights
 from fe_drivetrain.hub_loads.aero_rotor import assumptions
-from fe_drivetrain.hub_loads.files import read_hub_load_files
+from fe_drivetrain.hub_loads.files import read_hub_load_files, require_points
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.run import Run
 
 _QUICK_SEEDS = 1
+
+
+def entering(scene: Scene, history: LoadHistory) -> Floats:
+    """Loads (n, 6 + 6 m) at the hub and at each load point of a scene, with the weights of these.
+
+    Parameters
+    ----------
+    scene : Scene
+        With m load points.
+    history : LoadHistory
+        Its loads at a point that it does not have are zero.
+    """
+    if not scene.load_points:
+        return history.loads
+    others = []
+    for point in scene.load_points:
+        found = np.array(history.at.get(point.name, np.zeros_like(history.loads)))
+        found[:, 2] -= point.weight
+        others.append(found)
+    return np.hstack([history.loads, *others])
+
+
+def weightless(scene: Scene) -> Scene:
+    """The scene without the weights that it states; those of its parts come with gravity."""
+    change = {
+        "gearbox": scene.gearbox.model_copy(update={"weight": 0.0}),
+        "load_points": tuple(p.model_copy(update={"weight": 0.0}) for p in scene.load_points),
+    }
+    return scene.model_copy(update=change)
 
 
 @dataclass(frozen=True)
@@ -32,12 +64,15 @@ class StudyLoads:
         Whether they are the user's.
     assumptions : Sequence[tuple[str, float, str, str]]
         Name, value, unit and source of what a surrogate assumes.
+    gravity : float
+        Along -z, that gives all parts their weight [m/s^2]; 0 where weights are left out.
     """
 
     histories: Sequence[LoadHistory]
     statement: str
     own: bool
     assumptions: Sequence[tuple[str, float, str, str]] = field(default_factory=tuple)
+    gravity: float = GRAVITY
 
     @property
     def seconds(self) -> float:
@@ -70,6 +105,7 @@ def own_loads(pattern: str, skip: float, scene: Scene) -> StudyLoads:
     """
     front, at = scene.shaft.front, scene.loads_at
     histories = [history.moved(at, front) for history in read_hub_load_files(pattern, skip)]
+    require_points(histories, list(scene.bands))
     moved = f" Their moments, about x = {at:g} m, are moved to the front face." * (at != front)
     if not any(history.loads.any() for history in histories):
         raise InputError(f"--loads {pattern!r}: all hub loads are zero: give histories with loads")

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from fe_drivetrain.commands.scene_page import checked_model, describe, quick_scene
 from fe_drivetrain.commands.study_errors import errors
-from fe_drivetrain.commands.study_loads import StudyLoads, surrogate_loads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering, surrogate_loads, weightless
 from fe_drivetrain.commands.study_reactions import STATISTICS, reactions, write_reactions
 from fe_drivetrain.commands.uncertainty_page import bands, inputs
 from fe_drivetrain.commands.uncertainty_page import slopes as slopes_section
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import GRAVITY
-from fe_drivetrain.compare.cycles import SLOPES
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.export.formats.summary import summary, write_summary
@@ -25,6 +24,7 @@ from fe_drivetrain.fidelity.over_loads import (
     reaction_history,
 )
 from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
+from fe_drivetrain.histories.damage import SLOPES
 from fe_drivetrain.mesh.files import write
 from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.pictures import (
@@ -33,7 +33,7 @@ from fe_drivetrain.report.pictures import (
     picture_of_model,
 )
 from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
@@ -52,6 +52,7 @@ def studied(
     scene: Scene,
     own: StudyLoads | None,
     slopes: Sequence[float] = SLOPES,
+    weight: bool = True,
 ) -> None:
     """Stiffness of the bearing units, reactions over all loads, and levels against the assembly.
 
@@ -67,6 +68,8 @@ def studied(
         The user's hub loads; the surrogate's where None.
     slopes : sequence of float
         Of S-N curves, for damage-equivalent loads.
+    weight : bool
+        Whether the reactions have the weight of all parts.
 
     Raises
     ------
@@ -74,8 +77,10 @@ def studied(
         The scene cannot be solved.
     """
     scene = quick_scene(scene) if run.quick else scene
+    scene = scene if weight else weightless(scene)
     model = checked_model(run, scene)
     loads = surrogate_loads(run) if own is None else own
+    loads = loads if weight else replace(loads, gravity=0.0)
     page.seed = None if loads.own else 1
     with run.step("assembly of solids") as step:
         response = cached_response(model)
@@ -83,7 +88,9 @@ def studied(
             step.name += ", from the cache"
     with run.step("levels 1 and 2"):
         levels = levels_of(scene, response, run.report)
-    mean = weighted_statistics(np.concatenate([h.loads for h in loads.histories]), loads.weights)
+    driving = np.concatenate([entering(scene, history) for history in loads.histories])
+    mean = weighted_statistics(driving, loads.weights)[:, 1]
+    factors = np.concatenate([mean[:6], [0.0, 0.0, -loads.gravity, scene.gearbox.weight], mean[6:]])
     _check(page, scene, response, levels)
 
     if run.quick:
@@ -92,26 +99,25 @@ def studied(
         )
     page.answer(loads.statement, *model.warnings)
     page.section("Scene")
-    _pictures(run, page, model, response, mean[:, 1])
+    _pictures(run, page, model, response, factors)
     describe(page, model)
     page.section("Stiffness of the bearing units")
     _stiffness(run, page, model, response, levels)
     with run.step("reactions of all load steps"):
         reactions(run, page, model, loads, levels, slopes)
     with run.step("beams against FE"):
-        level = errors(page, scene, levels, loads)
+        level = errors(page, scene, levels, loads, slopes)
         _series(page, scene, loads, levels)
     if scene.uncertainty:
-        _uncertainty(run, page, scene, level, mean[:, 1])
+        _uncertainty(run, page, scene, level, factors)
     with run.step("files"):
         _files(run, page, model, response, loads, levels)
     for assumption in loads.assumptions:
         page.assume(*assumption)
 
 
-def _uncertainty(run: Run, page: Page, scene: Scene, level: int, mean: Floats) -> None:
+def _uncertainty(run: Run, page: Page, scene: Scene, level: int, load: Floats) -> None:
     """What the spreads that the scene states do to stiffnesses and bearing forces."""
-    load = np.concatenate([mean, [0.0, 0.0, -GRAVITY, scene.gearbox.weight]])
     asked = [f"{unit.bearing.name}.Fz" for unit in scene.bearing_units]
     with run.step("uncertainty"):
         found = study(
@@ -135,7 +141,8 @@ def _files(
         write_reactions(run.folder, model, loads, levels)
     write_summary(run.folder / "summary.json", summary(model.scene, 2))
     fields = {
-        f"displacement {load}": response.displacements[:, :, k] for k, load in enumerate(LOADS)
+        f"displacement {load}": response.displacements[:, :, k]
+        for k, load in enumerate(model.loads)
     }
     write(model.mesh, run.folder / "mesh.vtu", fields)
     page.section("Files")
@@ -180,9 +187,7 @@ def _check(page: Page, scene: Scene, response: Response, levels: Levels) -> None
     )
 
 
-def _pictures(run: Run, page: Page, model: Model, response: Response, mean: Floats) -> None:
-    factors = np.zeros(10)
-    factors[:6], factors[8], factors[9] = mean, -GRAVITY, model.scene.gearbox.weight
+def _pictures(run: Run, page: Page, model: Model, response: Response, factors: Floats) -> None:
     with run.step("pictures"):
         try:
             picture_of_model(model, run.folder / "model.png")
@@ -191,8 +196,9 @@ def _pictures(run: Run, page: Page, model: Model, response: Response, mean: Floa
             page.text(f"No picture: {reason}")
             return
     page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
+    weights = " and all weights" if factors[8] else ""
     page.image(
-        f"Deformed {times:,.0f} times too large, under the mean hub load and all weights",
+        f"Deformed {times:,.0f} times too large, under the mean load{weights}",
         "deformed.png",
     )
 
@@ -225,13 +231,16 @@ def _stiffness(run: Run, page: Page, model: Model, response: Response, levels: L
         "Force over motion, all other loads zero",
         rows,
     )
-    spherical = [
-        unit.bearing.name
-        for unit in model.scene.bearing_units
-        if unit_numbers(levels.stiff[unit.bearing.name])["tilt"] == 0.0
-    ]
-    if spherical:
-        page.text(f"{', '.join(spherical)}: a spherical joint has no K_R.")
+    free = {name: unit_numbers(stiff) for name, stiff in levels.stiff.items()}
+    aligning = [name for name, of in free.items() if of["tilt"] == of["yaw"] == 0.0]
+    floating = [name for name, of in free.items() if of["axial"] == 0.0]
+    if aligning:
+        page.text(f"No K_R of {', '.join(aligning)}: the bearing gives way to tilt.")
+    if floating:
+        page.text(
+            f"No axial stiffness of {', '.join(floating)}: the bearing floats, and leaves axial "
+            "force to the others at every level."
+        )
     page.data("unit_stiffness", rows)
     write_stiffness_json(
         run.folder / "stiffness.json",
@@ -256,6 +265,7 @@ def _series(page: Page, scene: Scene, loads: StudyLoads, levels: Levels) -> None
     history = loads.histories[len(loads.histories) // 2]
     shown = history.time - history.time[0] <= _SHOWN
     labels = ["assembly", "beam, stiff housings", "beam, soft housings"]
+    with_weights = " with all weights" if loads.gravity else ""
     for unit in scene.bearing_units:
         name = unit.bearing.name
         traces = []
@@ -263,14 +273,14 @@ def _series(page: Page, scene: Scene, loads: StudyLoads, levels: Levels) -> None
             reaction = reaction_history(
                 levels.models[label],
                 name,
-                history.loads[shown],
+                entering(scene, history)[shown],
                 scene.gearbox.weight,
-                GRAVITY,
+                loads.gravity,
             )
             force = np.hypot(reaction[:, 1], reaction[:, 2]) / 1e3
             traces.append(trace(label, history.time[shown], force, line={"dash": dash}))
         page.chart(
-            f"Radial force on {name} with all weights: the beginning of {history.name}",
+            f"Radial force on {name}{with_weights}: the beginning of {history.name}",
             traces,
             "time [s]",
             "radial force [kN]",

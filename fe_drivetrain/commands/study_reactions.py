@@ -9,19 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_drivetrain.commands.study_loads import StudyLoads
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, GRAVITY
-from fe_drivetrain.compare.cycles import (
-    FREQUENCY,
-    RULE,
-    Cycles,
-    damage_equivalent_load,
-    rainflow_cycles,
-)
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.over_loads import Levels, reaction_history
+from fe_drivetrain.histories.cycles import RULE, Cycles, rainflow_cycles
+from fe_drivetrain.histories.damage import FREQUENCY, damage_equivalent_load
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -82,7 +77,8 @@ def reactions(
     """
     page.section("Reactions")
     page.text(
-        f"What the drivetrain puts on its surroundings. Weight {_weights(model)}. Frame: {_FRAME}. "
+        f"What the drivetrain puts on its surroundings. Weight {_weights(model, loads.gravity)}. "
+        f"Frame: {_FRAME}. "
         f"Origins of moments {_origins(model)}. Each sample counts by the time that it stands for."
     )
     names = list(levels.reference.reaction_matrices)
@@ -119,9 +115,10 @@ def _over_histories(
 ) -> Iterator[tuple[str, _Found]]:
     """All histories together, and then each."""
     weight = model.scene.gearbox.weight
+    driving = [entering(model.scene, history) for history in loads.histories]
 
     def of(level: LevelModel) -> list[Floats]:
-        return [reaction_history(level, name, h.loads, weight, GRAVITY) for h in loads.histories]
+        return [reaction_history(level, name, one, weight, loads.gravity) for one in driving]
 
     samples = of(levels.reference)
     coarse = None if levels.coarser is None else of(levels.coarser)
@@ -150,7 +147,7 @@ def _over_histories(
 def _cycles(samples: Floats, least: float) -> Cycles:
     """None where a component is round-off of the others."""
     if np.ptp(samples) <= least:
-        return Cycles(np.zeros(0), np.zeros(0))
+        return Cycles(np.zeros(0), np.zeros(0), np.zeros(0))
     return rainflow_cycles(samples)
 
 
@@ -213,14 +210,17 @@ def _channels_of(attributes: object) -> str:
     return str(dict(attributes).get("channels", "as in the file"))  # type: ignore[call-overload]
 
 
-def _weights(model: Model) -> str:
+def _weights(model: Model, gravity: float) -> str:
     """Which weights the reactions have."""
+    if gravity == 0.0:
+        return "left out, but for that of the rotor as far as the hub loads have it"
     parts = ", ".join(
         f"{part} {GRAVITY * float(mass.sum()) / 1e3:.4g} kN"
         for part, mass in model.part_mass.items()
     )
+    points = "".join(f", {p.name} {p.weight / 1e3:.4g} kN" for p in model.scene.load_points)
     return (
-        f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN; "
+        f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN{points}; "
         "that of the rotor as far as the hub loads have it"
     )
 
@@ -241,7 +241,7 @@ def _write_statistics(
     facts = {
         "frame": _FRAME,
         "origin of moments": _origins(model),
-        "weight": _weights(model),
+        "weight": _weights(model, loads.gravity),
         "loads": loads.statement,
         "DEL": f"range of a sine of {FREQUENCY:g} Hz with the same damage; {RULE}",
         "mesh band": "by how much the mesh may change least, mean, largest or standard deviation",
@@ -287,7 +287,7 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
             "reactions": "what the drivetrain puts on its surroundings, by the assembly of solids",
             "frame": _FRAME,
             "origin of moments": _origins(model),
-            "weight": _weights(model),
+            "weight": _weights(model, loads.gravity),
             "channels": _channels_of(history.attributes),
         }
         columns = ["time [s]"]
@@ -298,7 +298,11 @@ def write_reactions(folder: Path, model: Model, loads: StudyLoads, levels: Level
         ]
         values = [
             reaction_history(
-                levels.reference, name, history.loads, model.scene.gearbox.weight, GRAVITY
+                levels.reference,
+                name,
+                entering(model.scene, history),
+                model.scene.gearbox.weight,
+                loads.gravity,
             )
             for name in names
         ]

@@ -1,9 +1,10 @@
 """What takes long to make, kept on disk under a hash of all that it depends on.
 
-One mechanism for meshes, made hub loads and solutions. They are kept in the user's cache folder,
-which may be deleted at any time; the environment variable ``FE_DRIVETRAIN_CACHE`` names another
-folder, or switches keeping off ("off"). Nothing here ever fails a run: what cannot be read or is
-damaged is made again, and what cannot be written is not kept.
+One mechanism for meshes, made hub loads, solutions, and figures of long studies. They are kept in
+the user's cache folder, which may be deleted at any time; the environment variable
+``FE_DRIVETRAIN_CACHE`` names another folder, or switches keeping off ("off"). Nothing here ever
+fails a run: what cannot be read or is damaged is made again, and what cannot be written is not
+kept.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ CACHE_VARIABLE = "FE_DRIVETRAIN_CACHE"
 LIMIT = 2 * 1024**3
 """Bytes; beyond it, what was used longest ago is dropped."""
 
-Kind = Literal["hub-loads", "meshes", "solutions"]
+Kind = Literal["figures", "hub-loads", "load-digests", "meshes", "solutions"]
 """What may be kept; each kind has a folder of its own."""
 
 _OFF = ("off", "0", "no", "false")

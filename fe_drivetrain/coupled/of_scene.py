@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import LinearBody, in_housings, linear_body
 from fe_drivetrain.fidelity.shafts import condensed_shaft
 from fe_drivetrain.scene.joint_springs import as_numbers
@@ -31,7 +32,22 @@ def scene_body(
     -------
     body : LinearBody
         The shaft, its weight, and the gearbox's springs.
+
+    Raises
+    ------
+    InputError
+        The scene has load points or a nose.
     """
+    if scene.nose is not None:
+        raise InputError(
+            f"scene {scene.title!r} has a nose, which a shaft on rolling bearings does not: give a "
+            "scene with bearing units alone"
+        )
+    if scene.load_points:
+        raise InputError(
+            f"scene {scene.title!r} has loads at {', '.join(scene.bands)}, which a shaft on "
+            "rolling bearings does not take: leave load_points out"
+        )
     names = [unit.bearing.name for unit in scene.bearing_units]
     gearbox = as_numbers(scene.gearbox.stiffness)
     supports = {"gearbox": gearbox} if gearbox.any() else {}

@@ -1,7 +1,7 @@
 """CalculiX: a model of a scene as a complete input deck.
 
-The deck has elements, materials, interfaces as linear equations, supports, springs, and the ten
-unit loads as ten steps. Its keywords are those that CalculiX shares with Abaqus; it is tested with
+The deck has elements, materials, interfaces as linear equations, supports, springs, and
+each unit load as a step. Its keywords are those that CalculiX shares with Abaqus; it is tested with
 CalculiX. Degrees of freedom and equations are those of `calculix_plan`.
 """
 
@@ -25,7 +25,7 @@ from fe_drivetrain.export.calculix_plan import (
 )
 from fe_drivetrain.export.superelement import FRAME
 from fe_drivetrain.operator.incompressible import warn_of_averaging
-from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.response.model import Model
 
 _TERMS = 4  # of an equation on a line: the most that are read
 _NODES = 16  # of a set on a line
@@ -34,7 +34,7 @@ _NODES = 16  # of a set on a line
 def write_inp(
     model: Model,
     path: str | Path,
-    loads: Sequence[str] = LOADS,
+    loads: Sequence[str] | None = None,
     solver: str = "",
     fields: bool = True,
 ) -> None:
@@ -46,8 +46,8 @@ def write_inp(
         The model.
     path : str or Path
         The file, which appears whole or not at all; CalculiX wants it to end in ``.inp``.
-    loads : Sequence[str]
-        Which of `model.LOADS`, a step each: ccx factorises again for every step.
+    loads : Sequence[str] or None
+        Which unit loads, a step each, all where not given: ccx factorises again for every step.
     solver : str
         Of CalculiX, as in "SPOOLES"; its own choice where not given.
     fields : bool
@@ -75,6 +75,7 @@ def write_inp(
     target = Path(path)
     if not target.parent.is_dir():
         raise InputError(f"deck {target}: there is no folder {target.parent}: create it first")
+    loads = model.loads if loads is None else loads
     plan = plan_deck(model, loads)
     head = "".join(f"{line}\n" for line in _model_lines(model, plan))
     steps = "".join(_steps(model, plan, loads, solver, fields))

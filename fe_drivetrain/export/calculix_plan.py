@@ -58,11 +58,12 @@ class DeckPlan:
 
 def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
     """Number the degrees of freedom of the deck, and solve all constraints for those they give."""
-    unknown = [load for load in loads if load not in LOADS]
+    known = model.loads
+    unknown = [load for load in loads if load not in known]
     if unknown or not loads:
         raise InputError(
             f"{f'load {unknown[0]!r} is unknown' if unknown else 'there is no load'}: use some of "
-            f"{', '.join(LOADS)}"
+            f"{', '.join(known)}"
         )
     n_mesh = len(model.mesh.points)
     rigid = {c.name for c in model.constraints if c.name in model.points}
@@ -105,10 +106,12 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
 
     references = {name: (first[name] // 3, first[name] // 3 + 1) for name in model.points}
     names, positions = _extra_nodes(model, references, n_dofs // 3)
-    F = np.zeros((n_dofs, len(LOADS)))
+    F = np.zeros((n_dofs, len(known)))
     F[: model.n_dofs, 6:9] = model.unit_loads()[:, 6:9]
     F[first["hub"] + np.arange(6), np.arange(6)] = 1.0
     F[first["gearbox"] + 2, 9] = -1.0
+    for k, name in enumerate(model.scene.bands):
+        F[first[name] + np.arange(6), len(LOADS) + 6 * k + np.arange(6)] = 1.0
     return DeckPlan(
         positions=np.vstack([model.mesh.points, positions]),
         names={n_mesh + k: name for k, name in enumerate(names)},
@@ -119,7 +122,7 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
             [first[name] + c for name, some in model.held.items() for c in some], dtype=np.int64
         ),
         springs=springs,
-        loads=F[:, [LOADS.index(load) for load in loads]],
+        loads=F[:, [known.index(load) for load in loads]],
     )
 
 

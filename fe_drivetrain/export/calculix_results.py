@@ -11,7 +11,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.export.calculix_plan import DeckPlan, deck_label, plan_deck
-from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.response.model import Model
 
 DIGITS = 7
 """Significant digits in a .dat file (Fortran's 1p,e13.6)."""
@@ -99,7 +99,9 @@ def read_dat(path: str | Path) -> list[Printed]:
     return found
 
 
-def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) -> DeckResponse:
+def read_response(
+    model: Model, path: str | Path, loads: Sequence[str] | None = None
+) -> DeckResponse:
     """Response of a model from a .dat file, for comparison with `response.unit_load_response`.
 
     Parameters
@@ -108,14 +110,15 @@ def read_response(model: Model, path: str | Path, loads: Sequence[str] = LOADS) 
         The model that the deck was written from.
     path : str or Path
         The .dat file.
-    loads : Sequence[str]
-        Those of its deck.
+    loads : Sequence[str] or None
+        Those of its deck; all where not given.
 
     Raises
     ------
     InputError
         The file is not complete, or not of this model.
     """
+    loads = model.loads if loads is None else loads
     plan = plan_deck(model, loads)
     n, n_loads = len(plan.positions), len(loads)
     U, forces = np.zeros((n, 3, n_loads)), np.zeros((n, 3, n_loads))

@@ -10,9 +10,13 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
-from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
-from fe_drivetrain.fidelity.component_solid import SolidComponent, solid_component
-from fe_drivetrain.fidelity.shaft_bands import COARSER, ORDER
+from fe_drivetrain.fidelity.component_levels import motions_on_supports, stiffness_on_supports
+from fe_drivetrain.fidelity.component_solid import (
+    SolidComponent,
+    recovered_band,
+    solid_component,
+)
+from fe_drivetrain.fidelity.shaft_bands import APART, COARSER, ORDER
 from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.scene.component import Component, HousingComponent, component_hash
 from fe_drivetrain.solve.condensation import Condensed, keep_points
@@ -29,8 +33,8 @@ def component_superelement(
 ) -> Superelement:
     """A component, condensed.
 
-    The band of a solid is the difference to element size zero estimated from a coarser mesh;
-    that of a frame is not known.
+    The band of a solid is the larger of two: of the difference to element size zero estimated from
+    a coarser mesh, where there is one, and of recovered stresses. That of a frame is not known.
 
     Parameters
     ----------
@@ -81,9 +85,13 @@ def component_superelement(
     fine, *others = [_part(component, body, what, at) for body in bodies]
     band = None
     if level == 3 and solids is not None:
+        supports = component.supports if what == SUPPORTED else {}
+        motions = motions_on_supports(solids[0].body, supports, at)
+        band = recovered_band(component, solids[0], motions, fine.stiffness)
         ratio = mean_size(solids[1].mesh) / mean_size(solids[0].mesh)
-        if ratio > 1.0:  # else the coarser mesh had to be made finer
-            band = largest_difference(others[0].stiffness, fine.stiffness) / (ratio**ORDER - 1.0)
+        if ratio > APART:  # else the coarser mesh had to be made finer
+            change = largest_difference(others[0].stiffness, fine.stiffness)
+            band = max(band, change / (ratio**ORDER - 1.0))
     program = f"fe-drivetrain {version('fe-drivetrain')}"
     origin = Origin(component.title, component_hash(component), level_title, mesh, program)
     kind = "gearbox_housing" if isinstance(component, HousingComponent) else "planet_carrier"

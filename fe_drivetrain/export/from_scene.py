@@ -14,7 +14,7 @@ from fe_drivetrain.export.superelement import Origin, Superelement
 from fe_drivetrain.fidelity.bearing_units import banded_unit
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
-from fe_drivetrain.fidelity.shafts import beam_shaft
+from fe_drivetrain.fidelity.shafts import beam_shaft, reference_points
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import Condensed, keep_points
 
@@ -95,9 +95,8 @@ def supported_superelement(
         The level has no stiffness at a point, or the scene holds a motion there rigidly.
     """
     stiffness = model.stiffness(at)
-    places = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
-    places |= {"hub": scene.shaft.front, "gearbox": scene.shaft.rear}
-    positions = np.array([[places[name], 0.0, 0.0] for name in at])
+    names, places = reference_points(scene)
+    positions = places[[names.index(name) for name in at]]
     origin = scene_origin(
         scene, f"{model.level} {model.title}", f"{model.cost.unknowns:,} unknowns"
     )

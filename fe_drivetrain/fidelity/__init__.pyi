@@ -44,3 +44,4 @@ from .shaft_bands import banded_meridian as banded_meridian
 from .shaft_bands import banded_solid as banded_solid
 from .shafts import beam_shaft as beam_shaft
 from .shafts import meridian_shaft as meridian_shaft
+from .shafts import ringed_shaft as ringed_shaft

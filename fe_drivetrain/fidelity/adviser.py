@@ -53,7 +53,7 @@ class Quantity:
         "NAME.Fx" to "NAME.Mz", a reaction of a bearing or of the gearbox; "hub.stiffness.ux" to
         "hub.stiffness.rz", force over motion of the hub, all others of its loads zero.
     load : Floats or None
-        (10,) factors of `model.LOADS`; None for a reaction to all hub loads, one at a time.
+        (n,) factors of `model.scene_loads`; None for a reaction to all hub loads, one at a time.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Quantity:
         InputError
             The name is none of the scene's.
         """
-        names = [unit.bearing.name for unit in scene.bearing_units] + ["gearbox"]
+        names = [*scene.bearing_names, "gearbox"]
         known = [f"{name}.{c}" for name in names for c in FORCES]
         known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
         if self.name not in known:
@@ -81,25 +81,14 @@ class Quantity:
             return "N/m" if component[0] == "u" else "N m/rad"
         return "N" if component[0] == "F" else "N m"
 
-    def columns(self, length: float) -> Floats:
-        """(10, k) factors of `model.LOADS` that each value is of, see `of`."""
+    def columns(self, length: float, n: int) -> Floats:
+        """(n, k) factors of the n unit loads of the scene that each value is of, see `of`."""
         if self.name.startswith("hub.stiffness"):
-            return np.eye(10)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
+            return np.eye(n)[:, [MOTIONS.index(self.name.rpartition(".")[2])]]
         if self.load is not None:
             return self.load[:, None]
         scale = np.array([1.0, 1.0, 1.0, length, length, length])
-        return np.asarray(np.eye(10)[:, :6] * scale)
-
-    def recovered(self, model: Model, response: Response, length: float) -> Floats:
-        """(k,) errors of the values of an assembly, estimated from recovered stresses."""
-        owner, _, component = self.name.partition(".")
-        columns = self.columns(length)
-        if owner == "hub":
-            motion = MOTIONS.index(component.rpartition(".")[2])
-            given = response.motions["hub"][motion, motion]
-            return np.asarray(motion_error(model, response, columns)[0] / given**2)
-        row = FORCES.index(component)
-        return np.asarray(reaction_error(model, response, owner, [row], columns)[0])
+        return np.asarray(np.eye(n)[:, :6] * scale)
 
     def of(self, model: LevelModel, length: float) -> Floats:
         """(k,) its values: one, or one for each hub load, moments counting as length times 1 N."""
@@ -232,7 +221,8 @@ def advise(
     tolerance : float
         Allowed error, relative.
     to_the_top : bool
-        Whether to go on to the assembly where a cheaper level is known to be enough.
+        Whether to go on to the assembly where a cheaper level is known to be enough. With a nose
+        the ladder ends at the solid shaft.
     report : callable
         Called with what is being done.
 
@@ -263,14 +253,14 @@ def advise(
     model = statics_level(scene)
     decided = bool(np.isfinite(quantity.of(model, length)).all())
     done = add(model, model.cost.seconds, 0.0 if decided else float("nan"))
-    if not done:
+    if not done and scene.bearing_units:
         report("level 1: beam, rigid housings")
         model = shaft_level(scene, 1)
         done = add(model, model.cost.seconds, float("nan"))
     springs: Mapping[str, Floats] = {}
     if not done:
         springs, done = _run_on_springs(scene, quantity, to_the_top, add, report)
-    if not done:
+    if not done and scene.nose is None:
         model, seconds, (band,) = banded_assembly(scene, [quantity], report)
         add(model, seconds, band.half_width, band)
     return _judged(quantity, tolerance, results, springs)
@@ -294,7 +284,8 @@ def _run_on_springs(
     report("housings, faces on average")
     soft = housing_springs(scene, coupling="averaged", cache=UNCACHED)[0]
     previous = None
-    for level in (1, 2, 3) if to_the_top else (1, 2):
+    # with a nose there is no assembly above the solid shaft
+    for level in (1, 2, 3) if to_the_top or scene.nose is not None else (1, 2):
         report(f"level {level}: {TITLES[level]}, housings as springs")
         start = time.perf_counter()
         body = condensed_shaft(scene, level)
@@ -360,15 +351,55 @@ def banded_assembly(
     sizes.append(mean_size(model.mesh))
     levels.append(level)
     report("level 4: errors estimated from recovered stresses")
+    errors = recovered_errors(quantities, model, response, length)
     bands = [
-        assembly_band(
-            sizes,
-            [quantity.of(level, length) for level in levels],
-            quantity.recovered(model, response, length),
-        )
-        for quantity in quantities
+        assembly_band(sizes, [quantity.of(level, length) for level in levels], error)
+        for quantity, error in zip(quantities, errors, strict=True)
     ]
     return level, seconds, bands
+
+
+def recovered_errors(
+    quantities: Sequence[Quantity], model: Model, response: Response, length: float
+) -> list[Floats]:
+    """Errors of the values of an assembly, estimated from recovered stresses.
+
+    What quantities have in common is solved and recovered once.
+
+    Parameters
+    ----------
+    quantities : Sequence[Quantity]
+        What is asked for.
+    model, response : Model, Response
+        The solved assembly.
+    length : float
+        Of the shaft [m], as of `Quantity.of`.
+
+    Returns
+    -------
+    list[Floats]
+        (k,) of each quantity, as its values.
+    """
+    n, found = len(model.loads), dict[int, Floats]()
+    together: dict[tuple[str, bytes], list[int]] = {}
+    for number, quantity in enumerate(quantities):
+        owner = quantity.name.partition(".")[0]
+        loads = b"" if owner == "hub" else quantity.columns(length, n).tobytes()
+        together.setdefault((owner, loads), []).append(number)
+    for (owner, _), numbers in together.items():
+        components = [quantities[k].name.rpartition(".")[2] for k in numbers]
+        if owner == "hub":
+            motions = [MOTIONS.index(c) for c in components]
+            errors = motion_error(model, response, np.eye(n)[:, motions]).diagonal()
+            given = response.motions["hub"].diagonal()[motions]
+            found |= zip(numbers, (errors / given**2)[:, None], strict=True)
+        else:
+            rows = [FORCES.index(c) for c in components]
+            columns = quantities[numbers[0]].columns(length, n)
+            found |= zip(
+                numbers, reaction_error(model, response, owner, rows, columns), strict=True
+            )
+    return [found[k] for k in range(len(quantities))]
 
 
 def _judged(
@@ -379,9 +410,10 @@ def _judged(
 ) -> Advice:
     top = results[-1]
     if not np.linalg.norm(top.values) > 0:
+        decided = ", and by statics at every other" if top.model.level == 0 else ""
         raise InputError(
-            f"quantity {quantity.name!r} is zero at level {top.model.level} for the load given: "
-            "ask for another, or give another load"
+            f"quantity {quantity.name!r} is zero at level {top.model.level}{decided} for the load "
+            "given: ask for another, or give another load"
         )
     judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
     chosen = None

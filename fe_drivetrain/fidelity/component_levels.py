@@ -147,6 +147,36 @@ def stiffness_on_supports(
         A point is unknown, or held rigidly.
     """
     K, free = on_supports(body.names, body.stiffness, supports)
+    follow = motions_on_supports(body, supports, at)[free]
+    found = follow.T @ K @ follow
+    return np.asarray(0.5 * (found + found.T))
+
+
+def motions_on_supports(
+    body: Condensed, supports: Mapping[str, Floats], at: Sequence[str]
+) -> Floats:
+    """Motions of all points of a condensed body on its supports where some move, the others free.
+
+    Parameters
+    ----------
+    body : Condensed
+        The body.
+    supports : Mapping[str, Floats]
+        (6, 6) stiffness to ground of points by name, inf on the diagonal where held rigidly.
+    at : Sequence[str]
+        The k points that are moved.
+
+    Returns
+    -------
+    Floats
+        (6 n, 6 k) for a unit motion of each.
+
+    Raises
+    ------
+    InputError
+        A point is unknown, or held rigidly.
+    """
+    K, free = on_supports(body.names, body.stiffness, supports)
     for name in at:
         if name not in body.names:
             raise InputError(f"point {name!r} is unknown: use {', '.join(body.names)}")
@@ -155,11 +185,11 @@ def stiffness_on_supports(
     wanted = np.concatenate([np.r_[body.rows(name)] for name in at])
     kept = np.searchsorted(free, wanted)
     left = np.setdiff1d(np.arange(len(free)), kept)
-    found = K[np.ix_(kept, kept)]
+    motions = np.zeros((6 * len(body.names), len(kept)))
+    motions[wanted] = np.eye(len(kept))
     if len(left):
-        follow = np.linalg.solve(K[np.ix_(left, left)], K[np.ix_(left, kept)])
-        found = found - K[np.ix_(kept, left)] @ follow
-    return np.asarray(0.5 * (found + found.T))
+        motions[free[left]] = -np.linalg.solve(K[np.ix_(left, left)], K[np.ix_(left, kept)])
+    return motions
 
 
 class GearboxSprings(NamedTuple):

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.geometry import BodySizes
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.symmetry import meshed, mirror, repeated, turns
 from fe_drivetrain.scene.component import Component, HousingComponent, material_of
 from fe_drivetrain.solve.coupled_solid import CondensedSolid, condensed_solid
+from fe_drivetrain.solve.error_estimate import SAFETY, error_energies
 
 
 def component_mesh(component: Component) -> tuple[Mesh, BodySizes]:
@@ -65,3 +67,34 @@ def solid_component(component: Component, method: str = "auto") -> SolidComponen
     materials = dict.fromkeys(mesh.part_names, material_of(component))
     solid = condensed_solid(mesh, materials, component.attachments, method)
     return SolidComponent(**vars(solid), sizes=sizes)
+
+
+def recovered_band(
+    component: Component, solid: SolidComponent, motions: Floats, stiffness: Floats
+) -> float:
+    """The band of a component's stiffness by recovered stresses of its one mesh.
+
+    The error of a displacement model in given motions is one of energy, and positive semidefinite:
+    no entry off the diagonal has a larger one, relative to the diagonal entries of its row and
+    column. Supports only add to the stiffness.
+
+    Parameters
+    ----------
+    component : Component
+        The component.
+    solid : SolidComponent
+        Its solid.
+    motions : Floats
+        (6 n, m) of its n points, one column for each entry of the diagonal [m, rad].
+    stiffness : Floats
+        (m, m) for these motions [N/m, N m/rad].
+
+    Returns
+    -------
+    float
+        Half width, relative.
+    """
+    mesh, lame = solid.mesh, material_of(component).lame
+    parts = [(mesh.cells[mesh.part_cells(p)], lame) for p in mesh.part_names]
+    errors = error_energies(mesh.points, parts, solid.fields(motions))
+    return SAFETY * float(np.max(2.0 * errors / stiffness.diagonal()))

@@ -19,6 +19,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.bearing_units import scene_supports, unit_stiffness
+from fe_drivetrain.fidelity.nose import on_nose
 from fe_drivetrain.fidelity.shafts import (
     beam_shaft,
     condensed_shaft,
@@ -27,7 +28,7 @@ from fe_drivetrain.fidelity.shafts import (
 )
 from fe_drivetrain.geometry import unit_solids
 from fe_drivetrain.response.cached import cached_response
-from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
+from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene, scene_loads
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
@@ -60,7 +61,9 @@ class Cost:
 
 @dataclass(frozen=True)
 class LevelModel:
-    """A scene at one level, solved for the unit loads of `model.LOADS`, or a component for its own.
+    """A scene at one level, solved for its n unit loads, or a component for its own.
+
+    The loads are those of `model.scene_loads`.
 
     Attributes
     ----------
@@ -73,7 +76,7 @@ class LevelModel:
     cost : Cost
         What it took.
     reaction_matrices : Mapping[str, Floats]
-        (6, 10) by bearing, and "gearbox": what the drivetrain puts on its surroundings, moments
+        (6, n) by bearing, and "gearbox": what the drivetrain puts on its surroundings, moments
         about the bearing's centre; NaN where the level cannot tell.
     points, compliance : tuple[str, ...], Floats
         Names of n points, and (6 n, 6 n) motions of each for unit forces and moments at each, on
@@ -89,7 +92,7 @@ class LevelModel:
     compliance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
     def reactions(self, load: Floats) -> dict[str, Floats]:
-        """Reactions (..., 6) [N, N m] to loads (..., 10), factors of `model.LOADS`."""
+        """Reactions (..., 6) [N, N m] to loads (..., n), factors of `model.scene_loads`."""
         return {name: load @ matrix.T for name, matrix in self.reaction_matrices.items()}
 
     def stiffness(self, at: Sequence[str]) -> Floats:
@@ -133,6 +136,8 @@ def statics_level(scene: Scene) -> LevelModel:
     for unit in scene.bearing_units:
         stiffness = joint_stiffness(unit)
         carried += [(unit.bearing.name, c) for c in range(6) if stiffness[c].any()]
+    for bearing in scene.nose_bearings:
+        carried += [(bearing.name, c) for c, k in enumerate(bearing.stiffness) if k != 0]
     carried += [("gearbox", c) for c, k in enumerate(scene.gearbox.stiffness) if k != 0]
     at = dict(zip(names, positions, strict=True))
     A = np.column_stack([wrench_transport(at[name] - first)[:, c] for name, c in carried])
@@ -141,9 +146,9 @@ def statics_level(scene: Scene) -> LevelModel:
     _, values, vectors = np.linalg.svd(A / scale[:, None])
     null = vectors[(values > 1e-9 * values[0]).sum() :]
     decided = np.abs(null).max(axis=0, initial=0.0) < 1e-9
-    loads = _applied(beam_shaft(scene), positions)
+    loads = _applied(scene, beam_shaft(scene), positions)
     found = np.linalg.lstsq(A / scale[:, None], loads / scale[:, None], rcond=1e-12)[0]
-    matrices = {name: np.zeros((6, len(LOADS))) for name in (*names[1:-1], "gearbox")}
+    matrices = {name: np.zeros(loads.shape) for name in (*scene.bearing_names, "gearbox")}
     for (name, c), row, sure in zip(carried, found, decided, strict=True):
         matrices[name][c] = row if sure else np.nan
     unknown = [
@@ -187,7 +192,11 @@ def shaft_level(
         if any(piece.fillet > 0 for piece in scene.shaft.pieces):
             neglects.append("fillets")
         neglects.append("sections that do not stay plane near steps and seats")
-    if housings is None:
+    if scene.nose is not None:
+        neglects.append("rings of bearings on the nose, and the bedplate that holds it")
+    if not scene.bearing_units:
+        housings, title = {}, TITLES[level]
+    elif housings is None:
         neglects.append("housings and bedplates that give: they are rigid")
         housings = {unit.bearing.name: joint_stiffness(unit) for unit in scene.bearing_units}
         title = f"{TITLES[level]}, rigid housings"
@@ -196,11 +205,16 @@ def shaft_level(
         if any(unit.bedplate is not None for unit in scene.bearing_units):
             neglects.append("what a bedplate gives under the weight of its housing")
         title = f"{TITLES[level]}, housings as springs"
+    standing = None if scene.nose is None else on_nose(scene, scene.nose, level, body)
+    body = body if standing is None else standing.body
     found = supported(body, scene_supports(scene, housings))
     n = len(body.names)
-    columns = _unit_loads(body)
+    columns = _unit_loads(scene, body)
     reactions = {name: R @ columns for name, R in found.reactions.items()}
-    reactions.setdefault("gearbox", np.zeros((6, len(LOADS))))
+    if standing is not None:
+        on_bearings = standing.reactions(found.motions)
+        reactions |= {name: R @ columns for name, R in on_bearings.items()}
+    reactions.setdefault("gearbox", np.zeros((6, columns.shape[1])))
     _add_weights(reactions, scene, on_shaft)
     cost = Cost(time.perf_counter() - start, 6 * n)
     motions = found.motions[:, : 6 * n]
@@ -282,18 +296,21 @@ def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozen
             reactions[bearing.name][:, 6:9] += mass * wrench_transport(arm)[:, :3]
 
 
-def _unit_loads(body: Condensed) -> Floats:
-    """(6 n + 3, 10) factors that make `model.LOADS` of unit loads at points and of gravity."""
+def _unit_loads(scene: Scene, body: Condensed) -> Floats:
+    """(6 n + 3, n_loads): a scene's unit loads, of those at n points and of gravity."""
     n = len(body.names)
-    columns = np.zeros((6 * n + 3, len(LOADS)))
+    columns = np.zeros((6 * n + 3, len(scene_loads(scene))))
+    for k, name in enumerate(scene.bands):
+        first = len(LOADS) + 6 * k
+        columns[body.rows(name), first : first + 6] = np.eye(6)
     columns[body.rows("hub"), :6] = np.eye(6)
     columns[6 * n :, 6:9] = np.eye(3)
     columns[6 * body.names.index("gearbox") + 2, 9] = -1.0
     return columns
 
 
-def _applied(body: Condensed, positions: Floats) -> Floats:
-    """(6, 10) resultants of `model.LOADS` about the hub."""
+def _applied(scene: Scene, body: Condensed, positions: Floats) -> Floats:
+    """(6, n_loads) resultants of a scene's unit loads about the hub."""
     n = len(body.names)
     carry = point_motions(positions, positions[0]).T
-    return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(body)
+    return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(scene, body)

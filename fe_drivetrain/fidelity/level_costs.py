@@ -16,7 +16,7 @@ from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.fidelity.ladder import TITLES, shaft_level, statics_level
 from fe_drivetrain.fidelity.shafts import condensed_shaft
 from fe_drivetrain.interfaces.constraints import eliminate, fixed
-from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.response.model import Model
 from fe_drivetrain.solve.cost_model import predict
 from fe_drivetrain.solve.reduction import System, in_blocks, reduce
 
@@ -108,7 +108,7 @@ def forecast(model: Model) -> list[Forecast]:
         Forecast(1, beam.title, beam.cost.unknowns, beam.cost.seconds, None, "", True),
         *on_springs,
         _predicted(3, f"{TITLES[3]} alone", shaft, _OF_A_POINT * len(body.names)),
-        _predicted(4, TITLES[4], whole, len(LOADS) + 1),
+        _predicted(4, TITLES[4], whole, len(model.loads) + 1),
     ]
 
 

@@ -25,7 +25,7 @@ from fe_drivetrain.fidelity.shaft_bands import APART, COARSER
 from fe_drivetrain.fidelity.shafts import condensed_shaft, reference_points
 from fe_drivetrain.mesh.measures import mean_size
 from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.response.unit_loads import Response, driving
 from fe_drivetrain.scene.scene import Scene
 
 COARSER_ASSEMBLY = "assembly, coarser mesh"
@@ -137,7 +137,7 @@ def reaction_history(
     name : str
         Of a bearing, or "gearbox".
     hub_loads : ndarray, (..., 6)
-        Hub forces [N] and moments [N m].
+        Hub forces [N] and moments [N m]; with (..., 6 + 6 m) those at the m load points, too.
     gearbox_weight : float
         Weight of the gearbox [N], along -z.
     gravity : float
@@ -149,7 +149,7 @@ def reaction_history(
         What the drivetrain puts on its support [N, N m].
     """
     R = model.reaction_matrices[name]
-    result = hub_loads @ R[:, :6].T
+    result = hub_loads @ driving(R, hub_loads.shape[-1]).T
     result += gearbox_weight * R[:, 9] - gravity * R[:, 8]
     return np.asarray(result)
 
@@ -185,7 +185,7 @@ def relative_errors(
 
 
 def imbalance(scene: Scene, model: LevelModel) -> float:
-    """Largest difference of the reactions to unit hub loads from the loads, relative.
+    """Largest difference of reactions to unit loads at hub and load points from these, relative.
 
     Parameters
     ----------
@@ -201,9 +201,12 @@ def imbalance(scene: Scene, model: LevelModel) -> float:
     """
     names, positions = reference_points(scene)
     at = dict(zip(names, positions, strict=True))
+    driven = ["hub", *scene.bands]
     total = sum(
-        wrench_transport(at[name] - at["hub"]) @ R[:, :6]
+        wrench_transport(at[name] - at["hub"]) @ driving(R, 6 * len(driven))
         for name, R in model.reaction_matrices.items()
     )
+    applied = np.hstack([wrench_transport(at[name] - at["hub"]) for name in driven])
     length = np.array([1.0, 1.0, 1.0, *3 * (scene.shaft.length,)])
-    return float(np.abs((total - np.eye(6)) / length[:, None] * length).max())
+    error = (total - applied) / length[:, None] * np.tile(length, len(driven))
+    return float(np.abs(error).max())

@@ -16,7 +16,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.ladder import LevelModel
-from fe_drivetrain.response.model import LOADS
+from fe_drivetrain.response.model import LOADS, scene_loads
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import Condensed, keep_points
@@ -114,8 +114,7 @@ def _resisted(stiffness: Floats) -> tuple[Floats, Floats, Floats]:
 
 def known_names(scene: Scene) -> list[str]:
     """All that can be asked of a scene."""
-    units = [unit.bearing.name for unit in scene.bearing_units]
-    names = [f"{name}.{c}" for name in (*units, "gearbox") for c in FORCES]
+    names = [f"{name}.{c}" for name in (*scene.bearing_names, "gearbox") for c in FORCES]
     return names + stiffness_names(scene)
 
 
@@ -139,7 +138,7 @@ def numbers(scene: Scene, names: Sequence[str], load: Floats | None = None) -> l
     names : Sequence[str]
         Of `known_names`.
     load : Floats or None
-        (10,) factors of `model.LOADS` for reactions; where not given, a reaction stands for six
+        (n,) factors of `model.scene_loads`, for reactions; else a reaction stands for six
         numbers, one for a unit of each hub load.
 
     Raises
@@ -165,7 +164,7 @@ def numbers(scene: Scene, names: Sequence[str], load: Floats | None = None) -> l
             found.append(_of_model(name, Quantity(name, load)))
         else:
             for column, of in enumerate(LOADS[:6]):
-                one = np.zeros(len(LOADS))
+                one = np.zeros(len(scene_loads(scene)))
                 one[column] = 1.0
                 found.append(_of_model(f"{name} of {of}", Quantity(name, one), of))
     return found

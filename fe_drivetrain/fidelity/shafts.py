@@ -14,7 +14,7 @@ from scipy import sparse
 from fe_drivetrain.beam.condensed import condensed_beam
 from fe_drivetrain.beam.of_scene import beam_of_scene
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Band, Shaft
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.revolution import harmonics
 from fe_drivetrain.revolution.meridian_mesh import Meridian, meridian
@@ -26,9 +26,10 @@ from fe_drivetrain.solve.coupled_solid import CondensedSolid, condensed_solid
 
 
 def reference_points(scene: Scene) -> tuple[tuple[str, ...], Floats]:
-    """Hub, bearings and gearbox of a scene: names, and (n, 3) positions on the shaft's axis [m]."""
+    """Names and (n, 3) positions [m] of hub, bearings, load points and gearbox of a scene."""
     units = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
-    stations = {"hub": scene.shaft.front, **units, "gearbox": scene.shaft.rear}
+    loaded = {name: (band.low + band.high) / 2 for name, band in scene.seats.items()}
+    stations = {"hub": scene.shaft.front, **units, **loaded, "gearbox": scene.shaft.rear}
     positions = np.zeros((len(stations), 3))
     positions[:, 0] = list(stations.values())
     return tuple(stations), positions
@@ -95,9 +96,10 @@ def shaft_meridian(
     For the arguments see `meridian_shaft`.
     """
     shaft = ringed_shaft(scene)[0] if rings else scene.shaft
-    spans = [unit.bearing.span for unit in scene.bearing_units]
-    ends = [end for span in spans for end in span]
-    corners = [(x, shaft.outer_radius(sum(span) / 2)) for span in spans for x in span]
+    spans = [Band(*unit.bearing.span) for unit in scene.bearing_units]
+    spans += scene.seats.values()
+    ends = [end for span in spans for end in span[:2]]
+    corners = [(x, _radius(shaft, span)) for span in spans for x in span[:2]]
     widest = max(max(p.outer_diameter, p.end_diameter) for p in shaft.pieces)
     # fillets take triangles, of which gmsh makes many where corners are sharp: 2 layers are 4e-4
     if layers is None:
@@ -179,8 +181,9 @@ def shaft_solid(scene: Scene, method: str = "auto") -> CondensedSolid:
     """
     names, positions = reference_points(scene)
     bearings = [unit.bearing for unit in scene.bearing_units]
-    mesh = cached_mesh(scene.shaft, bearings, {}, scene.mesh, frozenset())
-    faces = ["shaft.front", *(f"{b.name}.outer" for b in bearings), "shaft.rear"]
+    mesh = cached_mesh(scene.shaft, bearings, {}, scene.mesh, frozenset(), bands=scene.seats)
+    loaded = [f"shaft.band.{name}" for name in scene.seats]
+    faces = ["shaft.front", *(f"{b.name}.outer" for b in bearings), *loaded, "shaft.rear"]
     attachments = [
         Attachment(name, face, position, "averaged")
         for name, face, position in zip(names, faces, positions, strict=True)
@@ -204,16 +207,21 @@ def condensed_shaft(scene: Scene, level: int) -> Condensed:
     return condensers[level](scene)
 
 
-def _coupled_sides(
-    mesh: Meridian, shaft: Shaft, spans: Sequence[tuple[float, float]]
-) -> list[Ints]:
+def _radius(shaft: Shaft, span: Band) -> float:
+    """Of the face of a shaft that a bearing or a load is on."""
+    middle = (span.low + span.high) / 2
+    return shaft.inner_radius(middle) if span.inside else shaft.outer_radius(middle)
+
+
+def _coupled_sides(mesh: Meridian, shaft: Shaft, spans: Sequence[Band]) -> list[Ints]:
     """Sides of the meridian that each reference point moves with."""
 
     def end(at: float) -> Ints:
         return mesh.sides(lambda x, r: np.abs(x - at) < LENGTH_TOLERANCE)
 
-    def seat(low: float, high: float) -> Ints:
-        radius = shaft.outer_radius((low + high) / 2)
+    def seat(span: Band) -> Ints:
+        low, high, _ = span
+        radius = _radius(shaft, span)
         return mesh.sides(
             lambda x, r: (
                 (np.abs(r - radius) < LENGTH_TOLERANCE)
@@ -222,7 +230,7 @@ def _coupled_sides(
             )
         )
 
-    return [end(shaft.front), *(seat(*span) for span in spans), end(shaft.rear)]
+    return [end(shaft.front), *(seat(span) for span in spans), end(shaft.rear)]
 
 
 def motion_traction(mesh: Meridian, n: int, sides: Ints, place: float, k: int) -> Floats:

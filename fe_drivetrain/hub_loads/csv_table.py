@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
@@ -34,6 +35,8 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     """Read hub loads from a table with named columns and their units in the header.
 
     The header is like ``time [s],Fx [kN],...,Mz [kN m]``, columns in any order, others ignored.
+    Columns like ``brake.Fz [kN]`` are loads at another point of the shaft; those that a point does
+    not have are zero.
     Lines ``# key = value`` before it become the attributes.
 
     Raises
@@ -107,10 +110,17 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
         in_si(source, channels[name], table) for name, table in zip(FORCES, tables, strict=True)
     ]
     columns = dict(zip(FORCES, loads, strict=True))
+    at: dict[str, Floats] = {}
+    others = [name for name in channels if name not in _CSV_COLUMNS]
+    for name in others:
+        point, _, component = name.rpartition(".")
+        c = FORCES.index(component)
+        columns[name] = in_si(source, channels[name], tables[c])
+        at.setdefault(point, np.zeros((time.size, len(FORCES))))[:, c] = columns[name]
     require_sound(f"hub loads '{source}'", time, columns, rows)
-    read = ", ".join(f"{name} [{channels[name].unit}]" for name in FORCES)
+    read = ", ".join(f"{name} [{channels[name].unit}]" for name in (*FORCES, *others))
     origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
-    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes)
+    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at)
 
 
 def write_csv(history: LoadHistory, path: str | os.PathLike[str]) -> None:
@@ -122,9 +132,10 @@ def write_csv(history: LoadHistory, path: str | os.PathLike[str]) -> None:
         If the file cannot be written.
     """
     file = Path(path)
-    table = np.column_stack((history.time, history.loads))
+    table = np.column_stack((history.time, history.loads, *history.at.values()))
+    others = [f"{p}.{c} [{u}]" for p in history.at for c, u in zip(FORCES, UNITS, strict=True)]
     lines = [f"# {key} = {value}" for key, value in history.attributes.items()]
-    lines.append(_CSV_EXAMPLE)
+    lines.append(",".join([_CSV_EXAMPLE, *others]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
         with atomic_path(file) as temporary:
@@ -135,19 +146,20 @@ def write_csv(history: LoadHistory, path: str | os.PathLike[str]) -> None:
 
 def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]:
     """Where each wanted column is and its unit."""
-    wanted = {name.lower(): name for name in _CSV_COLUMNS}
     places: dict[str, tuple[int, str]] = {}
     for place, title in enumerate(header):
-        match = re.fullmatch(r"\s*(\w+)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", title)
-        name = wanted.get(match[1].lower()) if match else None
+        match = re.fullmatch(r"\s*([\w.-]+)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*", title)
+        name = _wanted(match[1]) if match else None
         if match is None or name is None:
             continue
         if name in places:
             raise InputError(f"hub loads '{file}': column {name} is there twice; remove one")
         if not match[2]:
+            component = name.rpartition(".")[2]
+            unit = "s" if name == "time" else UNITS[FORCES.index(component)]
             raise InputError(
                 f"hub loads '{file}': column '{title.strip()}' has no unit; write it like "
-                f"'{name} [{'s' if name == 'time' else UNITS[FORCES.index(name)]}]'"
+                f"'{name} [{unit}]'"
             )
         places[name] = (place, match[2])
     missing = [name for name in _CSV_COLUMNS if name not in places]
@@ -157,6 +169,14 @@ def _csv_places(file: Path, header: Sequence[str]) -> dict[str, tuple[int, str]]
             f"{', '.join(_CSV_COLUMNS)}, like '{_CSV_EXAMPLE}'"
         )
     return places
+
+
+def _wanted(title: str) -> str | None:
+    """The name of a column that is read, its component as `FORCES` has it; None of any other."""
+    point, dot, component = title.rpartition(".")
+    known = {name.lower(): name for name in (FORCES if point else _CSV_COLUMNS)}
+    name = known.get(component.lower())
+    return None if name is None or (dot and not point) else f"{point}{dot}{name}"
 
 
 def _number_or_text(text: str) -> Attribute:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.hub_loads.csv_table import read_csv
 from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, LoadHistory, require_variation
 from fe_drivetrain.hub_loads.openfast import read_openfast
@@ -118,6 +119,31 @@ def hub_load_files(pattern: str) -> list[Path]:
                     f"loads='{file.parent / ('*' + file.suffix)}'"
                 )
     return files
+
+
+def require_points(histories: Sequence[LoadHistory], points: Sequence[str]) -> None:
+    """Refuse histories with loads at a point that a scene does not have.
+
+    Parameters
+    ----------
+    histories : Sequence[LoadHistory]
+        The histories.
+    points : Sequence[str]
+        Names of the scene's load points.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    for history in histories:
+        for point in history.at:
+            if point not in points:
+                raise InputError(
+                    f"hub loads: {history.name} has columns of {shown(point)}, which is no load "
+                    f"point of the scene ({', '.join(points) or 'it has none'}): rename the "
+                    "columns, or add it under load_points"
+                )
 
 
 def _names(files: Sequence[Path]) -> list[str]:

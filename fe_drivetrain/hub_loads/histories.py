@@ -8,7 +8,7 @@ x.  It is the load of the rotor on the shaft: rotor weight is a negative Fz.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,6 +52,9 @@ class LoadHistory:
         Fx, Fy, Fz, Mx, My, Mz of the rotor on the shaft, at the hub.
     attributes : Mapping[str, Attribute]
         What is known of the conditions: wind_speed [m/s], turbulence, shear, seed, source.
+    at : Mapping[str, Floats]
+        (n, 6) loads on the shaft at other points of it, by the point's name, in the same frame and
+        about that point.
 
     Raises
     ------
@@ -64,6 +67,7 @@ class LoadHistory:
     time: Floats
     loads: Floats
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
+    at: Mapping[str, Floats] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         time = _frozen(self.time)
@@ -76,7 +80,16 @@ class LoadHistory:
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "loads", loads)
         object.__setattr__(self, "attributes", dict(self.attributes))
+        at = {name: _frozen(values) for name, values in self.at.items()}
+        object.__setattr__(self, "at", at)
         columns = dict(zip(FORCES, loads.T, strict=True))
+        for point, values in at.items():
+            if values.shape != loads.shape:
+                raise InputError(
+                    f"load history '{self.name}': loads at {point} have shape {values.shape} and "
+                    f"those at the hub {loads.shape}; give one row for each sample"
+                )
+            columns |= {f"{point}.{c}": v for c, v in zip(FORCES, values.T, strict=True)}
         require_sound(f"load history '{self.name}'", time, columns)
 
     def __len__(self) -> int:
@@ -107,10 +120,11 @@ class LoadHistory:
     def between(self, start: float, stop: float = np.inf) -> LoadHistory:
         """The samples with start <= time <= stop [s], for example without a start-up transient."""
         kept = (self.time >= start) & (self.time <= stop)
-        return LoadHistory(self.name, self.time[kept], self.loads[kept], self.attributes)
+        at = {name: values[kept] for name, values in self.at.items()}
+        return LoadHistory(self.name, self.time[kept], self.loads[kept], self.attributes, at)
 
     def moved(self, start: float, stop: float) -> LoadHistory:
-        """The same loads with their moments about another point of the shaft's axis.
+        """The same loads, those at the hub with moments about another point of the shaft's axis.
 
         Parameters
         ----------
@@ -129,7 +143,7 @@ class LoadHistory:
         loads[:, 5] += (start - stop) * self.loads[:, 1]
         read = self.attributes.get("channels", "as in the file")
         channels = f"{read}; moments about x = {start:g} m moved to x = {stop:g} m"
-        return LoadHistory(self.name, self.time, loads, {**self.attributes, "channels": channels})
+        return replace(self, loads=loads, attributes={**self.attributes, "channels": channels})
 
 
 def require_sound(

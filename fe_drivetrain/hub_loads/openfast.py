@@ -73,20 +73,44 @@ def read_openfast(
         unknown, or the samples are unsound.
     """
     file = existing_file(path)
-    channels = _openfast_channels(file)
-    time, loads, read = _loads_from_channels(str(file), channels, gage_distance, azimuth_blade1_up)
+    channels = openfast_channels(file)
+    time, loads, read = loads_from_channels(str(file), channels, gage_distance, azimuth_blade1_up)
     return LoadHistory(
         file.stem, time, loads, {"source": f"OpenFAST, {file.name}", "channels": read}
     )
 
 
-def _loads_from_channels(
+def loads_from_channels(
     source: str,
     channels: Mapping[str, Channel],
     gage_distance: float | None = None,
     azimuth_blade1_up: float = 0.0,
 ) -> tuple[Floats, Floats, str]:
-    """Time (n,) [s], hub loads (n, 6) [N, N m], and what was read, by channels in lower case."""
+    """Hub loads from the channels of a file.
+
+    Parameters
+    ----------
+    source : str
+        The file, for messages.
+    channels : mapping
+        Channels by their names in lower case.
+    gage_distance, azimuth_blade1_up : float
+        As of `read_openfast`.
+
+    Returns
+    -------
+    time : ndarray, (n,)
+        [s].
+    loads : ndarray, (n, 6)
+        [N, N m].
+    read : str
+        Which channels these were, in words.
+
+    Raises
+    ------
+    InputError
+        As of `read_openfast`.
+    """
     used: dict[str, Channel] = {}
 
     def first(names: Sequence[str]) -> Channel | None:
@@ -218,7 +242,19 @@ def turn_to_fixed(y: ArrayLike, z: ArrayLike, azimuth: ArrayLike) -> tuple[Float
     return y * cos - z * sin, y * sin + z * cos
 
 
-def _openfast_channels(file: Path) -> dict[str, Channel]:
+def openfast_channels(file: Path) -> dict[str, Channel]:
+    """Every channel of an OpenFAST output file, by its name in lower case.
+
+    Parameters
+    ----------
+    file : Path
+        Text (.out) or binary (.outb).
+
+    Raises
+    ------
+    InputError
+        The file cannot be read.
+    """
     from openfast_io.FAST_output_reader import load_ascii_output, load_binary_output
 
     try:

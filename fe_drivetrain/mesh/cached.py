@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.made_by import machine, source_hash
-from fe_drivetrain.geometry import Bearing, Housing, MeshSizes, Shaft
+from fe_drivetrain.geometry import NO_BANDS, Band, Bearing, Housing, MeshSizes, Shaft
 from fe_drivetrain.mesh.generation import generate
 from fe_drivetrain.mesh.mesh import Mesh
 
@@ -29,12 +29,13 @@ def cached_mesh(
     sizes: MeshSizes,
     bonded: frozenset[str],
     cache: Cache | None = None,
+    bands: Mapping[str, Band] = NO_BANDS,
 ) -> Mesh:
     """The mesh of these parts, taken from the cache where it was generated before.
 
     Parameters
     ----------
-    shaft, bearings, housings, sizes, bonded : see `fe_drivetrain.mesh.generation.generate`
+    shaft, bearings, housings, sizes, bonded, bands : see `fe_drivetrain.mesh.generation.generate`
         As there.
     cache : Cache or None
         The user's if not given.
@@ -51,14 +52,14 @@ def cached_mesh(
         As `fe_drivetrain.mesh.generation.generate`.
     """
     used = user_cache() if cache is None else cache
-    content = _content(shaft, bearings, housings, sizes, bonded)
+    content = _content(shaft, bearings, housings, sizes, bonded, bands)
     arrays = used.load("meshes", content)
     if arrays is not None:
         try:
             return replace(_from_arrays(arrays), kept=True)
         except (KeyError, IndexError, ValueError):
             pass  # not as it was written: generated again below
-    arrays = _to_arrays(generate(shaft, bearings, housings, sizes, bonded))
+    arrays = _to_arrays(generate(shaft, bearings, housings, sizes, bonded, bands=bands))
     used.keep("meshes", content, arrays)
     return _from_arrays(arrays)
 
@@ -69,6 +70,7 @@ def _content(
     housings: Mapping[str, Housing],
     sizes: MeshSizes,
     bonded: frozenset[str],
+    bands: Mapping[str, Band],
 ) -> dict[str, Any]:
     """All that a mesh depends on; the material is not among it."""
     return {
@@ -80,6 +82,7 @@ def _content(
         },
         "sizes": sizes.model_dump(mode="json"),
         "bonded": sorted(bonded),
+        "bands": {name: list(span) for name, span in bands.items()},
         "made by": _made_by(),
     }
 

@@ -13,6 +13,8 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import (
+    NO_BANDS,
+    Band,
     Bearing,
     Housing,
     LocalSizes,
@@ -45,6 +47,7 @@ def generate(
     sizes: MeshSizes = DEFAULT_SIZES,
     bonded: frozenset[str] = frozenset(),
     local: LocalSizes | None = None,
+    bands: Mapping[str, Band] = NO_BANDS,
 ) -> Mesh:
     """Build the parts and mesh them.
 
@@ -53,7 +56,7 @@ def generate(
 
     Parameters
     ----------
-    shaft, bearings, housings, sizes, bonded : see `fe_drivetrain.geometry.build`
+    shaft, bearings, housings, sizes, bonded, bands : see `fe_drivetrain.geometry.build`
         As there.
     local : LocalSizes or None
         Smaller sizes where they are wanted, see `fe_drivetrain.mesh.adaptivity`.
@@ -72,7 +75,7 @@ def generate(
     joints = [f"{b.name}.housing" for b in bearings if b.name in set(housings) - bonded]
     for _ in range(ATTEMPTS):
         with gmsh_session():
-            build(shaft, bearings, housings, sizes, bonded)
+            build(shaft, bearings, housings, sizes, bonded, bands)
             if local is not None:
                 apply_local_sizes(local)
             gmsh.model.mesh.generate(3)

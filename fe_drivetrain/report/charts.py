@@ -1,6 +1,6 @@
 """Charts of lines, as Plotly's JSON."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,13 @@ def trace(name: str, x: ArrayLike, y: ArrayLike, points: bool = False, **more: A
         "y": rounded(y),
         **more,
     }
+
+
+def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
+    """Points without an answer, at 1 where there is not even a wrong one."""
+    at = np.asarray(x, dtype=float)
+    shown = np.ones(len(at)) if y is None else np.nan_to_num(np.asarray(y, dtype=float), nan=1.0)
+    return trace(name, at, shown, True, marker={"symbol": "x"})
 
 
 def chart(
@@ -55,6 +62,92 @@ def chart(
     if safe is not None:
         axes["shapes"] = [_shaded(traces, safe)]
     return Chart(caption=caption, figure={"data": list(traces), "layout": axes})
+
+
+def density_chart(
+    caption: str, right: ArrayLike, up: ArrayLike, unit: str, bins: int = 60
+) -> Chart:
+    """How often a vector points where, as seen along the axis: a cloud of points would hide it.
+
+    Parameters
+    ----------
+    caption : str
+        What it shows.
+    right, up : array_like
+        (n,) components, in ``unit``.
+    unit : str
+        Their unit.
+    bins : int
+        Cells along each axis.
+    """
+    x, y = np.ravel(np.asarray(right, dtype=float)), np.ravel(np.asarray(up, dtype=float))
+    reach = 1.02 * max(float(np.abs(x).max()), float(np.abs(y).max()), 1e-300)
+    edges = np.linspace(-reach, reach, bins + 1)
+    column, line = (np.searchsorted(edges, v, side="right") - 1 for v in (x, y))
+    counts = np.bincount(line * bins + column, minlength=bins * bins).reshape(bins, bins)
+    shares = 100.0 * counts / x.size
+    middles = rounded(0.5 * (edges[1:] + edges[:-1]), 4)
+    cells = [[float(f"{v:.3g}") if v > 0.0 else None for v in row] for row in shares]
+    figure: dict[str, Any] = {
+        "data": [
+            {
+                "type": "heatmap",
+                "x": middles,
+                "y": middles,
+                "z": cells,
+                "colorscale": "Viridis",
+                "colorbar": {"title": {"text": "% of time"}},
+            }
+        ],
+        "layout": {
+            "xaxis": {"title": {"text": f"right [{unit}]"}, "constrain": "domain"},
+            "yaxis": {"title": {"text": f"up [{unit}]"}, "scaleanchor": "x"},
+        },
+    }
+    return Chart(caption=caption, figure=figure)
+
+
+def bars(
+    caption: str,
+    groups: Mapping[str, Mapping[str, float]],
+    x: str,
+    least: float | None = None,
+    stacked: bool = False,
+) -> Chart:
+    """Horizontal bars, labels down the side in their order.
+
+    Parameters
+    ----------
+    caption : str
+        What they show.
+    groups : dict
+        Name of each colour, and its values by label.
+    x : str
+        Title of the axis of values, with its unit.
+    least : float or None
+        The axis is logarithmic, and this stands for all that is smaller.
+    stacked : bool
+        Bars of one label stand on one another, not side by side.
+    """
+    data = [
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": name,
+            "y": list(values),
+            "x": rounded([v if least is None else max(v, least) for v in values.values()]),
+        }
+        for name, values in groups.items()
+    ]
+    labels = {label for values in groups.values() for label in values}
+    count = len(labels) if stacked else sum(len(values) for values in groups.values())
+    figure = chart(caption, data, x, "", "" if least is None else "x")
+    figure.figure["layout"] |= {
+        "barmode": "stack" if stacked else "group",
+        "height": 160 + (34 if stacked else 24) * max(count, 4),
+        "yaxis": {"autorange": "reversed", "automargin": True},
+    }
+    return figure
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[float]:

@@ -86,7 +86,8 @@ def solved_content(scene: Scene) -> dict[str, Any]:
         Plain data.
     """
     content = scene.model_dump(mode="json", exclude={"title", "uncertainty", "mesh"})
-    del content["gearbox"]["weight"]
+    for loaded in (content["gearbox"], *content["load_points"]):
+        del loaded["weight"]
     return content
 
 

@@ -23,8 +23,8 @@ from fe_drivetrain.scene.bearing_unit import BearingUnit, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.scene import Scene
 
-#: The unit loads of every scene, in the order of the columns of every response: hub forces [N] and
-#: moments [N m], a uniform acceleration [m/s^2] along each axis, 1 N of gearbox weight (along -z).
+#: The unit loads of every scene, the first columns of every response: hub forces [N] and moments
+#: [N m], a uniform acceleration [m/s^2] along each axis, 1 N of gearbox weight (along -z).
 LOADS = (
     *(f"hub.{c}" for c in FORCES),
     "gravity.x",
@@ -32,6 +32,15 @@ LOADS = (
     "gravity.z",
     "gearbox.weight",
 )
+
+
+def scene_loads(scene: Scene) -> tuple[str, ...]:
+    """Names of all unit loads of a scene, in the order of the columns of its responses.
+
+    Those of `LOADS` come first, then forces [N] and moments [N m] at each of its load points.
+    """
+    return (*LOADS, *(f"{point.name}.{c}" for point in scene.load_points for c in FORCES))
+
 
 _N_GROUPS = 32  # near the square root of the number of nodes on a joint: least fill
 
@@ -49,7 +58,8 @@ class Model:
     part_mass : Mapping[str, Floats]
         (n_nodes,) integrals of density times shape function of each part [kg].
     points : Mapping[str, ReferencePoint]
-        Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing; where there are
+        Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing, the load points by
+        their names; where there are
         such, "NAME.base" (on a bedplate that gives), and "NAME.joint" or "NAME.roller K", whose
         motion is that of the bearing against its housing.
     constraints : tuple[Constraint, ...]
@@ -78,6 +88,11 @@ class Model:
     warnings: tuple[str, ...] = ()
 
     @property
+    def loads(self) -> tuple[str, ...]:
+        """Names of its unit loads, see `scene_loads`."""
+        return scene_loads(self.scene)
+
+    @property
     def stiffness(self) -> sparse.bsr_array:
         """Stiffness of all parts and springs, before any constraint [N/m]."""
         total = sum(self.part_stiffness.values())
@@ -92,18 +107,21 @@ class Model:
         return np.asarray(np.sum(list(self.part_mass.values()), axis=0))
 
     def unit_loads(self) -> Floats:
-        """(n_dofs, 10): the loads of `LOADS`, one a column."""
-        F = np.zeros((self.n_dofs, len(LOADS)))
+        """(n_dofs, n_loads): the loads of `scene_loads`, one a column."""
+        F = np.zeros((self.n_dofs, len(self.loads)))
         F[:, :6] = self.points["hub"].motion.T.toarray()
         mass = self.mass
         for axis in range(3):
             F[axis : 3 * len(mass) : 3, 6 + axis] = mass
         F[:, 9] = -self.points["gearbox"].motion[[2]].toarray()[0]
+        for k, point in enumerate(self.scene.load_points):
+            first = len(LOADS) + 6 * k
+            F[:, first : first + 6] = self.points[point.name].motion.T.toarray()
         return F
 
     def part_loads(self, part: str) -> Floats:
-        """(n_dofs, 10): the share of `unit_loads` that acts inside one part (its gravity)."""
-        F = np.zeros((self.n_dofs, len(LOADS)))
+        """(n_dofs, n_loads): the share of `unit_loads` that acts inside one part (its gravity)."""
+        F = np.zeros((self.n_dofs, len(self.loads)))
         mass = self.part_mass[part]
         for axis in range(3):
             F[axis : 3 * len(mass) : 3, 6 + axis] = mass
@@ -114,13 +132,25 @@ def mesh_scene(scene: Scene) -> Mesh:
     """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
 
     A mesh that was generated before comes from the cache, see `fe_drivetrain.common.cache`.
+
+    Raises
+    ------
+    InputError
+        The scene has a nose, whose bearings have no solids.
     """
+    if scene.nose is not None:
+        raise InputError(
+            f"scene {scene.title!r} has a nose, which the assembly of solids (level 4) does not: "
+            "use levels 0 to 3 (fe-drivetrain advise, uncertainty --level 2, export --level 3), "
+            "which have shaft and nose"
+        )
     return cached_mesh(
         scene.shaft,
         [unit.bearing for unit in scene.bearing_units],
         {unit.bearing.name: unit.housing for unit in scene.bearing_units},
         scene.mesh,
         frozenset(u.bearing.name for u in scene.bearing_units if u.interface == "bonded"),
+        bands=scene.bands,
     )
 
 
@@ -171,6 +201,9 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
 
     points["hub"] = couple("hub", "shaft.front", np.array([scene.shaft.front, 0.0, 0.0]))
     points["gearbox"] = couple("gearbox", "shaft.rear", np.array([scene.shaft.rear, 0.0, 0.0]))
+    for point in scene.load_points:
+        at = np.array([point.x, 0.0, 0.0])
+        points[point.name] = couple(point.name, f"shaft.band.{point.name}", at)
     for unit in scene.bearing_units:
         name = unit.bearing.name
         centre = np.array([unit.bearing.x, 0.0, 0.0])
@@ -246,7 +279,7 @@ def _stand(
 
 def needed_faces(scene: Scene) -> list[str]:
     """Names of the faces of a mesh that the loads, supports and interfaces of a scene need."""
-    names = ["shaft.front", "shaft.rear"]
+    names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.bands)]
     for unit in scene.bearing_units:
         name = unit.bearing.name
         names += [f"shaft.seat.{name}", f"{name}.housing.base"]

@@ -54,9 +54,10 @@ class Secant:
         unexplained, and the mean of the secants weighted by theta^2.
     scatter : float
         Root mean square of M - K theta over that of K theta, which is the standard deviation of
-        the secants, weighted likewise, over K. All cases count; small rotations count little.
+        the secants, weighted likewise, over K. All cases count, by their time where that
+        is given; small rotations count little.
     secants : Floats
-        (m,) of each case [N m/rad]; NaN of those that turn the bearing by less than
+        (m,) of each case by itself [N m/rad]; NaN of those that turn the bearing by less than
         `LEAST_ROTATION`.
     """
 
@@ -120,7 +121,7 @@ class Parts:
         return int(self.shares.argmax())
 
 
-def secant(loads: Floats, motions: Floats, component: int) -> Secant:
+def secant(loads: Floats, motions: Floats, component: int, weights: Floats | None = None) -> Secant:
     """The torsional spring that load cases show, and how much it changes from one to the next.
 
     Parameters
@@ -130,13 +131,16 @@ def secant(loads: Floats, motions: Floats, component: int) -> Secant:
         at its centre.
     component : int
         3 to 5.
+    weights : Floats or None
+        (m,) share of each case in the whole time; equal where not given.
 
     Raises
     ------
     InputError
         No case turns the bearing.
     """
-    M, theta = loads[:, component], motions[:, component]
+    each_M, each_theta = loads[:, component], motions[:, component]
+    M, theta = (_counted(values, weights) for values in (each_M, each_theta))
     square = float(theta @ theta)
     if not square > 0.0:
         raise InputError(
@@ -146,20 +150,23 @@ def secant(loads: Floats, motions: Floats, component: int) -> Secant:
     stiffness = float(M @ theta) / square
     rest = float(np.linalg.norm(M - stiffness * theta))
     size = abs(stiffness) * np.sqrt(square)
-    kept = np.abs(theta) >= LEAST_ROTATION * np.sqrt(square / len(theta))
+    kept = np.abs(each_theta) >= LEAST_ROTATION * np.sqrt(square / len(theta))
     secants = np.full(len(theta), np.nan)
-    secants[kept] = M[kept] / theta[kept]
+    secants[kept] = each_M[kept] / each_theta[kept]
     return Secant(component, stiffness, rest / size if rest else 0.0, secants)
 
 
-def fitted_spring(loads: Floats, motions: Floats) -> Spring:
+def fitted_spring(loads: Floats, motions: Floats, weights: Floats | None = None) -> Spring:
     """The 6x6 spring R = K u that load cases show, by least squares.
 
     Parameters
     ----------
     loads, motions : Floats
         (m, 6), see `secant`.
+    weights : Floats or None
+        (m,) share of each case in the whole time; equal where not given.
     """
+    loads, motions = (_counted(values, weights) for values in (loads, motions))
     size = _rms(motions)
     size = np.where(size > 0.0, size, 1.0)
     X, _, rank, _ = np.linalg.lstsq(motions / size, loads, rcond=_INDEPENDENT)
@@ -176,7 +183,13 @@ def fitted_spring(loads: Floats, motions: Floats) -> Spring:
     )
 
 
-def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> Parts:
+def parts_of(
+    loads: Floats,
+    motions: Floats,
+    matrix: Floats,
+    component: int,
+    weights: Floats | None = None,
+) -> Parts:
     """Take a moment apart by the couplings of a 6x6 spring.
 
     A term in proportion to the rotation changes the secant of all cases equally; the rest of
@@ -190,6 +203,8 @@ def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> 
         (6, 6) stiffness of the bearing unit.
     component : int
         3 to 5.
+    weights : Floats or None
+        (m,) share of each case in the whole time; equal where not given.
 
     Raises
     ------
@@ -205,6 +220,7 @@ def parts_of(loads: Floats, motions: Floats, matrix: Floats, component: int) -> 
     compliance = np.linalg.inv(matrix)
     arms = -compliance[component] / compliance[component, component]
     arms[component] = 0.0
+    loads, motions = (_counted(values, weights) for values in (loads, motions))
     M, theta = loads[:, component], motions[:, component]
     terms = loads * arms
     rest = M - theta / compliance[component, component] - terms.sum(axis=1)
@@ -268,6 +284,14 @@ def moved(loads: Floats, motions: Floats, arm: Floats) -> tuple[Floats, Floats]:
     Between the two points the bearing moves as a rigid body.
     """
     return loads @ wrench_transport(-arm).T, motions @ wrench_transport(arm)
+
+
+def _counted(values: Floats, weights: Floats | None) -> Floats:
+    """Values (m, ...) so that sums of their products count each case by its weight."""
+    if weights is None:
+        return values
+    root = np.sqrt(len(weights) * weights)
+    return np.asarray(values * root.reshape(-1, *(1,) * (values.ndim - 1)))
 
 
 def _rms(values: Floats) -> Floats:

@@ -17,25 +17,26 @@ from fe_drivetrain.solve.solvers import Diagnostics, solve
 
 @dataclass(frozen=True)
 class Response:
-    """What the unit loads of `model.LOADS` do, one load a column.
+    """What the n unit loads of a scene do (`model.scene_loads`), one load a column.
 
     Six components are Fx, Fy, Fz [N], Mx, My, Mz [N m], or displacements [m] and rotations [rad].
 
     Attributes
     ----------
     reactions : Mapping[str, Floats]
-        (6, 10) by name: what the drivetrain puts on its surroundings or on the next part.
+        (6, n) by name: what the drivetrain puts on its surroundings or on the next part.
         "NAME" (housing base, moments about the bearing's centre) for each bearing, "gearbox"
         (springs and torque reaction), and the interfaces "NAME.seat" (shaft on bearing) and
         "NAME.outer" (bearing on housing).
     positions : Mapping[str, Floats]
-        (3,) by the same names: the point that the moments are about [m]; and "hub".
+        (3,) by the same names: the point that the moments are about [m]; and "hub" and the load
+        points.
     motions : Mapping[str, Floats]
-        (6, 10) by reference point: "hub", "gearbox", "NAME.seat".
+        (6, n) by reference point: "hub", "gearbox", "NAME.seat", and the load points.
     strain_energy : Mapping[str, Floats]
-        (10, 10) by part: U = w^T E w / 2 for the load factors w [J].
+        (n, n) by part: U = w^T E w / 2 for the load factors w [J].
     displacements : Floats
-        (n_nodes, 3, 10) [m].
+        (n_nodes, 3, n) [m].
     equilibrium_error : float
         Largest imbalance of loads and reactions over all unit loads, relative to the load.
     superposition_error : float
@@ -63,7 +64,7 @@ class Response:
         Returns
         -------
         labels, matrix
-            "NAME Fx" to "NAME Mz" for each reaction, and (n_labels, 10).
+            "NAME Fx" to "NAME Mz" for each reaction, and (n_labels, n).
         """
         labels = [f"{name} {c}" for name in self.reactions for c in FORCES]
         return labels, np.vstack(list(self.reactions.values()))
@@ -82,7 +83,8 @@ class Response:
         name : str
             A key of ``reactions``.
         hub_loads : Floats
-            (..., 6) hub forces [N] and moments [N m].
+            (..., 6) hub forces [N] and moments [N m]; with (..., 6 + 6 m) those at each of m load
+            points of the scene, too.
         gearbox_weight : float
             [N], along -z.
         gravity : float
@@ -102,9 +104,16 @@ class Response:
             raise InputError(f"no reaction {name!r}: use one of {', '.join(self.reactions)}")
         R = self.reactions[name]
         constant = gearbox_weight * R[:, 9] - gravity * R[:, 8]
-        result = hub_loads @ R[:, :6].T
+        result = hub_loads @ driving(R, hub_loads.shape[-1]).T
         result += constant
         return np.asarray(result)
+
+
+def driving(matrix: Floats, n: int) -> Floats:
+    """The first n columns (..., n) of a response that loads at hub and load points belong to."""
+    if n == 6:
+        return matrix[..., :6]
+    return np.concatenate([matrix[..., :6], matrix[..., len(LOADS) : len(LOADS) + n - 6]], axis=-1)
 
 
 def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Response:
@@ -125,7 +134,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         The system is singular, see `solvers.factorise`; with what the model warned of.
     """
     loads = model.unit_loads()
-    n_loads = len(LOADS)
+    n_loads = len(model.loads)
     # Loads of very different size (1 N, 1 N m, a tonne under 1 m/s^2) count equally in the check.
     factors = np.random.default_rng(seed).uniform(-1.0, 1.0, n_loads)
     factors /= np.linalg.norm(loads, axis=0)
@@ -154,7 +163,8 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         ].position
         for name in reactions
     }
-    positions["hub"] = model.points["hub"].position
+    for name in ("hub", *model.scene.bands):
+        positions[name] = model.points[name].position
     U = U[:, :-1]
     n = len(model.mesh.points)
     return Response(
@@ -214,8 +224,11 @@ def _equilibrium_error(
 ) -> float:
     """Largest component of (applied - reacted) about the origin, relative to each load's size."""
     mesh = model.mesh
-    applied = np.zeros((6, len(LOADS)))
+    applied = np.zeros((6, len(model.loads)))
     applied[:, :6] = wrench_transport(model.points["hub"].position)
+    for k, name in enumerate(model.scene.bands):
+        first = len(LOADS) + 6 * k
+        applied[:, first : first + 6] = wrench_transport(model.points[name].position)
     mass = model.mass
     first_moment = mass @ mesh.points
     for axis in range(3):

@@ -15,6 +15,8 @@ from .joint_springs import roller_lines as roller_lines
 from .materials import HIGHEST_POISSON_RATIO as HIGHEST_POISSON_RATIO
 from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
+from .nose import Nose as Nose
+from .nose import NoseBearing as NoseBearing
 from .reading import change_component as change_component
 from .reading import change_scene as change_scene
 from .reading import library_component as library_component
@@ -25,6 +27,7 @@ from .reading import read_scene as read_scene
 from .scene import Coupling as Coupling
 from .scene import Gearbox as Gearbox
 from .scene import Hub as Hub
+from .scene import LoadPoint as LoadPoint
 from .scene import Scene as Scene
 from .scene import Spread as Spread
 from .scene import coarser_scene as coarser_scene

@@ -57,6 +57,10 @@ ARRANGEMENTS: Mapping[str, Arrangement] = MappingProxyType(
 # Sections of a scene file that may be left out. Each becomes valid by taking the "# " away.
 _OPTIONAL = {
     "hub": "hub: {coupling: averaged}   # how loads enter the front face: averaged or rigid\n",
+    "load_points": (
+        "load_points:   # where else loads enter the shaft: columns brake.Fz [kN] of a CSV file\n"
+        "  - {name: brake, x: -0.23, width: 0.03, weight: 5000}\n"
+    ),
     "materials": (
         "materials:   # steel and ductile_iron are there; name others here\n"
         "  cast_steel: {youngs_modulus: 2.05e11, poisson_ratio: 0.29, density: 7800}\n"

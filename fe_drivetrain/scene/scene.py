@@ -9,10 +9,19 @@ from pydantic import (
 )
 
 from fe_drivetrain.common.strict_yaml import shown
-from fe_drivetrain.geometry import MeshSizes, Shaft, check_parts, within_walls
+from fe_drivetrain.geometry import (
+    Band,
+    MeshSizes,
+    Shaft,
+    check_bands,
+    check_parts,
+    refuse_millimetres,
+    within_walls,
+)
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Keys, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import Material, known_materials
+from fe_drivetrain.scene.nose import Nose, NoseBearing
 from fe_drivetrain.scene.standing import check_standing
 
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
@@ -20,6 +29,9 @@ Coupling = Literal["averaged", "rigid"]
 
 #: Largest weight of a part [N]: a hundred times the nacelle of the largest turbines.
 HEAVIEST = 1e9
+
+#: Names that load points cannot have: loads and points of every scene.
+_RESERVED = ("hub", "gearbox", "gravity", "shaft", "nose")
 
 
 def check_material(name: str, defined: Mapping[str, Material], of: str = "") -> None:
@@ -75,6 +87,25 @@ class Gearbox(Keys):
         return [c for c, k in enumerate(self.stiffness) if k == "rigid"]
 
 
+class LoadPoint(Keys):
+    """Another point of the shaft where loads enter: a gear, a brake disc, a coupling, a mass.
+
+    Forces and moments act on average on the outer surface of the shaft, over a width.
+    """
+
+    name: str = Field(
+        pattern=r"^[A-Za-z][A-Za-z0-9_-]*$", description="name: letters, digits, '_' and '-'"
+    )
+    x: float = Field(ge=-1e3, le=1e3, description="x of the middle of its width [m]")
+    width: float = Field(gt=0, le=1e3, description="over which the shaft takes its loads [m]")
+    weight: float = Field(default=0.0, ge=0, le=HEAVIEST, description="weight [N], along -z")
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """x of both ends of its width [m]."""
+        return self.x - self.width / 2, self.x + self.width / 2
+
+
 class Spread(Keys):
     """How certain a value is, relative to it: half the width of an even distribution, the standard
     deviation of a normal one, or the coefficient of variation of a lognormal one about its median.
@@ -95,7 +126,7 @@ class Spread(Keys):
 
 
 class Scene(Keys):
-    """A drivetrain: one shaft on any number of bearing units, with a hub and a gearbox.
+    """A drivetrain: one shaft on any number of bearing units, or round a nose; a hub, a gearbox.
 
     Whatever is to be done with a scene, it is sound from the start: its parts fit together
     (`fe_drivetrain.geometry.check_parts`), and it is no mechanism (`check_standing`).
@@ -103,18 +134,32 @@ class Scene(Keys):
 
     title: str
     shaft: Shaft
-    bearing_units: tuple[BearingUnit, ...] = Field(min_length=1)
+    bearing_units: tuple[BearingUnit, ...] = ()
+    nose: Nose | None = None
     hub: Hub = Hub()
     gearbox: Gearbox
+    load_points: tuple[LoadPoint, ...] = ()
     materials: Mapping[str, Material] = {}
     mesh: MeshSizes = MeshSizes()
     uncertainty: Mapping[str, Spread] = {}
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
-        names = [unit.bearing.name for unit in self.bearing_units]
+        names = self.bearing_names
+        if not names:
+            raise ValueError("there is no bearing: give bearing_units, or a nose with bearings")
+        if set(names) & set(_RESERVED):
+            raise ValueError(f"bearing names {names} must not be one of {', '.join(_RESERVED)}")
         if len(set(names)) < len(names):
             raise ValueError(f"bearing names {names} must differ from each other")
+        taken = {*names, *_RESERVED}
+        for point in self.load_points:
+            if point.name in taken:
+                raise ValueError(
+                    f"load point {point.name!r} has the name of another point of the scene "
+                    f"({', '.join(sorted(taken))}): rename it"
+                )
+            taken.add(point.name)
         used = [("shaft", self.shaft.material)]
         for unit in self.bearing_units:
             used.append((unit.bearing.name, unit.bearing.material))
@@ -132,9 +177,18 @@ class Scene(Keys):
             [unit.bearing for unit in self.bearing_units],
             {unit.bearing.name: unit.housing for unit in self.bearing_units},
         )
+        if self.nose is not None:
+            check_material(self.nose.body.material, self.materials, " of nose")
+            refuse_millimetres(
+                "nose",
+                self.nose.body.length,
+                2 * max(map(self.nose.body.outer_radius, self.nose.body.stations)),
+            )
+            self.nose.check_fits(self.shaft)
+        check_bands(self.shaft, self.seats, [unit.bearing for unit in self.bearing_units])
         gearbox = as_numbers(self.gearbox.stiffness)
         modulus = self.material_of("shaft").youngs_modulus
-        check_standing(self.shaft, self.bearing_units, gearbox, modulus)
+        check_standing(self.shaft, self.bearing_units, gearbox, modulus, self.nose_bearings)
         return self
 
     def material_of(self, part: str) -> Material:
@@ -142,9 +196,34 @@ class Scene(Keys):
         known = known_materials(self.materials)
         if part == "shaft":
             return known[self.shaft.material]
+        if part == "nose" and self.nose is not None:
+            return known[self.nose.body.material]
         name, _, housing = part.partition(".")
         unit = self.bearing_unit(name)
         return known[unit.housing.material if housing else unit.bearing.material]
+
+    @property
+    def bands(self) -> dict[str, Band]:
+        """Where on the shaft each load point's loads enter, by its name."""
+        return {point.name: Band(*point.span) for point in self.load_points}
+
+    @property
+    def nose_bearings(self) -> tuple[NoseBearing, ...]:
+        """The bearings between shaft and nose; none where there is no nose."""
+        return () if self.nose is None else self.nose.bearings
+
+    @property
+    def seats(self) -> dict[str, Band]:
+        """Faces of the shaft beside its ends and the seats of bearing units: of nose and loads."""
+        return {b.name: Band(*b.span, inside=True) for b in self.nose_bearings} | self.bands
+
+    @property
+    def bearing_names(self) -> list[str]:
+        """Names of all bearings, those of bearing units first."""
+        return [
+            *(u.bearing.name for u in self.bearing_units),
+            *(b.name for b in self.nose_bearings),
+        ]
 
     @property
     def loads_at(self) -> float:

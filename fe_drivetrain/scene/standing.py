@@ -20,7 +20,8 @@ from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import along_x, point_motions, rigid_motions
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.scene.bearing_unit import BearingUnit
-from fe_drivetrain.scene.joint_springs import joint_stiffness
+from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
+from fe_drivetrain.scene.nose import NoseBearing
 
 _EPSILON = float(np.finfo(np.float64).eps)
 # Stiffness in a direction, relative to what the support has in others, that is round-off.
@@ -28,7 +29,11 @@ _NOTHING = 1e-12
 
 
 def check_standing(
-    shaft: Shaft, units: Sequence[BearingUnit], gearbox: Floats, youngs_modulus: float
+    shaft: Shaft,
+    units: Sequence[BearingUnit],
+    gearbox: Floats,
+    youngs_modulus: float,
+    on_nose: Sequence[NoseBearing] = (),
 ) -> None:
     """Refuse a scene whose shaft can move as a rigid body, or is held below round-off.
 
@@ -40,6 +45,8 @@ def check_standing(
         (6,) springs at the gearbox [N/m, N m/rad]; inf where rigid.
     youngs_modulus : float
         Of the shaft [Pa].
+    on_nose : Sequence[NoseBearing]
+        Bearings between the shaft and a nose, which stands.
 
     Raises
     ------
@@ -54,6 +61,7 @@ def check_standing(
     rim = (along_x(stations)[:, None] + np.array(radii)[:, None, None] * sides).reshape(-1, 3)
     supports = [(along_x([shaft.rear])[0], np.diag(gearbox))]
     supports += [(along_x([unit.bearing.x])[0], joint_stiffness(unit)) for unit in units]
+    supports += [(along_x([b.x])[0], np.diag(as_numbers(b.stiffness))) for b in on_nose]
     body = RigidBody(
         ("shaft", *(unit.bearing.name for unit in units)),
         np.array([(shaft.front + shaft.rear) / 2, 0.0, 0.0]),

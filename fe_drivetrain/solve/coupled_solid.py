@@ -98,11 +98,15 @@ class CondensedSolid:
         motions : Floats
             (6 p,) of the p points [m, rad].
         """
+        return self.fields(motions[:, None])[:, 0].reshape(-1, 3)
+
+    def fields(self, motions: Floats) -> Floats:
+        """Displacements of all nodes (3 n, m) for several motions (6 p, m), see `displacements`."""
         forces = self.body.stiffness @ motions
         T = self._elimination.T
-        u = np.asarray(T @ self._solver.solve(T.T @ (self._loads @ forces[:, None])).x)[:, 0]
+        u = np.asarray(T @ self._solver.solve(T.T @ (self._loads @ forces)).x)
         u += self._rigid @ (motions[:6] - self._loads[:, :6].T @ u)
-        return u[: self.mesh.points.size].reshape(-1, 3)
+        return u[: self.mesh.points.size]
 
 
 def coupled_solid(

@@ -97,6 +97,28 @@ def recovery_estimate(
     return ErrorEstimate(energy, np.concatenate(indicators))
 
 
+def error_energies(points: Floats, parts: Sequence[tuple[Ints, Lame]], fields: Floats) -> Floats:
+    """Estimated energies of the errors of several solutions on one mesh, recovered together.
+
+    Parameters
+    ----------
+    points, parts : Floats, Sequence[tuple[Ints, Lame]]
+        See `recovery_estimate`.
+    fields : Floats
+        (3 n, m) or longer, displacements [m].
+
+    Returns
+    -------
+    Floats
+        (m,) `ErrorEstimate.error_energy` of each [J].
+    """
+    total = np.zeros(fields.shape[1])
+    for cells, lame in parts:
+        for volumes, _, error in _errors(points, np.asarray(cells), lame, fields[: points.size]):
+            total += np.einsum("eq,meq->m", volumes, energy_density(error, lame))
+    return total
+
+
 def recovered_work(
     points: Floats, parts: Sequence[tuple[Ints, Lame]], first: Floats, second: Floats
 ) -> Floats:
@@ -119,16 +141,19 @@ def recovered_work(
     Floats
         (a, b) [J].
     """
-    fields = np.hstack([first[: points.size], second[: points.size]])
-    count, total = first.shape[1], np.zeros((first.shape[1], second.shape[1]))
+    fields = [first[: points.size]]
+    if second is not first:
+        fields.append(second[: points.size])
+    columns = np.hstack(fields)
+    total = np.zeros((first.shape[1], second.shape[1]))
     for cells, (lam, mu) in parts:
-        errors = (_errors(points, np.asarray(cells), (lam, mu), u) for u in fields.T)
-        for chunk in zip(*errors, strict=True):
-            volumes, d = chunk[0][0], np.stack([error for _, _, error in chunk])
-            strains = d * np.repeat([1.0, 2.0], 3)
-            strains[..., :3] -= lam / (3.0 * lam + 2.0 * mu) * d[..., :3].sum(axis=-1)[..., None]
+        for volumes, _, d in _errors(points, np.asarray(cells), (lam, mu), columns):
+            acting, moved = d[: first.shape[1]], d[-second.shape[1] :]
+            strains = moved * np.repeat([1.0, 2.0], 3)
+            shrunk = lam / (3.0 * lam + 2.0 * mu) * moved[..., :3].sum(axis=-1)
+            strains[..., :3] -= shrunk[..., None]
             strains *= volumes[..., None] / (2.0 * mu)
-            work = np.einsum("aeqk,beqk->abe", d[:count], strains[count:], optimize=True)
+            work = np.einsum("aeqk,beqk->abe", acting, strains, optimize=True)
             total += np.abs(work).sum(axis=-1)
     return total
 
@@ -137,29 +162,35 @@ def _energies(
     points: Floats, cells: Ints, lame: Lame, u: Floats
 ) -> Iterator[tuple[Floats, Floats]]:
     """Energies (n_cells,) of stresses and of their difference from recovered ones, in chunks."""
-    for volumes, s, error in _errors(points, cells, lame, u):
+    for volumes, s, error in _errors(points, cells, lame, u[: points.size, None]):
         yield (
-            np.einsum("eq,eq->e", volumes, energy_density(s, lame)),
-            np.einsum("eq,eq->e", volumes, energy_density(error, lame)),
+            np.einsum("eq,eq->e", volumes, energy_density(s[0], lame)),
+            np.einsum("eq,eq->e", volumes, energy_density(error[0], lame)),
         )
 
 
 def _errors(
-    points: Floats, cells: Ints, lame: Lame, u: Floats
+    points: Floats, cells: Ints, lame: Lame, fields: Floats
 ) -> Iterator[tuple[Floats, Floats, Floats]]:
-    """Volumes (n_cells, n_q), stresses (n_cells, n_q, 6), and these less recovered ones."""
+    """Volumes (n_cells, n_q), stresses (m, n_cells, n_q, 6), and these less recovered ones.
+
+    Of m fields (3 n, m), in chunks of cells.
+    """
     kind = element_kind(cells.shape[1])
     patches = _Patches(points, cells, kind)
-    coefficients = patches.fit(points, cells, lame, u)
+    columns = np.ascontiguousarray(fields.T)
+    coefficients = patches.fit(points, cells, lame, columns)
     at, weights = get_quadrature(kind.element.refdom, 4 if kind.n_corners == 4 else 5)
     blend, _ = element_kind(kind.n_corners).shape(at)
     values, gradients = kind.shape(at)
-    for rows in chunks(len(cells), CHUNK // 2):
-        s = stresses(points, cells[rows], u, lame, at)
-        terms = patches.terms(rows, values @ points[cells[rows]])
-        recovered = np.einsum(
-            "qc,ecqt,ectk->eqk", blend, terms, coefficients[patches.local[rows]], optimize=True
-        )
+    for rows in chunks(len(cells), max(CHUNK // (2 * len(columns)), 1)):
+        s = np.stack([stresses(points, cells[rows], u, lame, at) for u in columns])
+        # (n_cells, n_q, corners and terms) onto (n_cells, corners and terms, fields and stresses)
+        terms = patches.terms(rows, values @ points[cells[rows]]) * blend.T[:, :, None]
+        n, corners, n_q, n_terms = terms.shape
+        onto = np.moveaxis(terms, 1, 2).reshape(n, n_q, corners * n_terms)
+        of = coefficients[patches.local[rows]].reshape(n, corners * n_terms, -1)
+        recovered = np.moveaxis((onto @ of).reshape(n, n_q, len(columns), 6), 2, 0)
         volumes = np.abs(jacobian(points, cells[rows], gradients)[1]) * weights
         yield volumes, s, s - recovered
 
@@ -205,18 +236,19 @@ class _Patches:
             found += [x * x, y * y, z * z, x * y, y * z, z * x]
         return np.stack(found, axis=-1)
 
-    def fit(self, points: Floats, cells: Ints, lame: Lame, u: Floats) -> Floats:
-        """(n_patches, n_terms, 6) coefficients that fit the stresses at the elements' best points.
+    def fit(self, points: Floats, cells: Ints, lame: Lame, fields: Floats) -> Floats:
+        """(n_patches, n_terms, 6 m) coefficients that fit stresses at the elements' best points.
 
-        These are the Gauss points of one degree less (Barlow 1976).
+        These are the Gauss points of one degree less (Barlow 1976). Of m fields (m, 3 n).
         """
         at, _ = get_quadrature(self._kind.element.refdom, self._degree + 1)
         values, _ = self._kind.shape(at)
         n, n_terms = len(self._centre), (1, 4, 10)[self._degree]
         left = np.zeros((n, n_terms * n_terms))
-        right = np.zeros((n, n_terms * 6))
-        for rows in chunks(len(cells), CHUNK // 2):
-            s = stresses(points, cells[rows], u, lame, at)
+        width = 6 * len(fields)
+        right = np.zeros((n, n_terms * width))
+        for rows in chunks(len(cells), max(CHUNK // (2 * len(fields)), 1)):
+            s = np.concatenate([stresses(points, cells[rows], u, lame, at) for u in fields], axis=2)
             terms = self.terms(rows, values @ points[cells[rows]])
             patch = self.local[rows].ravel()
             gather = sparse.csr_array(
@@ -228,4 +260,4 @@ class _Patches:
             right += gather @ loads.reshape(patch.size, -1)
         matrix = left.reshape(n, n_terms, n_terms)
         matrix += matrix[:, 0, 0, None, None] * np.diag(_HELD[:n_terms])
-        return np.asarray(np.linalg.solve(matrix, right.reshape(n, n_terms, 6)))
+        return np.asarray(np.linalg.solve(matrix, right.reshape(n, n_terms, width)))

@@ -2,7 +2,6 @@ from .case import Case as Case
 from .case import all_cases as all_cases
 from .case import find_cases as find_cases
 from .page import Page as Page
-from .page import Target as Target
 from .records import MeshSeries as MeshSeries
 from .records import Record as Record
 from .records import column as column
@@ -17,3 +16,4 @@ from .run_comparison import Change as Change
 from .run_comparison import RunComparison as RunComparison
 from .run_comparison import compare_runs as compare_runs
 from .suite import run_cases as run_cases
+from .targets import Target as Target

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -22,59 +22,15 @@ from fe_drivetrain.report.results import (
     Verdict,
     judge,
 )
-from fe_drivetrain.suite.records import MeshSeries, Record, column, grouped
-
-UNITS_OF: Mapping[str, Measure] = {
-    "MPa": "stress",
-    "psi": "stress",
-    "m": "deflection",
-    "mm": "deflection",
-    "µm": "deflection",
-    "mrad": "rotation",
-    "rad": "rotation",
-    "N": "reaction",
-    "MN": "reaction",
-    "J/m": "energy",
-    "N/m": "stiffness",
-    "N m/rad": "stiffness",
-    "N m^2": "stiffness",
-    "kg": "mass",
-}
-"""Kind of quantity, for bias and scatter over all cases, of units that have but one."""
-
-
-class Target(NamedTuple):
-    """What a benchmark asks for; see `Page.equals`.
-
-    Attributes
-    ----------
-    key : str
-        The quantity with its unit: "deflection [mm]"; in the record of a mesh its key.
-    value : float
-        What it should be.
-    within : float
-        Allowed difference, relative to the value.
-    why, source : str
-        Why the tolerance is what it is, and where the value comes from.
-    name : str
-        What was computed, where the key does not state it alone.
-    relative : bool
-        False where `within` is in the unit.
-    measure : str or None
-        Kind of quantity; that of the unit where left out.
-    order : float or None
-        Expected order of convergence.
-    """
-
-    key: str
-    value: float
-    within: float
-    why: str
-    source: str
-    name: str = ""
-    relative: bool = True
-    measure: Measure | None = None
-    order: float | None = None
+from fe_drivetrain.suite.records import (
+    MeshSeries,
+    Record,
+    as_json,
+    column,
+    grouped,
+    plain_cells,
+)
+from fe_drivetrain.suite.targets import MEASURES, Target, split_unit
 
 
 class Page:
@@ -139,9 +95,9 @@ class Page:
         Parameters
         ----------
         quantity : str
-            What was computed.
+            What was computed, with its unit: "deflection [mm]"; a pure number has none.
         computed, reference : float
-            In `unit`.
+            In that unit.
         within : float
             Allowed difference, relative to the reference.
         why : str
@@ -149,11 +105,12 @@ class Page:
         source : str
             Where the reference comes from.
         unit : str
-            Of both; empty for a pure number.
+            Of both, where the quantity is stated without it.
         relative : bool
             False where `within` is in the unit.
         measure : str, optional
-            Kind of quantity, for bias and scatter over all cases.
+            Kind of quantity, for bias and scatter over all cases; that of the unit in brackets
+            where left out.
         basis : str
             "self-consistency" of what is true by construction, "second-hand" of a source that was
             not read itself: both are shown as such, and stay out of bias and scatter.
@@ -205,22 +162,23 @@ class Page:
             band=band,
         )
 
-    def finest(self, series: MeshSeries, target: Target) -> None:
-        """The finest of several meshes meets a target; the band of its value is that of them all.
+    def finest(self, series: MeshSeries, *targets: Target) -> None:
+        """The finest of several meshes meets targets; the band of each value is that of them all.
 
         Parameters
         ----------
         series : MeshSeries
             What each mesh gave.
-        target : Target
+        *targets : Target
             What the finest should give.
         """
-        value, band = series.rows[-1][target.key], series.band(target.key, target.order)
-        self.meets(value, target, band)
+        for target in targets:
+            value, band = series.rows[-1][target.key], series.band(target.key, target.order)
+            self.meets(value, target, band)
 
     def meets(self, computed: float, target: Target, band: float | None = None) -> None:
         """The computed value meets a target; `band` as for `equals`."""
-        quantity, _, unit = target.key.removesuffix("]").partition(" [")
+        quantity, unit = split_unit(target.key)
         self.equals(
             target.name or quantity,
             computed,
@@ -230,7 +188,7 @@ class Page:
             source=target.source,
             unit=unit,
             relative=target.relative,
-            measure=target.measure or UNITS_OF.get(unit),
+            measure=target.measure or MEASURES.get(unit),
             band=band,
         )
 
@@ -287,8 +245,13 @@ class Page:
         source: str,
         tolerance: float = 0.0,
         relative: bool = False,
+        unit: str = "",
+        measure: Measure | None = None,
         **more: Any,
     ) -> None:
+        if not unit:
+            quantity, unit = split_unit(quantity)
+            measure = measure or MEASURES.get(unit)
         self.verdicts.append(
             judge(
                 quantity,
@@ -299,6 +262,8 @@ class Page:
                 relative=relative,
                 reason=why,
                 source=source,
+                unit=unit,
+                measure=measure,
                 **more,
             )
         )
@@ -356,7 +321,9 @@ class Page:
             [row.get(name) for name in columns] if isinstance(row, Mapping) else list(row)
             for row in rows
         ]
-        self.add(Table(caption=caption, columns=list(columns), rows=[_plain(c) for c in cells]))
+        self.add(
+            Table(caption=caption, columns=list(columns), rows=[plain_cells(c) for c in cells])
+        )
 
     def image(self, caption: str, file: str) -> None:
         """Add a PNG of the run's folder."""
@@ -374,40 +341,6 @@ class Page:
         """Add a chart of traces; see `fe_drivetrain.report.chart`."""
         self.add(chart(caption, traces, x, y, logarithmic, safe))
 
-    def meshes(
-        self,
-        caption: str,
-        series: MeshSeries,
-        references: Mapping[str, float],
-        heading: str = "reference",
-    ) -> None:
-        """Add a table of quantities on several meshes beside their references, and its data.
-
-        Parameters
-        ----------
-        caption : str
-            What it shows; the records stand under it among `figures`.
-        series : MeshSeries
-            What each mesh gave.
-        references : dict
-            Key of a quantity, with its unit, and its reference.
-        heading : str
-            Of the references' column.
-        """
-        rows = [(key, key, value) for key, value in references.items()]
-        self._meshes(caption, series, rows, heading)
-
-    def _meshes(
-        self, caption: str, series: MeshSeries, rows: list[tuple[str, str, float]], heading: str
-    ) -> None:
-        """The same with what is shown of a key in its row's first cell."""
-        meshes, by = series.rows, series.by
-        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
-        cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
-        self.table(caption, cells, columns)
-        keys = [by, *dict.fromkeys(key for _, key, _ in rows)]
-        self.data(caption, [{key: mesh[key] for key in keys} for mesh in meshes])
-
     def targets(
         self, caption: str, series: MeshSeries, targets: Sequence[Target], heading: str = "target"
     ) -> None:
@@ -424,21 +357,25 @@ class Page:
         heading : str
             Of the targets' column.
         """
-        for target in targets:
-            self.finest(series, target)
+        self.finest(series, *targets)
         rows = []
         for target in targets:
             unit = target.key.partition(" [")[2]
             shown = f"{target.name} [{unit}" if target.name and unit else target.name
             rows.append((shown or target.key, target.key, target.value))
-        self._meshes(caption, series, rows, heading)
+        meshes, by = series.rows, series.by
+        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
+        cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
+        self.table(caption, cells, columns)
+        keys = [by, *dict.fromkeys(target.key for target in targets)]
+        self.data(caption, [{key: mesh[key] for key in keys} for mesh in meshes])
 
     def sweep(
         self,
         caption: str,
         rows: Sequence[Record],
         x: str,
-        y: str,
+        y: str | Mapping[str, str],
         *,
         by: str | None = None,
         log: str = "",
@@ -446,6 +383,7 @@ class Page:
         safe: tuple[float | None, float | None] | None = None,
         points: bool = False,
         table: Sequence[str] | bool = True,
+        axis: str = "",
     ) -> None:
         """One list of records, of which chart, table and data are made.
 
@@ -456,10 +394,12 @@ class Page:
         rows : sequence of dict
             One for each point, the same keys in each, with units in the keys; table and data take
             the keys of numbers and words, not of arrays.
-        x, y : str
-            Keys of the chart's axes.
+        x : str
+            Key of the horizontal axis.
+        y : str or dict
+            Key of the vertical axis; or of several curves the key of each, and its name.
         by : str, optional
-            Key that tells the curves apart.
+            Key that tells the curves apart; of several `y` each has its own for every value.
         log : str
             Which axes are logarithmic: "", "x", "y" or "xy".
         reference : dict, optional
@@ -470,16 +410,24 @@ class Page:
             Points without lines.
         table : bool or sequence of str
             Whether there is a table, or which keys it shows.
+        axis : str
+            Title of the vertical axis, with its unit; the key of the first curve where left out.
         """
         mode = "markers" if points else "lines+markers"
-        curves = grouped(rows, by) if by else [(y, rows)]
-        traces = [trace(str(name), column(of, x), column(of, y), mode=mode) for name, of in curves]
+        keys = {y: ""} if isinstance(y, str) else y
+        traces = []
+        for group, of in grouped(rows, by) if by else [("", rows)]:
+            for key, name in keys.items():
+                # a record without that value has no point
+                at = [row for row in of if row[key] is not None]
+                title = ", ".join(str(part) for part in (group, name) if part != "") or key
+                traces.append(trace(title, column(at, x), column(at, key), mode=mode))
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
             trace(name, ends, [value, value], line={"dash": "dot"})
             for name, value in (reference or {}).items()
         ]
-        self.chart(caption, traces, x, y, tuple(log), safe)
+        self.chart(caption, traces, x, axis or next(iter(keys)), tuple(log), safe)
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
         if table is not False:
             self.table(caption, rows, plain if table is True else table)
@@ -487,7 +435,7 @@ class Page:
 
     def data(self, name: str, value: Any) -> None:
         """Keep numbers for other programs in results.json, under a name with its unit."""
-        self.figures[name] = _as_json(value)
+        self.figures[name] = as_json(value)
 
     # the atlas, and what was assumed
 
@@ -520,17 +468,3 @@ class Page:
     def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
         """State a value that the sources do not give, and where it comes from."""
         self.assumptions.append(AssumptionRow(name=name, value=value, unit=unit, source=source))
-
-
-def _plain(cells: Sequence[Any]) -> list[Cell]:
-    """Cells without NumPy's scalars."""
-    return [cell.item() if hasattr(cell, "item") else cell for cell in cells]
-
-
-def _as_json(value: Any) -> Any:
-    """The same data without NumPy's arrays and scalars."""
-    if isinstance(value, Mapping):
-        return {str(key): _as_json(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_as_json(inner) for inner in value]
-    return value.tolist() if hasattr(value, "tolist") else value

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
+
+from fe_drivetrain.report.results import Cell
 
 Record = dict[str, Any]
 """One point of a sweep: its parameters and what was found there."""
@@ -59,3 +61,17 @@ class MeshSeries(NamedTuple):
 
         sizes = [float(n) ** (-1.0 / self.dimension) for n in column(self.rows, self.by)]
         return band_of(sizes, column(self.rows, key), order)
+
+
+def plain_cells(cells: Sequence[Any]) -> list[Cell]:
+    """Cells of a table without NumPy's scalars."""
+    return [cell.item() if hasattr(cell, "item") else cell for cell in cells]
+
+
+def as_json(value: Any) -> Any:
+    """The same data without NumPy's arrays and scalars."""
+    if isinstance(value, Mapping):
+        return {str(key): as_json(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_json(inner) for inner in value]
+    return value.tolist() if hasattr(value, "tolist") else value

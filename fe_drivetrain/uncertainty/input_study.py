@@ -131,7 +131,7 @@ def study(
         Names, see `reported.known_names`, before every stiffness that is reported; the adviser
         answers for these, or for `DEFAULT`.
     load : Floats or None
-        (10,) factors of `model.LOADS`, for reactions.
+        (n,) factors of `model.scene_loads`, for reactions.
     tolerance : float
         Of the level, relative.
     level : int or None

@@ -42,7 +42,7 @@ def shaft_content(scene: Scene) -> str:
         (u.bearing if u.bearing.name in rings else u.bearing.span, u.bearing.name in rings)
         for u in scene.bearing_units
     ]
-    return repr((scene.shaft, bearings, material))
+    return repr((scene.shaft, bearings, scene.seats, material))
 
 
 @dataclass

@@ -8,14 +8,22 @@ import numpy as np
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common import Floats, InputError, Ints
+from fe_drivetrain.interfaces import dofs
 from fe_drivetrain.mesh import FACES, Block, brick, element_kind, jacobian, straightened
-from fe_drivetrain.operator import Traction, strains, stresses, tensor
+from fe_drivetrain.operator import Traction, strains, stresses, tensor, traction_loads
+from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.validation.manufactured import (
     LAME,
 )
 
 DIVISIONS = 3  # two layers of corners are inside
 SIZE = 1.0 / DIVISIONS  # of an element [m]
+
+STRAINS = tensor(np.eye(6))
+"""(6, 3, 3) states of strain: one component of the tensor each, shear ones both ways."""
+_LAM, _MU = LAME
+SIGMAS = _LAM * np.trace(STRAINS, axis1=1, axis2=2)[:, None, None] * np.eye(3) + 2 * _MU * STRAINS
+"""(6, 3, 3) their stresses."""
 
 
 @dataclass(frozen=True)
@@ -189,3 +197,36 @@ def quadratic_error(patch: Patch) -> float:
 def constant_traction(stress: Floats) -> Traction:
     """The traction of a constant (3, 3) stress [Pa] on any face."""
     return lambda positions, normals: normals @ stress
+
+
+def patch_test(patch: Patch) -> tuple[float, ...]:
+    """Largest errors of a patch over the six states of strain.
+
+    Returns
+    -------
+    errors : tuple of float
+        Of displacement and stress with displacements given all round; of displacement, stress and
+        reaction of the supports under tractions on the whole surface, six degrees of freedom held.
+        See `worst_errors`; reactions over the sum of all loads.
+    """
+    block = patch.block
+    points, cells, n = block.points, block.cells, 3 * len(block.points)
+    exact = np.einsum("kij,nj->nik", STRAINS, points).reshape(n, 6)
+
+    def solve(F: Floats, columns: Ints) -> tuple[Floats, Floats]:
+        given = columns, exact[columns]
+        found = solve_solid(points, cells, LAME, [], F, prescribed=given, method="superlu")
+        return found.u, found.reactions["prescribed"]
+
+    strong, _ = solve(np.zeros((n, 6)), dofs(patch.outer).ravel())
+    F = np.zeros((n, 6))
+    for k, sigma in enumerate(SIGMAS):
+        for facets in block.faces.values():
+            F[:, k] += traction_loads(points, facets, constant_traction(sigma))
+    origin, along_x, along_y = dofs(patch.holders)
+    weak, reaction = solve(F, np.array([*origin, along_x[1], along_x[2], along_y[2]]))
+    return (
+        *worst_errors(patch, strong, exact, SIGMAS),
+        *worst_errors(patch, weak, exact, SIGMAS),
+        float(np.abs(reaction).max() / np.abs(F).sum(axis=0).min()),
+    )

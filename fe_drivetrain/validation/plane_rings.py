@@ -56,15 +56,15 @@ class Lame:
     inside: float = 0.0
     outside: float = 0.0
 
-    def radial(self, r: Floats) -> Floats:
+    def radial(self, r: float | Floats) -> Floats:
         """Radial stress [Pa]."""
         return self._mean - self._varying / np.asarray(r) ** 2
 
-    def hoop(self, r: Floats) -> Floats:
+    def hoop(self, r: float | Floats) -> Floats:
         """Hoop stress [Pa]."""
         return self._mean + self._varying / np.asarray(r) ** 2
 
-    def displacement(self, r: Floats, plane: Plane) -> Floats:
+    def displacement(self, r: float | Floats, plane: Plane) -> Floats:
         """Radial displacement [m]."""
         return np.asarray(r) / plane.E * (self.hoop(r) - plane.nu * self.radial(r))
 

@@ -95,6 +95,13 @@ def recovery_error(per_turn: int) -> float:
     return float((2 * np.pi / per_turn) ** 2 / 6)
 
 
+RECOVERED = (
+    "stress is recovered linearly in each element: h^2 / 12 for the arc h of an element, and as "
+    "much for the radius"
+)
+"""Why recovered stress is as wrong as `recovery_error` says."""
+
+
 def anticlastic_error(per_turn: int) -> float:
     """Error of a displacement that goes as sin 2t round the shaft, over its amplitude.
 
@@ -127,6 +134,28 @@ def parabola_slope(per_turn: int) -> float:
     """Largest angle [rad] between such a parabola and the circle: (1 - cos t)^2 / t."""
     half = np.pi / per_turn
     return float((1 - np.cos(half)) ** 2 / half)
+
+
+def within_arcs(per_turn: int, what: str, power: int) -> tuple[float, str]:
+    """How much of a section's property parabolic arcs round a turn may miss, relative, and why.
+
+    Parameters
+    ----------
+    per_turn : int
+        Arcs round a turn.
+    what : str
+        The property: "I".
+    power : int
+        Its power of the radius: 2 of an area, 4 of a second moment.
+
+    Returns
+    -------
+    within, why : float, str
+        Twice what `parabola_shortfall` says, and that in words.
+    """
+    missed = power * parabola_shortfall(per_turn)
+    why = f"{per_turn} parabolic arcs round a turn: {what} is {missed:.2g} too low by their "
+    return 2 * missed, why + "formula; twice that is allowed"
 
 
 def pure_bending_field(points: Floats, curvature: float, poisson_ratio: float) -> Floats:

@@ -7,7 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats
+from fe_drivetrain.scene import Material
+from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.validation.plane_rings import Lame, Plane, even_amplitudes, harmonics
+from fe_drivetrain.validation.ring_solids import plane_strain_hold, ring_sector, sector_symmetry
 
 ORDERS = 400
 """Even harmonics of the series: up to n = 798."""
@@ -149,6 +152,44 @@ class SqueezedRing:
     def share(self, change: float) -> float:
         """A change of diameter [m], closing positive, over W R^3 / (E' I)."""
         return float(-change * self.plane.E / (12.0 * self.force * self.ratio**3))
+
+    def solid(self, level: int, material: Material) -> tuple[int, dict[str, float]]:
+        """A quarter of solids, in plane strain.
+
+        Parameters
+        ----------
+        level : int
+            Two elements through the wall are divided into so many; three of a thick ring, which is
+            loaded over more than its radius allows to call smooth.
+        material : Material
+            Of the ring.
+
+        Returns
+        -------
+        through, found : int, dict
+            Elements through the wall, and the quantities of `series`.
+        """
+        a, b, quarter = self.inner, self.outer, 0.5 * np.pi
+        through = (3 if self.ratio < 4.0 else 2) * level
+        width = (b - a) / through
+        around = self.boundaries(level) / quarter
+        divisions = (through, len(around) - 1, 1)
+        block = ring_sector(a, b, width, quarter, divisions, edges=(None, around, None))
+
+        def traction(x: Floats, normal: Floats) -> Floats:
+            return np.asarray(-self.pressure(np.arctan2(x[:, 2], x[:, 1]))[:, None] * normal)
+
+        held = [*sector_symmetry(block, quarter), plane_strain_hold(block)]
+        found = solve_block(block, material, face_loads(block, x1=traction), *held)
+        loaded = found.node(0.0, a, 0.0)
+        across, outside = (found.node(0.0, r * np.cos(quarter), r) for r in (a, b))
+        return through, {
+            ALONG: 2.0 * float(found.u[loaded, 1]),
+            ACROSS: 2.0 * float(found.u[across, 2]),
+            UNDER: float(found.polar.hoop[loaded]),
+            OUTSIDE: float(found.polar.hoop[outside]),
+            STIFFNESS: 0.5 * self.force**2 / (4.0 * found.energy / width),
+        }
 
     def boundaries(self, level: int) -> Floats:
         """Angles [rad] that divide a quarter: one element under the load, growing ones to the end.

@@ -24,7 +24,7 @@ from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_leve
 from fe_drivetrain.fidelity.quantities import shaft_numbers, unit_numbers
 from fe_drivetrain.fidelity.shafts import meridian_shaft
 from fe_drivetrain.geometry import unit_solids
-from fe_drivetrain.response.model import LOADS
+from fe_drivetrain.response.model import scene_loads
 from fe_drivetrain.scene.scene import Scene
 
 
@@ -119,7 +119,7 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
     return SummaryFile(
         shaft=ShaftFile(**shaft_numbers(meridian)),
         bearing_units={name: _unit(unit) for name, unit in bounds.items()},
-        reactions=_reactions(model),
+        reactions=_reactions(scene, model),
         parts=_parts(scene),
         origin=OriginFile(**vars(scene_origin(scene, f"{level} {model.title}", "see the scene"))),
     )
@@ -150,10 +150,10 @@ def _unit(bounds: UnitBounds) -> UnitFile:
     return UnitFile(tilt=tilt, yaw=yaw, **found)
 
 
-def _reactions(model: LevelModel) -> ReactionsFile:
+def _reactions(scene: Scene, model: LevelModel) -> ReactionsFile:
     return ReactionsFile(
         level=f"{model.level} {model.title}",
-        loads=list(LOADS),
+        loads=list(scene_loads(scene)),
         components=list(FORCES),
         matrices={name: matrix.tolist() for name, matrix in model.reaction_matrices.items()},
     )

@@ -22,6 +22,7 @@ from fe_drivetrain.report.pictures.symbols import (
     add_fixed_base,
     add_gearbox,
     add_hub_loads,
+    add_load_point,
     hub_arrows,
 )
 from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, STRIP, View
@@ -67,7 +68,9 @@ def picture_of_model(model: Model, path: Path) -> None:
         rear + a * np.array([[1.2, 0, 0], [0, -1.2, 0], [0, 0, -1.2]]),
         rear + np.array([[0, 0, radius + 1.2 * a]]),
     ]
-    stations = [hub[0], *sorted(unit.bearing.x for unit in scene.bearing_units), rear[0]]
+    between = [unit.bearing.x for unit in scene.bearing_units]
+    between += [point.x for point in scene.load_points]
+    stations = [hub[0], *sorted(between), rear[0]]
     under = _line_under(mesh, stations)
     seen = np.concatenate([mesh.points, *symbols, under])
     view = View.fitting(seen, ALONG_THE_SHAFT, top=60, bottom=STRIP + 60)
@@ -84,6 +87,8 @@ def picture_of_model(model: Model, path: Path) -> None:
         add_gearbox(sheet.plotter, scene.gearbox, rear, radius, a)
         for unit in scene.bearing_units:
             add_fixed_base(sheet.plotter, mesh, unit, 0.06 * a)
+        for point in scene.load_points:
+            add_load_point(sheet.plotter, point, scene.shaft.outer_radius(point.x), a)
         _dimensions(sheet, stations, under, mesh)
         _label_hub_loads(sheet, hub, a)
         _label_parts(sheet, model)
@@ -141,6 +146,9 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
     mesh = model.mesh
     sheet.note(model.points["hub"].position, "hub", (-90, -150))
     sheet.note(model.points["gearbox"].position, "gearbox", (100, 115))
+    for point in model.scene.load_points:
+        top = [point.x, 0.0, model.scene.shaft.outer_radius(point.x)]
+        sheet.note(top, point.name.replace("_", " "), (40, 110))
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         # the upright face of the cut shows the bearing at y = 0, between seat and outer face
@@ -184,10 +192,18 @@ def _legend(model: Model) -> list[list[tuple[str, str | None]]]:
         (f"forces ({scene.hub.coupling} over the face)", FORCE),
         ("moments (two heads)", MOMENT),
     ]
+    hub += [
+        (
+            f"{point.name.replace('_', ' ')}"
+            + (f": weight {with_prefix(point.weight, 'N')}" if point.weight else ""),
+            FORCE,
+        )
+        for point in scene.load_points
+    ]
     return [
         [("Parts", "head"), *parts, ("fixed to the ground", GROUND)],
         [("Interfaces", "head"), *interfaces],
-        [("Loads at the hub", "head"), *hub],
+        [("Loads" if scene.load_points else "Loads at the hub", "head"), *hub],
         [("Gearbox", "head"), *gearbox],
     ]
 

@@ -12,7 +12,7 @@ from fe_drivetrain.report.pictures.surfaces import curved_surface
 
 if TYPE_CHECKING:
     from fe_drivetrain.scene.bearing_unit import BearingUnit
-    from fe_drivetrain.scene.scene import Gearbox
+    from fe_drivetrain.scene.scene import Gearbox, LoadPoint
 
 FORCE = "#b3261e"
 MOMENT = "#6b3fa0"
@@ -47,6 +47,22 @@ def add_hub_loads(plotter: Any, hub: Floats, a: float) -> None:
     for name, tail, tip in hub_arrows(hub, a):
         moment = name.startswith("M")
         _add_arrow(plotter, tail, tip, MOMENT if moment else FORCE, 2 if moment else 1)
+
+
+def add_load_point(plotter: Any, point: LoadPoint, radius: float, a: float) -> None:
+    """Draw a band round the shaft where loads enter, and an arrow for its weight, if any."""
+    import pyvista
+
+    band = pyvista.Tube(
+        pointa=(point.span[0], 0.0, 0.0),
+        pointb=(point.span[1], 0.0, 0.0),
+        radius=1.01 * radius,
+        n_sides=48,
+    )
+    plotter.add_mesh(band, color=FORCE, ambient=0.3)
+    if point.weight:
+        top = np.array([point.x, 0.0, radius])
+        _add_arrow(plotter, top + a * np.eye(3)[2], top, FORCE, 1)
 
 
 def add_gearbox(plotter: Any, gearbox: Gearbox, rear: Floats, radius: float, a: float) -> None:

@@ -1,16 +1,14 @@
 """Sweeps over decades: the range that is safe, and the slope of an error on logarithmic axes."""
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.common import Floats
-from fe_drivetrain.report import trace
+from fe_drivetrain.common.arrays import Floats
 
-#: Relative error of a stiffness that counts as safe: four digits.
 FOUR_DIGITS = 1e-4
+"""Relative error of a stiffness that counts as safe."""
 
 
 def decades(low: float, high: float, per_decade: float) -> Floats:
@@ -88,6 +86,35 @@ def last_within(x: ArrayLike, error: ArrayLike, criterion: float) -> float | Non
     return float(np.asarray(x, dtype=float)[count - 1]) if count else None
 
 
+def least_safe(x: ArrayLike, error: ArrayLike, level: float) -> float | None:
+    """Least x from which on an error is below a level, to the end of the sweep.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Ascending.
+    error : (n,) array
+        With its sign, which does not count.
+    level : float
+        In the unit of the error.
+
+    Returns
+    -------
+    least : float or None
+        Between points by straight lines in logarithms; the first x where the error is below the
+        level everywhere, None where it is not even at the last.
+    """
+    x, size = np.asarray(x, dtype=float), np.abs(np.asarray(error, dtype=float))
+    above = np.flatnonzero(size >= level)
+    if not len(above):
+        return float(x[0])
+    k = int(above[-1])
+    if k == len(x) - 1:
+        return None
+    share = np.log(size[k] / level) / np.log(size[k] / size[k + 1])
+    return float(np.exp(np.log(x[k]) + share * np.log(x[k + 1] / x[k])))
+
+
 def fitted_exponent(
     x: ArrayLike, y: ArrayLike, within: tuple[float, float] = (0.0, math.inf)
 ) -> tuple[float, float | None]:
@@ -120,13 +147,6 @@ def fitted_exponent(
     return float(b), float(2.0 * np.sqrt(variance / ((log_x - log_x.mean()) ** 2).sum()))
 
 
-def shown(value: float | None) -> str:
-    """A bound in words."""
+def in_words(value: float | None) -> str:
+    """A bound of a safe range, or that there is none."""
     return "no bound" if value is None else f"{value:.2g}"
-
-
-def crosses(name: str, x: ArrayLike, y: ArrayLike | None = None) -> Any:
-    """Trace of points without an answer, at 1 where there is not even a wrong one."""
-    at = np.asarray(x, dtype=float)
-    shown_at = np.ones(len(at)) if y is None else np.nan_to_num(np.asarray(y, dtype=float), nan=1.0)
-    return trace(name, at, shown_at, True, marker={"symbol": "x"})

@@ -13,18 +13,6 @@ from functools import partial
 
 import numpy as np
 
-from fe_drivetrain.cases.performance.choices import (
-    CURVED,
-    P1,
-    REPEATS,
-    STEPS,
-    STRAIGHT,
-    Assembled,
-    Outcome,
-    Solve,
-    solved,
-    timed,
-)
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.interfaces import constraints
@@ -39,6 +27,18 @@ from fe_drivetrain.response import (
 )
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.solve import reduce
+from fe_drivetrain.validation.stiffness_choices import (
+    CURVED,
+    P1,
+    REPEATS,
+    STEPS,
+    STRAIGHT,
+    Assembled,
+    Outcome,
+    Solve,
+    solved,
+    timed,
+)
 
 #: What is compared: K_R by plane and by estimator of `stiffness.tilt_stiffness`.
 QUANTITIES = tuple((plane.name, kind) for kind in ("energy", "averaged seat") for plane in PLANES)

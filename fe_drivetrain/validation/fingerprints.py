@@ -1,6 +1,6 @@
 """One process's answers, to the last bit: written to a file, to be compared with another's.
 
-Run as ``python -m fe_drivetrain.cases.stability.fingerprints FILE L/D ...``; the threads are those
+Run as ``python -m fe_drivetrain.validation.fingerprints FILE L/D ...``; the threads are those
 that the environment gives.
 """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.common import Ints
+from fe_drivetrain.common.arrays import Ints
 
 
 def pareto_front(seconds: ArrayLike, errors: ArrayLike, gain: float = 0.0) -> Ints:

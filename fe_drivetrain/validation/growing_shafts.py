@@ -12,10 +12,10 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
-from fe_drivetrain.cases.performance import choices
 from fe_drivetrain.common import run_python
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.validation import stiffness_choices as choices
 
 STEPPED = Shaft(
     front=-2.0,

@@ -1,6 +1,6 @@
 """Load histories of any length, made chunk by chunk, and the memory that comparing them takes.
 
-Run as ``python -m fe_drivetrain.cases.stability.streamed_series SAMPLES streamed|whole``, it
+Run as ``python -m fe_drivetrain.validation.streamed_series SAMPLES streamed|whole``, it
 compares one history in a process of its own and prints time, memory and statistics as JSON.
 """
 

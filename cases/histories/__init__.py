@@ -1,0 +1,1 @@
+"""Load histories as evidence: counting, faulty histories, two sets side by side, speed."""

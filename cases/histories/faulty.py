@@ -1,0 +1,237 @@
+"""Histories that say less than they seem to: too slow, too short, with spikes, gaps, constants."""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.histories import (
+    RESIDUES,
+    alias,
+    damage_equivalent_load,
+    multiples,
+    rainflow_cycles,
+    spectrum,
+)
+from fe_drivetrain.hub_loads import LoadHistory, read_recorded, write_csv
+from fe_drivetrain.suite import Page, Record, Run
+
+HERTZ = 0.2  # of the rotor
+SIX = 6.0 * HERTZ
+STEP = 0.01
+LINES = {3: 1.0, 6: 0.3}  # amplitudes at multiples
+KEPT = 0.01
+
+
+@case(
+    "Load histories that are sampled too slowly, too short, with gaps, constants, spikes",
+    source="Shannon 1949 (sampling); ASTM E1049-85 (residue); closed forms",
+)
+def run(run: Run, page: Page) -> None:
+    """Drive histories into each fault, and show what the program does."""
+    with run.step("sampling"):
+        slow(page)
+    with run.step("length"):
+        change = short(run, page)
+    with run.step("spikes"):
+        spikes(page)
+    with run.step("gaps and constants"):
+        refused(page)
+    page.answer(
+        "6P needs more than two samples a period; sampled more slowly it appears as a load that is "
+        "not there, or falls on 3P and changes that: 'loads' says where.",
+        f"The rule for the residue changes an equivalent load of m = 10 by {change:.2g} % in ten "
+        "minutes of a load that drifts, so that every figure states it. A spike decides equivalent "
+        "loads of steep S-N curves; nothing takes it out.",
+    )
+
+
+def wave(time: Floats) -> Floats:
+    """3P and 6P of a rotor."""
+    return np.asarray(sum(a * np.sin(2 * np.pi * n * HERTZ * time) for n, a in LINES.items()))
+
+
+def slow(page: Page) -> None:
+    """One load at ever larger steps: the line of 6P, and where it stands."""
+    rows: list[Record] = []
+    for rate in (100.0, 20.0, 10.0, 5.0, 3.0, 2.6, 2.2, 1.8, 1.5):
+        signal = wave(np.arange(0.0, 1200.0, 1.0 / rate))
+        found = spectrum(signal, 1.0 / rate)
+        six = multiples(found, 2 * np.pi * HERTZ, [6])[0]
+        at = alias(SIX, 1.0 / rate)
+        rows.append(
+            {
+                "samples per 6P": rate / SIX,
+                "line of 6P appears at [Hz]": six.appears_at,
+                "amplitude there over the true one": found.amplitude(at, near=0.0) / LINES[6],
+                "named as 6P": "yes" if six.amplitude is not None else "no: said on the page",
+            }
+        )
+        if abs(at - 3.0 * HERTZ) < 1e-9:
+            page.equals(
+                f"{rate:g} Hz: amplitude of 3P, on which 6P falls with the opposite sign",
+                found.amplitude(at, near=0.0),
+                LINES[3] - LINES[6],
+                within=0.02,
+                why="two lines of one frequency cannot be told apart; no other line leaks in",
+                source="sin(2 pi 1.2 n / 1.8) = -sin(2 pi 0.6 n / 1.8)",
+            )
+            continue
+        page.equals(
+            f"6P at {rate:g} Hz: amplitude of the line at {at:.3g} Hz",
+            rows[-1]["amplitude there over the true one"],
+            1.0,
+            within=0.02,
+            why="the line has its power wherever sampling puts it; other lines leak in a little",
+            source="sampling theorem",
+        )
+    page.section("Sampling too slow for 6P")
+    page.sweep(
+        "A line of 6P at 1.2 Hz, sampled ever more slowly",
+        rows,
+        "samples per 6P",
+        "line of 6P appears at [Hz]",
+        log="x",
+        reference={"6P": SIX},
+        points=True,
+    )
+    page.limit(
+        "multiples of the rotor's speed from samples",
+        "samples per period of the multiple",
+        low=2.0,
+        high=None,
+        criterion="the line stands at its own frequency",
+        beyond="it appears folded below half the sampling rate, as a load that is not there",
+        program="'loads' leaves the amplitude empty and states where the line appears",
+        remedy="write the output more often",
+    )
+
+
+def short(run: Run, page: Page) -> float:
+    """Equivalent loads by the three rules, against length; what they differ by in 600 s [%]."""
+    generator = np.random.default_rng(1)
+    steps = int(600 / 0.1)
+    noise = generator.standard_normal((4 if run.quick else 16, steps)).cumsum(axis=1) * 0.02
+    load = noise + wave(np.arange(steps, dtype=np.float64) * 0.1)
+    rows: list[Record] = []
+    for seconds in (10, 30, 60, 120, 300, 600):
+        part = load[:, : seconds * 10]
+        for residue in RESIDUES:
+            found = [
+                damage_equivalent_load(
+                    [rainflow_cycles(row, residue)],  # type: ignore[arg-type]
+                    float(seconds),
+                    10.0,
+                )
+                for row in part
+            ]
+            rows.append(
+                {
+                    "length [s]": seconds,
+                    "residue": residue,
+                    "DEL of m = 10 [-]": float(np.mean(found)),
+                }
+            )
+    page.section("Short histories")
+    page.sweep(
+        "Equivalent load of m = 10 at 1 Hz by the rule for the residue: 3P, 6P and a drift, which "
+        "closes few cycles",
+        rows,
+        "length [s]",
+        "DEL of m = 10 [-]",
+        by="residue",
+        log="x",
+    )
+    by = {(row["length [s]"], row["residue"]): row["DEL of m = 10 [-]"] for row in rows}
+    for seconds in (10, 600):
+        low, high = by[seconds, "half"], by[seconds, "closed"]
+        page.between(
+            f"{seconds} s: closed residue over half cycles, equivalent load of m = 10",
+            high / low,
+            1.0,
+            2.0**0.1,
+            why="counting halves as wholes at most doubles the damage",
+            source="Miner's rule: 2^(1/m)",
+        )
+    return 100.0 * float(by[600, "closed"] / by[600, "half"] - 1.0)
+
+
+def spikes(page: Page) -> None:
+    """One wrong sample in ten minutes."""
+    load = wave(np.arange(0.0, 600.0, 0.05))
+    clean = {m: damage_equivalent_load([rainflow_cycles(load)], 600.0, m) for m in (3.0, 10.0)}
+    rows: list[Record] = []
+    for size in (1.0, 2.0, 5.0, 10.0):
+        spoilt = load.copy()
+        spoilt[6000] += size * load.std()
+        for slope, before in clean.items():
+            found = damage_equivalent_load([rainflow_cycles(spoilt)], 600.0, slope)
+            row = {"spike over standard deviation": size, "slope": f"m = {slope:g}"}
+            rows.append({**row, "DEL over the clean one": found / before})
+    page.section("Spikes")
+    page.sweep(
+        "One spike in 12 000 samples",
+        rows,
+        "spike over standard deviation",
+        "DEL over the clean one",
+        by="slope",
+    )
+    safe = [r for r in rows if r["slope"] == "m = 10" and r["DEL over the clean one"] <= 1 + KEPT]
+    page.limit(
+        "damage-equivalent load of m = 10 with one wrong sample",
+        "spike over standard deviation",
+        low=None,
+        high=max((r["spike over standard deviation"] for r in safe), default=1.0),
+        criterion=f"changed by less than {KEPT:.0%}",
+        beyond="one range decides the damage of a steep S-N curve",
+        program="shows the largest range beside the equivalent loads, and removes nothing",
+        remedy="look at the largest range, and correct the sample",
+    )
+
+
+def refused(page: Page) -> None:
+    """Gaps and values that are no numbers are refused with their place; constants are counted."""
+    time = np.arange(0.0, 20.0, STEP * 10)
+    loads = np.column_stack([wave(time)] * 6)
+    number = np.arange(len(time))[:, None]
+    gap = slice(50, 60)
+    faults = {
+        "a gap of ten samples": (np.delete(time, gap), np.delete(loads, gap, 0)),
+        "a value that is no number": (time, np.where(number == 7, np.nan, loads)),
+        "time that steps back": (np.concatenate([time[:50], time[40:90]]), loads[:100]),
+    }
+    for name, (at, values) in faults.items():
+        page.holds(
+            f"{name} is refused with its place",
+            _message(at, values).count("sample") > 0,
+            why="rainflow over a gap counts a range that never was",
+            source="the reader of histories",
+        )
+    flat = rainflow_cycles(np.full(100, 3.0))
+    page.vanishes(
+        "equivalent load of a constant channel",
+        damage_equivalent_load([flat], 10.0, 4.0),
+        within=0.0,
+        why="it has no cycle",
+        source="definition",
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "constant.csv"
+        write_csv(LoadHistory("constant", time, np.full((len(time), 6), 3.0)), file)
+        read = read_recorded(file).history
+    page.holds(
+        "a file of constant loads is read, and counts nothing",
+        len(rainflow_cycles(read.loads[:, 0]).ranges) == 0,
+        why="idling turbines have such channels",
+        source="definition",
+    )
+
+
+def _message(time: Floats, loads: Floats) -> str:
+    try:
+        LoadHistory("faulty", time, loads)
+    except InputError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,71 @@
+"""Beams against FE in the measures of design: means, extremes, time at level, damage."""
+
+import numpy as np
+
+from fe_drivetrain.cases.main_bearing.comparison import Comparison
+from fe_drivetrain.cases.main_bearing.loads import HubLoads
+from fe_drivetrain.common import Floats
+from fe_drivetrain.histories import (
+    Measured,
+    damage_ratio,
+    good_enough_for,
+    measured,
+    model_errors,
+)
+from fe_drivetrain.suite import Page, Record, Run
+
+WITHIN = 0.05
+SLOPES = (3.0, 4.0, 10.0)
+
+
+def section(run: Run, page: Page, hub: HubLoads, found: Comparison) -> None:
+    """Errors of each beam by measure, and what each is good enough for.
+
+    Parameters
+    ----------
+    run : Run
+        The run that this is a step of.
+    page : Page
+        Takes the table and the answer.
+    hub : HubLoads
+        The histories.
+    found : Comparison
+        Reactions of FE and beams.
+    """
+    steps = np.median(np.diff(hub.times, axis=1), axis=1).tolist()
+
+    def radial(reaction: Floats) -> Measured:
+        return measured(list(np.hypot(reaction[..., 1], reaction[..., 2])), steps, SLOPES)
+
+    with run.step("damage, extremes, time at level"):
+        truth = {kind: radial(reaction) for kind, reaction in found.fe.items()}
+        errors = {
+            label: model_errors(radial(model), truth[kind])
+            for label, (kind, model) in found.pairs.items()
+        }
+    rows: list[Record] = [
+        {
+            "comparison": label,
+            **{f"{what} [%]": 100.0 * error for what, error in own.items()},
+            f"damage over that of FE, m = {SLOPES[-1]:g}": damage_ratio(
+                own[f"DEL, m = {SLOPES[-1]:g}"], SLOPES[-1]
+            ),
+        }
+        for label, own in errors.items()
+    ]
+    page.section("For means, extremes and fatigue")
+    page.table(
+        "Resultant radial force on the main bearing over all histories together, beam against FE: "
+        "difference of means and area between the load durations over the mean of FE; extreme and "
+        "damage-equivalent load (DEL, 1 Hz, rainflow after ASTM E1049) over those of FE, less one",
+        rows,
+    )
+    page.data("design_measures", rows)
+    on_bonded = {label: own for label, own in errors.items() if found.pairs[label][0] == "bonded"}
+    enough = good_enough_for(on_bonded, WITHIN)
+    words = [f"for {use}: {label or 'none'}" for use, label in enough.items()]
+    page.answer(
+        f"Good enough within {100 * WITHIN:g} % on a bonded bearing, the cheapest is "
+        f"{'; '.join(words)} (fatigue: damage-equivalent loads of slopes "
+        f"{', '.join(f'{m:g}' for m in SLOPES)})."
+    )

@@ -1,0 +1,220 @@
+"""The command ``loads``: statistics, spectra, cycles, distributions and loops of histories."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.commands.progress import show_steps
+from fe_drivetrain.commands.run import results_text
+from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.threads import hold_threads
+
+if TYPE_CHECKING:
+    from fe_drivetrain.histories.sites import Site
+
+_KEPT = "files that are done are kept: run again with --resume"
+
+
+def loads_command(
+    files: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="FILES",
+            help="Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns in "
+            "quotes, as in 'outputs/**/*.outb'. Lengths and steps may differ.",
+        ),
+    ],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Result folder.")] = Path(
+        "reports/loads"
+    ),
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--channel",
+            metavar="NAME=COLUMN",
+            help="How the files call a channel: NAME is time, Fx, Fy, Fz, Mx, My, Mz, rotor speed "
+            "or wind speed, as in --channel 'wind speed=Vhub'. May be repeated.",
+        ),
+    ] = None,
+    rotor_speed: Annotated[
+        float | None,
+        typer.Option(
+            "--rotor-speed", metavar="RPM", min=0.0, help="Of files that have no rotor speed."
+        ),
+    ] = None,
+    skip: Annotated[
+        float,
+        typer.Option(
+            "--skip",
+            metavar="SECONDS",
+            min=0.0,
+            help="What is left out at the beginning of each file.",
+        ),
+    ] = 0.0,
+    slope: Annotated[
+        list[float] | None,
+        typer.Option(
+            "--slope",
+            metavar="M",
+            help="Exponent of an S-N curve, for damage-equivalent loads at 1 Hz. May be repeated. "
+            "Default: 3, 4 and 10.",
+        ),
+    ] = None,
+    residue: Annotated[
+        str,
+        typer.Option(
+            "--residue",
+            metavar="RULE",
+            help="Cycles that the end of a file leaves open: half (ASTM E1049), closed (as whole "
+            "ones), or repeated (the file is followed by itself).",
+        ),
+    ] = "half",
+    gate: Annotated[
+        str,
+        typer.Option(
+            "--gate",
+            metavar="SHARE",
+            help="Leave out cycles below a share of the largest range, as in 1%. How many is on "
+            "the page.",
+        ),
+    ] = "0",
+    target: Annotated[
+        int,
+        typer.Option(
+            "--target", metavar="COUNT", min=1, help="Windows that each wind speed should have."
+        ),
+    ] = 6,
+    site: Annotated[
+        str | None,
+        typer.Option(
+            "--site",
+            metavar="CLASS",
+            help="Weight winds over 20 years: a class of IEC 61400-1 (I, II, III), or the mean "
+            "wind speed of a Rayleigh distribution in m/s.",
+        ),
+    ] = None,
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--against",
+            metavar="FILES",
+            help="Another set of histories: says what differs by more than the scatter of seeds. "
+            "May be repeated.",
+        ),
+    ] = None,
+    parquet: Annotated[
+        bool, typer.Option("--parquet", help="Write each table as Parquet, too (needs pyarrow).")
+    ] = False,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Go on where a run was stopped: files that were counted with the same options, "
+            "and have not changed since, are not read again.",
+        ),
+    ] = False,
+) -> None:
+    """Show what is in load histories: statistics, spectra, cycles, time at level, load loops.
+
+    Reads one file after the other in bounded memory. The page has statistics by wind, a capture
+    matrix, planes of force and moment, spectra with multiples of the rotor's speed, rainflow
+    counts with damage-equivalent loads, load duration and revolution distributions, and load
+    loops; all tables stand beside it as CSV.
+
+    The exit status is 0 if every check passes.
+    """
+
+    def work() -> int:
+        hold_threads()
+        from fe_drivetrain.commands.loads_digest import Options
+        from fe_drivetrain.commands.loads_page import loaded
+        from fe_drivetrain.commands.loads_tables import parquet_writer
+        from fe_drivetrain.histories.cycles import RESIDUES
+        from fe_drivetrain.histories.damage import SLOPES, check_slope
+        from fe_drivetrain.hub_loads.recorded import recorded_files
+        from fe_drivetrain.suite.case import Case
+        from fe_drivetrain.suite.result_folders import run_case
+
+        for exponent in slope or ():
+            check_slope(exponent)
+        if residue not in RESIDUES:
+            raise InputError(f"--residue {residue}: choose one of {', '.join(RESIDUES)}")
+        options = Options(
+            parse_channels(channel or ()),
+            skip,
+            tuple(slope or SLOPES),
+            residue,  # type: ignore[arg-type]
+            _share(gate),
+            None if rotor_speed is None else rotor_speed * 3.141592653589793 / 30.0,
+        )
+        place = None if site is None else _site(site)
+        writer = parquet_writer() if parquet else None
+        found = recorded_files(files)
+        others = recorded_files(against or [])
+        count = len(found)
+        case = Case(
+            "loads/histories",
+            f"Load histories of {count} file{'s' * (count > 1)}",
+            "the user's files",
+            lambda run, page: loaded(
+                run, page, found, options, target, place, others, resume, writer
+            ),
+        )
+        with show_steps() as report:
+            results = run_case(case, out.resolve(), report=report)
+        write(sys.stdout, results_text(results, out / "report.html"))
+        return PASSED if results.passed else FAILED
+
+    raise typer.Exit(guarded(work, _KEPT))
+
+
+def parse_channels(texts: Iterable[str]) -> dict[str, str]:
+    """Names and columns of ``--channel NAME=COLUMN``.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        One for each option.
+
+    Raises
+    ------
+    InputError
+        One has no equals sign, or no such name.
+    """
+    from fe_drivetrain.hub_loads.recorded import NAMES
+
+    found = {}
+    for text in texts:
+        name, equals, column = (part.strip() for part in text.partition("="))
+        if not equals or not column or name not in NAMES:
+            raise InputError(f"--channel {text}: write NAME=COLUMN, NAME one of {', '.join(NAMES)}")
+        found[name] = column
+    return found
+
+
+def _site(text: str) -> Site:
+    """The site of a class, or of a mean wind speed."""
+    from fe_drivetrain.histories.sites import Site, site_of_class
+
+    try:
+        mean = float(text)
+    except ValueError:
+        return site_of_class(text)
+    return Site(mean)
+
+
+def _share(text: str) -> float:
+    """A share of 0 to 1, as in 1% or 0.01."""
+    try:
+        value = float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value < 1.0:
+        raise InputError(f"--gate {text}: give a share from 0 to below 1, as in 1% or 0.01")
+    return value

@@ -1,0 +1,308 @@
+"""The page of ``loads``: what is in anyone's histories, from statistics to load loops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from fe_drivetrain.commands.loads_against import beside
+from fe_drivetrain.commands.loads_counts import counts
+from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options, digest
+from fe_drivetrain.commands.loads_lifetime import lifetime
+from fe_drivetrain.commands.loads_shape import shape
+from fe_drivetrain.commands.loads_tables import write_tables
+from fe_drivetrain.commands.loads_together import Together, windows_table
+from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.progress import Progress
+from fe_drivetrain.histories.cycles import Cycles
+from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.histories.windows import COLUMNS, CaptureMatrix, capture_matrix
+from fe_drivetrain.hub_loads.recorded import read_recorded
+from fe_drivetrain.report.charts import trace
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import Record
+from fe_drivetrain.suite.run import Run
+
+WIND_BIN, TURBULENCE_BIN = 1.0, 0.02
+"""Widths of the capture matrix [m/s, share]: columns about whole numbers of m/s."""
+
+_SHOWN = 20
+_MANY = 8  # files for which it pays to start processes
+_AT_ONCE = 64  # files whose digests, a few hundred kilobytes each, are in memory together
+_SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN\u00a0m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}
+UNIT_OF = dict(zip(CHANNELS, UNITS, strict=True))
+
+
+def loaded(
+    run: Run,
+    page: Page,
+    files: Sequence[Path],
+    options: Options,
+    target: int,
+    site: Site | None = None,
+    against: Sequence[Path] = (),
+    resume: bool = False,
+    parquet: ModuleType | None = None,
+) -> None:
+    """Read files one by one, add up what they hold, and show it.
+
+    Parameters
+    ----------
+    run : Run
+        Its folder takes the tables.
+    page : Page
+        Takes tables and charts.
+    files : sequence of Path
+        Histories, of any length and step.
+    options : Options
+        How they are counted.
+    target : int
+        Windows that each mean wind speed should have.
+    site : Site, optional
+        Whose winds a lifetime has.
+    against : sequence of Path
+        Another set of histories, to be compared.
+    resume : bool
+        Take digests that an earlier run kept.
+    parquet : module, optional
+        Writer of Parquet.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or holds no loads.
+    """
+    page.seed = None
+    found = Together()
+    own: list[Digest] = []
+    with run.step("files"):
+        for file, one in _digests(run, files, options, resume, "files"):
+            found.add(_name(file, files), one)
+            if against:
+                own.append(one)
+    _require_loads(found)
+    rule = Cycles(np.zeros(0), np.zeros(0), np.zeros(0), options.residue).rule
+    if options.gate:
+        rule += (
+            f"; cycles of a range below {100 * options.gate:g} % of the largest of the channel in "
+            "its file are left out"
+        )
+    page.answer(
+        f"{len(files)} file{'s' * (len(files) > 1)}, {found.samples:,} samples over "
+        f"{found.seconds:,.6g} s; {rule}."
+    )
+    tables: dict[str, list[Record]] = {"files": found.files}
+    _statistics(page, found)
+    tables["windows"] = windows_table(found, UNIT_OF)
+    tables["wind_and_turbulence"] = _by_turbulence(found)
+    tables["capture_matrix"] = _capture(page, found, target)
+    tables |= shape(page, found)
+    tables |= counts(page, found, options, rule)
+    if site is not None:
+        tables |= lifetime(page, found, options, site)
+    if against:
+        with run.step("the others"):
+            others = [d for _, d in _digests(run, against, options, resume, "the others")]
+        tables["beside"] = beside(page, own, others, options)
+    _checks(page, found)
+    facts = {
+        "frame": "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor",
+        "units": "N, N m, s, Hz, rad/s, m/s; moments about the hub, as in the files",
+        "cycles": rule,
+    }
+    write_tables(run.folder, tables, facts, parquet)
+    page.section("Files")
+    names = [name for name, rows in tables.items() if rows]
+    page.text(
+        f"Tables beside this page: {', '.join(f'{name}.csv' for name in names)}"
+        + (", each as .parquet, too." if parquet else ".")
+    )
+    page.table(
+        "Histories" + (f": the first {_SHOWN}" if len(files) > _SHOWN else ""),
+        found.files[:_SHOWN],
+    )
+    page.text(
+        "A file that has no wind speed or rotor speed under a known name leaves these cells empty: "
+        "name its channels with --channel, as in --channel 'wind speed=Vhub'."
+    )
+
+
+def _digests(
+    run: Run, files: Sequence[Path], options: Options, resume: bool, step: str
+) -> Iterator[tuple[Path, Digest]]:
+    """File by file, several at a time where there are cores; each kept as soon as it is done."""
+    for start in range(0, len(files), _AT_ONCE):
+        batch = files[start : start + _AT_ONCE]
+        with Processes(len(batch) if len(batch) >= _MANY else 1, run.report) as processes:
+            jobs = [processes.start(kept_digest, file, options, resume) for file in batch]
+            for number, (file, job) in enumerate(zip(batch, jobs, strict=True), start + 1):
+                run.report(f"{step} ({number} of {len(files)})")
+                yield file, job.result()
+
+
+def kept_digest(_report: Progress, file: Path, options: Options, resume: bool) -> Digest:
+    """The digest of a file, or that of an earlier run where it is kept and asked for.
+
+    Parameters
+    ----------
+    _report : callable
+        Of a job in a process; what takes this long shows no steps.
+    file : Path
+        With the history.
+    options : Options
+        How it is counted.
+    resume : bool
+        Take what is kept.
+    """
+    cache, content = user_cache(), options.content(file)
+    kept: Digest | None = cache.load("load-digests", content) if resume else None
+    if kept is not None:
+        return kept
+    found = digest(read_recorded(file, options.columns, options.skip), options)
+    cache.keep("load-digests", content, found)
+    return found
+
+
+def _require_loads(found: Together) -> None:
+    """Refuse files that hold zeros alone."""
+    if found.cycles is None or not found.cycles[:, 0].any():
+        values = found.values[:, : len(LOADS)] if found.windows else np.zeros(1)
+        if not np.abs(values).max() > 0.0:
+            raise InputError("all hub loads of all files are zero: give histories with loads")
+
+
+def _name(file: Path, files: Sequence[Path]) -> str:
+    """Its stem, or its whole path where another has the same."""
+    return str(file) if sum(other.stem == file.stem for other in files) > 1 else file.stem
+
+
+def _statistics(page: Page, found: Together) -> None:
+    page.section("Statistics")
+    overall = found.overall()
+    rows = [_row(name, values) for name, values in zip(CHANNELS, overall, strict=True)]
+    page.table("All samples together", [row for row in rows if row is not None])
+    page.data("statistics", dict(zip(CHANNELS, overall.tolist(), strict=True)))
+    wind = found.values[:, CHANNELS.index("wind speed"), 1]
+    if np.isnan(wind).all():
+        return
+    middle = WIND_BIN * np.round(wind / WIND_BIN)
+    by_wind: list[Record] = []
+    for speed in np.unique(middle[~np.isnan(middle)]).tolist():
+        chosen = middle == speed
+        values = found.overall(chosen)
+        for name in ("Fx", "Mx", "radial force", "bending moment"):
+            row = _row(name, values[CHANNELS.index(name)])
+            if row is not None:
+                by_wind.append({"wind [m/s]": speed, "windows": int(chosen.sum()), **row})
+    page.table(f"By mean wind speed in {WIND_BIN:g} m/s", by_wind)
+    place = CHANNELS.index("bending moment")
+    values = found.values[:, place] / 1e3
+    page.chart(
+        "Bending moment at the hub in each window of ten minutes",
+        [trace(name, wind, values[:, k], points=True) for k, name in enumerate(COLUMNS[:3])],
+        "mean wind speed [m/s]",
+        "bending moment [kN m]",
+    )
+
+
+def _by_turbulence(found: Together) -> list[Record]:
+    """Statistics of each channel by mean wind speed and turbulence intensity, for a file."""
+    wind = found.values[:, CHANNELS.index("wind speed")]
+    bins = np.column_stack(
+        [
+            WIND_BIN * np.round(wind[:, 1] / WIND_BIN),
+            TURBULENCE_BIN * (np.floor(wind[:, 3] / wind[:, 1] / TURBULENCE_BIN) + 0.5),
+        ]
+    )
+    rows: list[Record] = []
+    for speed, turbulence in np.unique(bins[~np.isnan(bins).any(axis=1)], axis=0).tolist():
+        chosen = (bins == [speed, turbulence]).all(axis=1)
+        for name, values in zip(CHANNELS, found.overall(chosen), strict=True):
+            if not np.isnan(values).any():
+                rows.append(
+                    {
+                        "wind [m/s]": speed,
+                        "turbulence [-]": turbulence,
+                        "windows": int(chosen.sum()),
+                        "channel": name,
+                        "unit": UNIT_OF[name],
+                        **dict(zip(COLUMNS, values.tolist(), strict=True)),
+                    }
+                )
+    return rows
+
+
+def _row(name: str, values: Sequence[float]) -> Record | None:
+    if np.isnan(values).any():
+        return None
+    factor, unit = _SCALE[UNIT_OF[name]]
+    shown = [float(v) / factor for v in values]
+    return {"channel": f"{name} [{unit}]", **dict(zip(COLUMNS, shown, strict=True))}
+
+
+def _capture(page: Page, found: Together, target: int) -> list[Record]:
+    """Windows by wind speed and turbulence."""
+    page.section("Capture matrix")
+    wind = found.values[:, CHANNELS.index("wind speed")]
+    known = ~np.isnan(wind).any(axis=1)
+    if not known.any():
+        page.text("No file has a wind speed, so that windows cannot be sorted by it.")
+        return []
+    mean, deviation = wind[known, 1], wind[known, 3]
+    low = WIND_BIN * np.floor(mean.min() / WIND_BIN + 0.5) - 0.5 * WIND_BIN
+    columns = np.arange(low, mean.max() + WIND_BIN, WIND_BIN)
+    most = float((deviation / mean).max())
+    rows = TURBULENCE_BIN * np.arange(np.floor(most / TURBULENCE_BIN) + 2)
+    matrix = capture_matrix(mean, deviation, columns, rows)
+    table = _matrix_rows(matrix)
+    sums = matrix.counts.sum(axis=0)
+    totals = {"turbulence [%]": "all", **_by_column(matrix, sums.tolist())}
+    missing = np.maximum(target - sums, 0)
+    wanted = {"turbulence [%]": f"missing of {target}", **_by_column(matrix, missing.tolist())}
+    page.table(
+        f"Windows by mean wind speed [m/s] and turbulence intensity; {target} of each wind speed "
+        "are asked for (IEC 61400-1 asks for six ten-minute series; --target takes another number)",
+        [*table, totals, wanted],
+    )
+    if (~known).any():
+        page.text(f"{int((~known).sum())} windows have no wind speed.")
+    page.data(
+        "capture", {"wind": matrix.wind, "turbulence": matrix.turbulence, "counts": matrix.counts}
+    )
+    return table
+
+
+def _matrix_rows(matrix: CaptureMatrix) -> list[Record]:
+    rows: list[Record] = []
+    for r, counted in enumerate(matrix.counts.tolist()):
+        if not any(counted):
+            continue
+        low, high = 100 * matrix.turbulence[r : r + 2]
+        rows.append({"turbulence [%]": f"{low:g} to {high:g}", **_by_column(matrix, counted)})
+    return rows
+
+
+def _by_column(matrix: CaptureMatrix, values: Sequence[int]) -> Mapping[str, int]:
+    middles = 0.5 * (matrix.wind[1:] + matrix.wind[:-1])
+    return {f"{middle:g} m/s": value for middle, value in zip(middles, values, strict=True)}
+
+
+def _checks(page: Page, found: Together) -> None:
+    for what, names in (
+        ("time at the levels", [f"time at {name}" for name in LOADS]),
+        ("time in the planes of force and moment", ["plane of force", "plane of moment"]),
+    ):
+        worst = max(abs(found.classes[n].amount.sum() / found.seconds - 1.0) for n in names)
+        page.vanishes(
+            f"{what}, less that of all samples, as a share",
+            worst,
+            within=1e-9,
+            why="each sample is in one class: rounding of the sums",
+            source="number of samples times their step",
+            basis="self-consistency",
+        )

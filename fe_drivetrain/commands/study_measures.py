@@ -1,0 +1,147 @@
+"""Levels of a study against the assembly in the measures of design: damage, extremes, duration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from fe_drivetrain.commands.study_loads import StudyLoads, entering
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.fidelity.ladder import LevelModel
+from fe_drivetrain.fidelity.over_loads import (
+    ROUND_OFF,
+    Levels,
+    reaction_history,
+    relative_errors,
+)
+from fe_drivetrain.histories.model_errors import (
+    Measured,
+    damage_ratio,
+    good_enough_for,
+    measured,
+    model_errors,
+)
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import Record
+
+_MOST = 12
+"""Histories that are counted, evenly over all: a count takes longer than a reaction."""
+
+
+def measures(
+    page: Page,
+    scene: Scene,
+    levels: Levels,
+    loads: StudyLoads,
+    slopes: Sequence[float],
+    bounds: Mapping[str, Sequence[str]],
+    within: float,
+) -> None:
+    """Add a table of errors by measure, and which level is good enough for what.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the table and the answer.
+    scene : Scene
+        The scene.
+    levels : Levels
+        All levels.
+    loads : StudyLoads
+        Hub loads.
+    slopes : sequence of float
+        Of S-N curves.
+    bounds : mapping
+        Levels from cheap to expensive, each with its models.
+    within : float
+        What is good enough, as a share.
+    """
+    count = len(loads.histories)
+    places = np.unique(np.linspace(0, count - 1, min(count, _MOST)).astype(int))
+    chosen = [loads.histories[k] for k in places]
+    weight = scene.gearbox.weight
+
+    driving = [entering(scene, history) for history in chosen]
+
+    def of(model: LevelModel, name: str) -> list[Floats]:
+        return [reaction_history(model, name, one, weight, loads.gravity) for one in driving]
+
+    worst: dict[str, dict[str, float]] = {level: {} for level in bounds}
+    rows: list[Record] = []
+    for name in levels.reference.reaction_matrices:
+        reference = of(levels.reference, name)
+        models = {m: of(levels.models[m], name) for own in bounds.values() for m in own}
+        size = relative_errors(
+            np.concatenate(reference), np.concatenate(reference), scene.shaft.length
+        )
+        for k, first in enumerate((1, 4)):
+            if np.isnan(size[k]):
+                continue
+            spread = np.concatenate(reference)[:, first : first + 2].std(axis=0)
+            if spread.max() <= ROUND_OFF * np.abs(np.concatenate(reference)).max():
+                continue  # a component that this support does not hold
+            c = first + int(np.argmax(spread))
+
+            def counted(histories: Sequence[Floats], c: int = c) -> Measured:
+                return measured([h[:, c] for h in histories], [h.step for h in chosen], slopes)
+
+            truth = counted(reference)
+            for level, own in bounds.items():
+                errors = _larger([model_errors(counted(models[m]), truth) for m in own])
+                worst[level] = _larger([worst[level], errors])
+                rows.append(
+                    {
+                        "reaction": f"{name}, {FORCES[c]}",
+                        "level": level,
+                        **{f"{what} [%]": 100.0 * error for what, error in errors.items()},
+                        **{
+                            f"damage over it, m = {m:g}": damage_ratio(errors[f"DEL, m = {m:g}"], m)
+                            for m in list(slopes)[-1:]
+                        },
+                    }
+                )
+    of_all = "" if len(chosen) == count else f" in {len(chosen)} of the {count} histories"
+    page.table(
+        f"Error of each level by what a part is designed for{of_all}: the component across the "
+        "shaft that varies most, the worse of both bounds of the housings. Mean and load duration "
+        "over the mean size; extreme, and damage-equivalent load (DEL), over the assembly's",
+        rows,
+    )
+    page.data("design_measures", rows)
+    page.answer(sentence(good_enough_for(worst, within), within))
+
+
+def sentence(found: Mapping[str, str | None], within: float) -> str:
+    """Which model is good enough for means, extremes and fatigue.
+
+    Parameters
+    ----------
+    found : mapping
+        Of `good_enough_for`.
+    within : float
+        The tolerance, as a share.
+    """
+    share = f"{100 * within:g} %"
+    if not any(found.values()):
+        return (
+            f"No level below the assembly has every reaction's mean, extreme, or damage-equivalent "
+            f"load within {share} of it: none is good enough for means, extremes or fatigue."
+        )
+    words = [f"for {use} {model or 'none'}" for use, model in found.items()]
+    return (
+        f"The cheapest level within {share} of the assembly's reactions is {'; '.join(words)} "
+        "(fatigue: damage-equivalent loads of every slope)."
+    )
+
+
+def _larger(errors: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Of several, the error of largest size of each measure; NaN only where all are."""
+    names = dict.fromkeys(name for own in errors for name in own)
+    found = {}
+    for name in names:
+        known = [own[name] for own in errors if name in own and not np.isnan(own[name])]
+        found[name] = max(known, key=abs) if known else float("nan")
+    return found

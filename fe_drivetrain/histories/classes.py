@@ -1,0 +1,125 @@
+"""Amounts in classes that any number of histories can be added to, without their extremes.
+
+Widths are powers of two, and limits whole multiples of them, so that classes of one history are
+unions of those of another, and adding them is exact. A class is no wider than one 64th of the range
+of the history that spreads widest, or two `MOST`-ths of the range of all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.common.arrays import Floats
+
+LEAST = 64
+"""Classes over the range of a history, at least."""
+
+MOST = 1024
+"""Classes of each quantity that a sum keeps, at most: histories may be far apart."""
+
+_FINEST = -60  # the power of two of a history that is zero
+
+
+@dataclass(frozen=True, eq=False)
+class Classes:
+    """Amounts over one quantity or more.
+
+    Attributes
+    ----------
+    powers : tuple of int
+        Of two: the widths of the classes of each quantity.
+    first : tuple of int
+        Lower limit of the first class of each, in widths.
+    amount : ndarray
+        In each class, an axis for each quantity.
+    """
+
+    powers: tuple[int, ...]
+    first: tuple[int, ...]
+    amount: Floats
+
+    def edges(self, axis: int = 0) -> Floats:
+        """Limits of the classes of one quantity."""
+        numbers = self.first[axis] + np.arange(self.amount.shape[axis] + 1, dtype=float)
+        return np.asarray(np.ldexp(numbers, self.powers[axis]))
+
+    def middles(self, axis: int = 0) -> Floats:
+        """Middles of the classes of one quantity."""
+        edges = self.edges(axis)
+        return 0.5 * (edges[:-1] + edges[1:])
+
+    @property
+    def at_least(self) -> Floats:
+        """Amount at the lower limit of each class or above it, of one quantity."""
+        return np.asarray(np.cumsum(self.amount[::-1])[::-1])
+
+
+def in_classes(*columns: ArrayLike, weights: ArrayLike, least: int = LEAST) -> Classes:
+    """Put samples into classes.
+
+    Parameters
+    ----------
+    *columns : array_like, (n,)
+        Each quantity.
+    weights : array_like, (n,)
+        Amount of each sample.
+    least : int
+        Classes over the range of each quantity, at least.
+    """
+    powers, first, places, shape = [], [], [], []
+    for column in columns:
+        values = np.asarray(column, dtype=float)
+        low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
+        span = (high - low) or max(abs(low), abs(high))
+        power = int(np.floor(np.log2(span / least))) if span else _FINEST
+        numbers = np.floor(np.ldexp(values, -power))
+        start = int(np.floor(np.ldexp(low, -power)))
+        powers.append(power)
+        first.append(start)
+        places.append((numbers - start).astype(int))
+        shape.append(int(np.floor(np.ldexp(high, -power))) - start + 1)
+    amount = np.zeros(shape)
+    np.add.at(amount, tuple(places), np.asarray(weights, dtype=float))
+    return Classes(tuple(powers), tuple(first), amount)
+
+
+def added(parts: Sequence[Classes]) -> Classes:
+    """All together, in the classes of the widest.
+
+    Parameters
+    ----------
+    parts : sequence of Classes
+        Over the same quantities.
+    """
+    powers = tuple(max(p) for p in zip(*(part.powers for part in parts), strict=True))
+    while True:
+        coarse = [_coarser(part, powers) for part in parts]
+        axes = range(len(powers))
+        first = tuple(min(part.first[axis] for part in coarse) for axis in axes)
+        last = [max(part.first[axis] + part.amount.shape[axis] for part in coarse) for axis in axes]
+        too_many = [end - start > MOST for start, end in zip(first, last, strict=True)]
+        if not any(too_many):
+            break
+        powers = tuple(power + many for power, many in zip(powers, too_many, strict=True))
+    amount = np.zeros([end - start for start, end in zip(first, last, strict=True)])
+    for part in coarse:
+        place = tuple(
+            slice(own - start, own - start + size)
+            for own, start, size in zip(part.first, first, part.amount.shape, strict=True)
+        )
+        amount[place] += part.amount
+    return Classes(powers, first, amount)
+
+
+def _coarser(part: Classes, powers: Sequence[int]) -> Classes:
+    amount, first = part.amount, list(part.first)
+    for axis, (power, own) in enumerate(zip(powers, part.powers, strict=True)):
+        places = [(first[axis] + k) >> (power - own) for k in range(amount.shape[axis])]
+        starts = [k for k, place in enumerate(places) if k == 0 or place != places[k - 1]]
+        amount = np.add.reduceat(amount, starts, axis=axis)
+        first[axis] = places[0]
+    return Classes(tuple(powers), tuple(first), amount)

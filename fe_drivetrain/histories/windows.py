@@ -1,0 +1,132 @@
+"""Statistics of channels in windows of ten minutes, and how many windows each wind has.
+
+The capture matrix counts windows by mean wind speed and turbulence intensity, beside the number
+that a campaign asks for (IEC 61400-13).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+
+TEN_MINUTES = 600.0
+
+COLUMNS = ("least", "mean", "largest", "standard deviation")
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """Statistics of k channels in w windows.
+
+    Attributes
+    ----------
+    start, seconds : ndarray, (w,)
+        When each begins, and how long it lasts [s].
+    values : ndarray, (w, k, 4)
+        Least, mean, largest, standard deviation.
+    """
+
+    start: Floats
+    seconds: Floats
+    values: Floats
+
+
+def window_statistics(time: ArrayLike, samples: ArrayLike, seconds: float = TEN_MINUTES) -> Windows:
+    """Statistics in windows of one length; each sample is in one of them.
+
+    What is left at the end is a window of its own if it is half as long or longer, and else part of
+    the last one, whose length says so.
+
+    Parameters
+    ----------
+    time : array_like, (n,)
+        Of uniform step [s].
+    samples : array_like, (n, k)
+        Channels.
+    seconds : float
+        Length of a window [s].
+
+    Raises
+    ------
+    InputError
+        The length is not positive.
+    """
+    if not seconds > 0.0:
+        raise InputError(f"windows of {seconds:g} s: give a length above 0 s, as 600")
+    at, values = np.asarray(time, dtype=float), np.asarray(samples, dtype=float)
+    step = float(at[-1] - at[0]) / (len(at) - 1)
+    count = max(1, int(np.floor(len(at) * step / seconds + 0.5)))
+    # half a step forward, so that round-off of the time column moves no sample
+    window = np.minimum(((at - at[0] + 0.5 * step) // seconds).astype(int), count - 1)
+    first = np.searchsorted(window, np.arange(count))
+    number = np.diff(first, append=len(at))[:, None]
+    mean = np.add.reduceat(values, first) / number
+    squares = np.add.reduceat((values - mean[window]) ** 2, first) / number
+    table = np.stack(
+        [
+            np.minimum.reduceat(values, first),
+            mean,
+            np.maximum.reduceat(values, first),
+            np.sqrt(squares),
+        ],
+        axis=2,
+    )
+    return Windows(at[first], number[:, 0] * step, table)
+
+
+@dataclass(frozen=True, eq=False)
+class CaptureMatrix:
+    """Number of windows by turbulence intensity (rows) and mean wind speed (columns).
+
+    Attributes
+    ----------
+    wind : ndarray, (c + 1,)
+        Limits of the columns [m/s].
+    turbulence : ndarray, (r + 1,)
+        Limits of the rows, as shares of the mean.
+    counts : ndarray, (r, c)
+        Windows in each.
+    outside : int
+        Windows in none.
+    """
+
+    wind: Floats
+    turbulence: Floats
+    counts: Ints
+    outside: int
+
+    def missing(self, target: int) -> Ints:
+        """(r, c) windows that each still needs, where each should have `target`."""
+        return np.maximum(target - self.counts, 0)
+
+    @property
+    def mean_turbulence(self) -> float:
+        """Of all windows inside, each with the middle of its row; NaN of none."""
+        middles = 0.5 * (self.turbulence[1:] + self.turbulence[:-1])
+        total = self.counts.sum()
+        return float(middles @ self.counts.sum(axis=1) / total) if total else float("nan")
+
+
+def capture_matrix(
+    mean_wind: ArrayLike, deviation: ArrayLike, wind: ArrayLike, turbulence: ArrayLike
+) -> CaptureMatrix:
+    """Count windows by their wind.
+
+    Parameters
+    ----------
+    mean_wind, deviation : array_like, (w,)
+        Mean and standard deviation of the wind speed in each window [m/s].
+    wind, turbulence : array_like
+        Limits of the columns [m/s] and rows, rising.
+    """
+    mean, spread = np.asarray(mean_wind, dtype=float), np.asarray(deviation, dtype=float)
+    edges = [np.asarray(turbulence, dtype=float), np.asarray(wind, dtype=float)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        table, _, _ = np.histogram2d(spread / mean, mean, bins=edges)
+    counts = table.astype(int)
+    return CaptureMatrix(edges[1], edges[0], counts, int(mean.size - counts.sum()))

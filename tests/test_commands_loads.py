@@ -1,0 +1,222 @@
+"""``loads`` on anyone's files: mapped channels, other lengths and steps, stop and go on."""
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tiny_case import Result
+
+from fe_drivetrain.commands import loads_page
+from fe_drivetrain.commands.loads_digest import Options, digest
+from fe_drivetrain.commands.loads_tables import write_tables
+from fe_drivetrain.commands.loads_together import Together
+from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
+from fe_drivetrain.report.results import read_results
+
+HERTZ = 0.25  # of the rotor
+COLUMNS = "--channel", "wind speed=Vhub", "--channel", "rotor speed=N"
+
+
+def write_history(path: Path, seconds: float, step: float, wind: float) -> None:
+    """A moment of 3P about y and z, a torque of 6P, the rotor's weight; columns of own names."""
+    time = np.arange(0.0, seconds, step)
+    turn = 2.0 * np.pi * HERTZ * time
+    loads = [
+        time * 0.0 + 200.0,
+        time * 0.0,
+        time * 0.0 - 400.0,
+        900.0 + 50.0 * np.cos(6 * turn),
+        100.0 + 300.0 * np.cos(3 * turn),
+        300.0 * np.sin(3 * turn),
+    ]
+    beside = [wind + np.sin(0.3 * time), 60.0 * HERTZ + 0.0 * time]
+    units = 3 * ["kN"] + 3 * ["kN m"]
+    names = [f"{name} [{unit}]" for name, unit in zip(FORCES, units, strict=True)]
+    header = ",".join(["time [s]", *names, "Vhub [m/s]", "N [rpm]"])
+    table = np.column_stack([time, *loads, *beside])
+    np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.9g")
+
+
+@pytest.fixture
+def histories(tmp_path: Path) -> Path:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    write_history(folder / "a.csv", 60.05, 0.05, 8.0)
+    write_history(folder / "b.csv", 80.25, 0.25, 12.0)
+    return folder
+
+
+def rows_of(file: Path) -> list[dict[str, str]]:
+    lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+def test_the_page_of_own_files(invoke: Callable[..., Result], histories: Path) -> None:
+    out = histories.parent / "out"
+    status, printed, _ = invoke(
+        "loads", str(histories), "--out", str(out), *COLUMNS, "--site", "IIB"
+    )
+    assert status == 0, printed
+    assert "2 files, 1,522 samples over 140.3 s" in printed
+    assert "half cycles of the residue count as halves" in printed
+    equivalent = rows_of(out / "equivalent_loads.csv")
+    of_a = {
+        (row["channel"], row["slope"]): float(row["DEL at 1 Hz"])
+        for row in equivalent
+        if row["file"] == "a"
+    }
+    # 0.75 Hz for 60 s, sampled at its peaks but for one part in a thousand; two half cycles open
+    assert of_a["My", "3"] == pytest.approx(600e3 * 0.75 ** (1 / 3), rel=0.02)
+    assert of_a["bending moment", "3"] < of_a["My", "3"]
+    assert of_a["Fz", "3"] == 0.0
+    windows = rows_of(out / "windows.csv")
+    assert {row["channel"] for row in windows} >= {"rotor speed", "wind speed", "Mx"}
+    speed = next(row for row in windows if row["channel"] == "rotor speed")
+    assert float(speed["mean"]) == pytest.approx(2 * np.pi * HERTZ)
+    levels = rows_of(out / "levels.csv")
+    for word, total in (("seconds", 140.3), ("turns", 140.3 * HERTZ)):
+        amounts = [float(r["amount"]) for r in levels if (r["channel"], r["of"]) == ("Mx", word)]
+        assert sum(amounts) == pytest.approx(total)
+    sorted_by = rows_of(out / "wind_and_turbulence.csv")
+    assert {row["wind [m/s]"] for row in sorted_by} == {"8", "12"}
+    assert sum(int(row["windows"]) for row in sorted_by if row["channel"] == "Mx") == 2
+    site = rows_of(out / "site.csv")
+    assert [float(row["mean wind speed [m/s]"]) for row in site] == [8.0, 12.0]
+    reach = np.exp(-np.pi / 4 * (np.array([6.0, 14.0]) / 8.5) ** 2)  # Rayleigh's, of 6 to 14 m/s
+    hours = sum(float(row["hours"]) for row in site)
+    assert hours == pytest.approx(-float(np.diff(reach)[0]) * 175200, rel=1e-6)
+    results = read_results(out / "results.json")
+    assert results.figures["capture"]["counts"]
+    # 9P is 2.25 Hz, and half the sampling rate of b is 2 Hz
+    assert any("9P appears at 1.75 Hz" in note for note in results.notes)
+    captions = [item.caption for s in results.sections for item in s.items if item.kind == "table"]
+    multiples = next(s for s in captions if s.startswith("Amplitude at multiples"))
+    table = next(
+        item
+        for s in results.sections
+        for item in s.items
+        if item.kind == "table" and item.caption == multiples
+    )
+    my = next(row for row in table.rows if str(row[0]).startswith("My"))
+    assert my[2] == pytest.approx(300.0, rel=0.01)  # 3P
+    assert my[1] == pytest.approx(0.0, abs=1.0)  # 1P
+
+
+def test_a_stopped_run_goes_on(
+    invoke: Callable[..., Result], histories: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[str] = []
+
+    def counted(path: Path, *more: object) -> Recorded:
+        read.append(path.name)
+        if path.name == "b.csv" and len(read) == 2:
+            raise KeyboardInterrupt
+        return read_recorded(path, *more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(loads_page, "read_recorded", counted)
+    command = ("loads", str(histories), "--out", str(histories.parent / "out"), *COLUMNS)
+    status, _, err = invoke(*command)
+    assert status == 130
+    assert "run again with --resume" in err
+    status, _, _ = invoke(*command, "--resume")
+    assert (status, read) == (0, ["a.csv", "b.csv", "b.csv"])
+    status, _, _ = invoke(*command, "--resume", "--slope", "5")  # other options: read again
+    assert (status, read[3:]) == (0, ["a.csv", "b.csv"])
+
+
+def test_another_set_is_compared_by_wind(invoke: Callable[..., Result], histories: Path) -> None:
+    others = histories.parent / "others"
+    others.mkdir()
+    command = ("loads", str(histories), "--out", "out", *COLUMNS, "--against", str(others))
+    write_history(others / "c.csv", 70.1, 0.1, 8.0)
+    status, _, err = invoke(*command)
+    assert status == 2
+    assert "three or more together" in err
+    write_history(others / "d.csv", 65.1, 0.1, 8.0)
+    status, printed, _ = invoke(*command)
+    assert status == 0
+    assert "8 m/s:" in printed
+    rows = rows_of(histories.parent / "out" / "beside.csv")
+    assert {row["wind"] for row in rows} == {"8 m/s"}
+    (torque,) = [row for row in rows if row["quantity"] == "Mx, largest [kN m]"]
+    assert float(torque["these files"]) == pytest.approx(float(torque["the others"]))
+
+
+def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:
+    options = Options({}, 0.0, (3.0,), "half", 0.0, 1.5)
+    walk = 1e5 * rng.standard_normal((2400, 6)).cumsum(axis=0)
+    parts = [walk[:1200], walk[1200:]]
+    together = Together()
+    for k, part in enumerate(parts):
+        history = LoadHistory(str(k), np.arange(1200) * 0.1, part)
+        together.add(str(k), digest(Recorded(history), options))
+    np.testing.assert_allclose(
+        together.overall()[:6],
+        np.column_stack([walk.min(0), walk.mean(0), walk.max(0), walk.std(0)]),
+    )
+    one = digest(Recorded(LoadHistory("0", np.arange(1200) * 0.1, parts[0])), options)
+    single = Together()
+    single.add("0", one)
+    assert single.damage is not None
+    assert together.damage is not None
+    assert (together.damage >= single.damage).all()
+    assert together.classes["turns at Mx"].amount.sum() == pytest.approx(240.0 * 1.5 / 2 / np.pi)
+
+
+def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Path) -> None:
+    for arguments, said in (
+        (["--channel", "torque=Q"], "NAME one of time, Fx"),
+        (["--channel", "wind speed=Q"], "there is no channel 'Q'; it has time, Fx"),
+        (["--residue", "full"], "choose one of half, closed, repeated"),
+        (["--gate", "150%"], "from 0 to below 1"),
+        (["--skip", "100"], "skip less"),
+        (["--site", "VII"], "choose I, II, III"),
+        (["--slope", "50"], "must be from 1 to 20"),
+    ):
+        status, _, err = invoke("loads", str(histories), *arguments)
+        assert status == 2, arguments
+        assert said in err
+
+
+def test_parquet_without_its_package_is_one_sentence(
+    invoke: Callable[..., Result], histories: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "pyarrow.parquet", None)
+    status, _, err = invoke("loads", str(histories), "--parquet")
+    assert status == 2
+    assert "pip install 'fe-drivetrain[parquet]'" in err
+
+
+@pytest.mark.needs("pyarrow")
+def test_parquet_holds_what_the_csv_holds(tmp_path: Path) -> None:
+    import pyarrow.parquet
+
+    rows = [{"file": "a", "value": 1.5}, {"file": "b", "value": None}]
+    write_tables(tmp_path, {"t": rows, "none": []}, {"unit": "N"}, pyarrow.parquet)
+    table = pyarrow.parquet.read_table(tmp_path / "t.parquet")
+    assert table.to_pylist() == rows
+    assert table.schema.metadata[b"unit"] == b"N"
+    assert not (tmp_path / "none.csv").exists()
+
+
+def test_loads_under_other_names_are_read(tmp_path: Path) -> None:
+    file = tmp_path / "own.csv"
+    file.write_text(
+        "t [s],a [kN],b [N],c [N],d [N m],e [N m],f [N m]\n"
+        + "".join(f"{k},{k},2,3,4,5,{k * k}\n" for k in range(5))
+    )
+    names = dict(zip(("time", *FORCES), "tabcdef", strict=True))
+    found = read_recorded(file, names).history
+    assert found.loads[:, 0].tolist() == [0.0, 1e3, 2e3, 3e3, 4e3]
+    assert found.loads[2, 1:].tolist() == [2.0, 3.0, 4.0, 5.0, 4.0]
+    twice = tmp_path / "twice.csv"
+    twice.write_text(file.read_text().replace("f [N m]", "f [N m],a [kN]").replace("\n", ",9\n"))
+    assert read_recorded(twice, names).history.loads[1, 0] == 1e3  # the first of that name
+    file.write_text(file.read_text().replace("\n3,3", "\n3,three"))
+    with pytest.raises(InputError, match="'three' to float64 at row 3, column 2"):
+        read_recorded(file, names)

@@ -1,0 +1,75 @@
+"""Errors of models by measure: a scaled model, a shifted one, one that misses a peak."""
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.commands.study_measures import sentence
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.histories.model_errors import (
+    damage_ratio,
+    good_enough_for,
+    measured,
+    model_errors,
+)
+
+
+@pytest.fixture
+def histories(rng: np.random.Generator) -> list[Floats]:
+    return [10.0 + rng.standard_normal(n) for n in (500, 300)]
+
+
+def test_a_scaled_model_has_its_scale_in_every_measure(histories: list[Floats]) -> None:
+    reference = measured(histories, [0.1, 0.1])
+    found = model_errors(measured([1.02 * h for h in histories], [0.1, 0.1]), reference)
+    for name in ("mean", "extreme", "load duration", "DEL, m = 3", "DEL, m = 10"):
+        assert found[name] == pytest.approx(0.02), name
+    assert damage_ratio(found["DEL, m = 10"], 10.0) == pytest.approx(1.02**10)
+    exact = model_errors(reference, reference)
+    assert set(exact.values()) == {0.0}
+
+
+def test_a_shift_changes_means_and_not_ranges(histories: list[Floats]) -> None:
+    """Histories of unequal steps, so that samples have unequal weights."""
+    steps = [0.1, 0.3]
+    reference = measured(histories, steps)
+    found = model_errors(measured([h + 1.0 for h in histories], steps), reference)
+    assert found["mean"] == pytest.approx(1.0 / reference.mean)
+    assert found["load duration"] == pytest.approx(found["mean"])
+    assert found["DEL, m = 4"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_delay_is_no_error_of_any_measure_and_a_lost_peak_is(histories: list[Floats]) -> None:
+    one = np.concatenate([histories[0], [30.0], histories[1]])
+    reference = measured([one], [0.1])
+    turned = model_errors(measured([one[::-1]], [0.1]), reference)
+    assert max(map(abs, turned.values())) < 1e-12
+    without = model_errors(measured([np.minimum(one, 15.0)], [0.1]), reference)
+    assert without["extreme"] == pytest.approx(-0.5)
+    assert abs(without["mean"]) < 0.01
+    assert without["DEL, m = 10"] < -0.3
+
+
+def test_a_model_may_be_good_enough_for_one_use_and_not_for_another() -> None:
+    errors = {
+        "cheap": {"mean": 0.01, "extreme": -0.2, "DEL, m = 3": 0.04, "DEL, m = 10": 0.06},
+        "better": {"mean": 0.001, "extreme": 0.04, "DEL, m = 3": 0.01, "DEL, m = 10": 0.02},
+    }
+    assert good_enough_for(errors, 0.05) == {
+        "means": "cheap",
+        "extremes": "better",
+        "fatigue": "better",
+    }
+    assert good_enough_for(errors, 0.01)["extremes"] is None
+
+
+def test_a_load_that_never_changes_has_no_ratio_of_ranges() -> None:
+    flat = measured([np.full(10, 3.0)], [0.1])
+    found = model_errors(flat, flat)
+    assert found["mean"] == 0.0
+    assert np.isnan(found["DEL, m = 3"])
+
+
+def test_the_answer_names_a_level_for_each_use() -> None:
+    found = sentence({"means": "1 beam", "extremes": "2 meridian", "fatigue": None}, 0.05)
+    assert "for means 1 beam; for extremes 2 meridian; for fatigue none" in found
+    assert sentence(dict.fromkeys(("means", "extremes", "fatigue")), 0.05).startswith("No level")

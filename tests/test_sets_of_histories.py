@@ -1,0 +1,69 @@
+"""Two sets of histories: seeds alone are not a difference, other physics are."""
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.commands.loads_against import beside, features
+from fe_drivetrain.commands.loads_digest import Options, digest
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.histories.sets import differences
+from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.recorded import Recorded
+from fe_drivetrain.suite.page import Page
+
+OPTIONS = Options({}, 0.0, (3.0, 10.0), "half", 0.0, 1.5)
+
+
+def test_seeds_alone_are_named_as_often_as_chance_has_it(rng: np.random.Generator) -> None:
+    draws = rng.standard_normal((800, 7))
+    for first in (1, 3):
+        named = 0
+        for row in draws:
+            histories = [{"x": float(v)} for v in row]
+            named += differences(histories[:first], histories[first:], 0.05)[0].beyond
+        # of 800 at 5 %: 40, with a standard deviation of 6
+        assert 16 <= named <= 64
+
+
+def test_a_shift_beyond_the_scatter_is_named_and_nothing_else() -> None:
+    one = [{"a": 10.0 + k, "b": 5.0, "only": 1.0} for k in (-1.0, 0.0, 1.0)]
+    other = [{"a": 20.0 + k, "b": 5.0} for k in (-1.0, 0.0, 1.0)]
+    found = {d.quantity: d for d in differences(one, other)}
+    assert found.keys() == {"a", "b"}
+    assert found["a"].beyond
+    assert found["a"].ratio == 0.5
+    assert found["a"].scatter == pytest.approx(1.0)
+    # t of 4 degrees of freedom at 99.5 %: 4.604
+    assert found["a"].allowed == pytest.approx(4.604 * np.sqrt(2 / 3), rel=1e-3)
+    assert not found["b"].beyond
+    with pytest.raises(InputError, match="three or more together"):
+        differences(one[:1], other[:1])
+
+
+def test_features_of_a_history_are_what_its_samples_have(rng: np.random.Generator) -> None:
+    time = np.arange(0.0, 61.0, 0.2)
+
+    def history(seed: int, scale: float, wind: Floats) -> Recorded:
+        noise = np.random.default_rng(seed).standard_normal((len(time), 6))
+        wave = np.cos(3 * 1.5 * time)[:, None] * [0, 0, 0, 0, 1, 0]
+        return Recorded(LoadHistory("x", time, 1e4 * scale * (noise + 5.0 * wave)), None, wind)
+
+    wind = np.full(len(time), 8.0)
+    one = [digest(history(seed, 1.0, wind), OPTIONS) for seed in range(3)]
+    other = [digest(history(seed, 2.0, wind), OPTIONS) for seed in range(3, 6)]
+    found = features(one[0], OPTIONS.slopes)
+    values = history(0, 1.0, wind).history.loads[:, 4]
+    assert found["My, mean [kN m]"] == pytest.approx(values.mean() / 1e3)
+    assert found["My, standard deviation [kN m]"] == pytest.approx(values.std() / 1e3)
+    assert found["My, 3P [kN m]"] == pytest.approx(50.0, rel=0.1)
+    page = Page()
+    rows = beside(page, one, other, OPTIONS, ("old", "new"))
+    assert {row["wind"] for row in rows} == {"8 m/s"}
+    named = {row["quantity"]: row["ratio"] for row in rows if row["beyond"]}
+    assert named["My, standard deviation [kN m]"] == pytest.approx(0.5, rel=0.1)
+    assert "My, mean [kN m]" not in named
+    assert "quantities differ between old (3) and new (3)" in page.summary[0]
+    storm = [digest(history(seed, 1.0, 2.0 * wind), OPTIONS) for seed in range(3)]
+    with pytest.raises(InputError, match="no mean wind speed"):
+        beside(Page(), one, storm, OPTIONS)

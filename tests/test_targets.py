@@ -1,0 +1,67 @@
+"""Checks and targets carry the unit of their quantity, and it says what kind of quantity it is."""
+
+import pytest
+
+from fe_drivetrain.report.charts import bars
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.targets import Target, split_unit
+
+
+@pytest.mark.parametrize(
+    ("key", "parts"),
+    [
+        ("deflection of the end [mm]", ("deflection of the end", "mm")),
+        ("K[0] of the joint [N m/rad]", ("K[0] of the joint", "N m/rad")),
+        ("ratio", ("ratio", "")),
+        ("entry K[0]", ("entry K[0]", "")),
+    ],
+)
+def test_the_unit_is_what_stands_in_brackets_at_the_end(key: str, parts: tuple[str, str]) -> None:
+    assert split_unit(key) == parts
+
+
+def test_a_quantity_with_its_unit_is_judged_as_one_whose_unit_is_given() -> None:
+    page = Page()
+    why, source = "round-off", "theory"
+    page.equals("sag [mm]", 1.0, 1.1, within=0.2, why=why, source=source)
+    page.equals(
+        "sag", 1.0, 1.1, within=0.2, why=why, source=source, unit="mm", measure="deflection"
+    )
+    page.meets(1.0, Target("sag [mm]", 1.1, 0.2, why, source))
+    first, *others = page.verdicts
+    assert first.unit == "mm"
+    assert first.measure == "deflection"
+    assert others == [first, first]
+
+
+def test_an_identity_stays_one_whatever_its_unit() -> None:
+    page = Page()
+    page.vanishes("moment about the centre [N m]", 0.0, within=1e-9, why="a sphere", source="it")
+    assert page.verdicts[0].measure == "identity"
+
+
+def test_a_sweep_shows_several_quantities_of_each_group() -> None:
+    rows = [
+        {"part": part, "x": x, "a": x, "b": None if x == 2 else 2 * x}
+        for part in ("one", "two")
+        for x in (1, 2)
+    ]
+    page = Page()
+    page.sweep("sweep", rows, "x", {"a": "first", "b": "second"}, by="part", axis="y [-]")
+    figure = page.sections[0].items[0].figure  # type: ignore[union-attr]
+    curves = {curve["name"]: (curve["x"], curve["y"]) for curve in figure["data"]}
+    # a record without a value has no point
+    assert curves == {
+        f"{part}, {name}": points
+        for part in ("one", "two")
+        for name, points in (("first", ([1, 2], [1, 2])), ("second", ([1], [2])))
+    }
+    assert figure["layout"]["yaxis"]["title"]["text"] == "y [-]"
+    assert page.figures["sweep"] == rows
+
+
+def test_bars_on_a_logarithmic_axis_end_at_the_least_that_is_shown() -> None:
+    found = bars("errors", {"small": {"a": 0.0, "b": 1e-3}}, "error", least=1e-6).figure
+    (of,) = found["data"]
+    assert dict(zip(of["y"], of["x"], strict=True)) == {"a": 1e-6, "b": 1e-3}
+    assert found["layout"]["xaxis"]["type"] == "log"
