@@ -7,8 +7,9 @@ from fe_drivetrain.compare.convergence import band_of
 from fe_drivetrain.mesh.blocks import Block, brick
 from fe_drivetrain.operator.loads import pressure
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.suite.page import Page, Target
+from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import MeshSeries
+from fe_drivetrain.suite.targets import Target
 from fe_drivetrain.validation.loaded_blocks import (
     edge_nodes,
     face_loads,

@@ -7,18 +7,6 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, shown, study
-from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
-from fe_drivetrain.cases.main_bearing.housing_dimensions import (
-    BOLTED,
-    CENTRE,
-    DIMENSIONS,
-    HIGH,
-    ONE_BODY,
-    PEDESTAL,
-    PUBLISHED,
-    WIDTH,
-    Member,
-)
 from fe_drivetrain.cases.main_bearing.housing_families import (
     TOLERANCE,
     Family,
@@ -30,8 +18,21 @@ from fe_drivetrain.cases.main_bearing.housing_families import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
+from fe_drivetrain.response import ESTIMATORS
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation import housing_dimensions as housings
+from fe_drivetrain.validation.housing_dimensions import (
+    BOLTED,
+    CENTRE,
+    DIMENSIONS,
+    HIGH,
+    ONE_BODY,
+    PEDESTAL,
+    PUBLISHED,
+    WIDTH,
+    Member,
+)
 
 #: Housings sampled by form.
 SAMPLES, BOLTED_SAMPLES, QUICK_SAMPLES = 60, 36, 10
@@ -178,7 +179,7 @@ def families_section(
         f"ductile iron yields at about {PROOF / 1e6:.0f} MPa",
         [{"form": m.form.title, **dimensions_of(scene, m)} for m in verified],
     )
-    estimators = [f"{p} {e} [MN m/rad]" for p in PLANES for e in study.ESTIMATORS]
+    estimators = [f"{p} {e} [MN m/rad]" for p in PLANES for e in ESTIMATORS]
     page.table(
         "K_R of the same members by every estimator, the first of which was calibrated, and its "
         "band",

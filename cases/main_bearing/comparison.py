@@ -19,12 +19,12 @@ from fe_drivetrain.cases.main_bearing.loads import (
     HubLoads,
 )
 from fe_drivetrain.cases.main_bearing.study import (
-    ESTIMATORS,
     Solved,
     Tilt,
 )
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.compare import compare, statistics
+from fe_drivetrain.response import ESTIMATORS
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Record, Run
 

@@ -5,8 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases.main_bearing import bands, study
-from fe_drivetrain.cases.main_bearing import housing_dimensions as housings
-from fe_drivetrain.cases.main_bearing.housing_dimensions import (
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.scene import Scene
+from fe_drivetrain.suite import Run
+from fe_drivetrain.validation import housing_dimensions as housings
+from fe_drivetrain.validation.housing_dimensions import (
     CENTRE,
     DIMENSIONS,
     ONE_BODY,
@@ -20,9 +23,6 @@ from fe_drivetrain.cases.main_bearing.housing_dimensions import (
     Member,
     Sampled,
 )
-from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Run
 
 #: Order of the surface through the sampled housings.
 ORDER, QUICK_ORDER = 2, 1
@@ -90,7 +90,7 @@ def family_of(run: Run, scene: Scene, form: Form, count: int) -> Family:
     """Sample the housings of a form, trace those that give both values, and verify some."""
     with run.step(f"sample housings ({form.title})"):
         order = QUICK_ORDER if run.quick else ORDER
-        samples = housings.sampled(run, scene, form, count, order)
+        samples = housings.sampled(scene, form, count, order, run.report)
     surface = samples.surfaces[0]
     with run.step("surface"):
         many = QUICK_CLOUD if run.quick else CLOUD

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fe_drivetrain.cases.main_bearing.bands import Series
-from fe_drivetrain.cases.main_bearing.study import ESTIMATORS, Solved, Tilt, spread
+from fe_drivetrain.cases.main_bearing.study import Solved, Tilt, spread
 from fe_drivetrain.common import (
     FORCES,
     Floats,
@@ -18,6 +18,7 @@ from fe_drivetrain.report import (
     picture_of_model,
 )
 from fe_drivetrain.response import (
+    ESTIMATORS,
     LOADS,
 )
 from fe_drivetrain.scene import Scene

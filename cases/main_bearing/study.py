@@ -27,8 +27,6 @@ from fe_drivetrain.suite import Page, Run
 #: Interfaces of a spherical bearing.
 SPHERICAL = ("sliding", "averaged", "rigid")
 
-ESTIMATORS = ("four nodes", "averaged seat", "energy")
-
 #: Coarsening of the mesh under --quick: factor of the sizes, and elements a turn.
 QUICK = (2.0, 8)
 

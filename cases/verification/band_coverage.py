@@ -74,7 +74,7 @@ def independent(seed: int) -> Record:
     body, band = banded_meridian(scene, ("hub", "gearbox"))
     found = independent_shaft(scene, ringed_shaft(scene)[0])
     kept = np.ix_(FOUND, FOUND)
-    exact = np.linalg.inv(found.compliance[kept])
+    exact = np.linalg.inv(found.compliance[kept]).astype(np.float64)
     error = largest_difference(body.stiffness[:6, :6][kept], exact)
     return {
         "seed": seed,

@@ -1,3 +1,4 @@
+from .bearing_stiffness import ESTIMATORS as ESTIMATORS
 from .bearing_stiffness import PLANES as PLANES
 from .bearing_stiffness import VERTICAL as VERTICAL
 from .bearing_stiffness import Plane as Plane

@@ -45,6 +45,9 @@ VERTICAL = Plane("vertical", 2, 4, 1, ("top", "bedplate"))
 HORIZONTAL = Plane("horizontal", 1, 5, -1, ("side_right", "side_left"))
 PLANES = (VERTICAL, HORIZONTAL)
 
+ESTIMATORS = ("four nodes", "averaged seat", "energy")
+"""Of K_R; see `tilt_stiffness`."""
+
 #: Share by which four nodes may differ from the averaged seat before a warning.
 MISLEADS = 0.05
 

@@ -15,6 +15,7 @@ from . import fillet_factors as fillet_factors
 from . import fingerprints as fingerprints
 from . import folded_meshes as folded_meshes
 from . import growing_shafts as growing_shafts
+from . import housing_dimensions as housing_dimensions
 from . import housing_nodes as housing_nodes
 from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion

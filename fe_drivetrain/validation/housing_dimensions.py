@@ -8,13 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.cases.main_bearing.study import (
-    ESTIMATORS,
-)
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats, InputError, Progress, silent
 from fe_drivetrain.compare import Calibrated, Surface, calibrated, fitted, hypercube, nearest
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft, unit_solids
 from fe_drivetrain.response import (
+    ESTIMATORS,
     PLANES,
     build_model,
     mesh_scene,
@@ -23,7 +21,6 @@ from fe_drivetrain.response import (
     without_gearbox,
 )
 from fe_drivetrain.scene import Scene, change_scene
-from fe_drivetrain.suite import Run
 
 #: K_R of the vertical and of the horizontal plane (Stirling 2023, section 3.3.1) [N m/rad].
 PUBLISHED = np.array([145e6, 392e6])
@@ -113,7 +110,7 @@ class Unit:
     Attributes
     ----------
     K_R : Floats
-        (2, 3) by plane (vertical, horizontal) and estimator of `study.ESTIMATORS` [N m/rad].
+        (2, 3) by plane (vertical, horizontal) and one of `ESTIMATORS` [N m/rad].
     nodes : int
         Of the mesh.
     """
@@ -209,12 +206,31 @@ class Sampled:
     surfaces: tuple[Surface, ...]
 
 
-def sampled(run: Run, scene: Scene, form: Form, count: int, order: int) -> Sampled:
-    """Solve a Latin hypercube of housings on the coarse mesh."""
+def sampled(scene: Scene, form: Form, count: int, order: int, report: Progress = silent) -> Sampled:
+    """Solve a Latin hypercube of housings on the coarse mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its bearing unit's housing is replaced.
+    form : Form
+        Of the housings.
+    count : int
+        Of the samples.
+    order : int
+        Of the polynomials of the logarithms that are laid through their K_R.
+    report : Progress
+        Called with each housing that is begun.
+
+    Returns
+    -------
+    found : Sampled
+        Without those that the program refuses to build.
+    """
     kept, K_R = [], []
     points = hypercube(form.low, HIGH, count)
     for k, x in enumerate(points):
-        run.report(f"{form.title}: housing {k + 1} of {count}")
+        report(f"{form.title}: housing {k + 1} of {count}")
         try:
             unit = solved_coarsely(housed(scene, form, x))
         except InputError:
@@ -273,7 +289,7 @@ def member(
     scene, form, surface, start, free, wanted, tolerance, most, ratio : see `calibrated`
         As of `fe_drivetrain.compare.calibrated`.
     estimator : int
-        Place in `study.ESTIMATORS`.
+        Place in `fe_drivetrain.response.ESTIMATORS`.
     mesh : MeshSizes or None
         Sizes; those of the samples where not given.
     """
