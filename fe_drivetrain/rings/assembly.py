@@ -293,15 +293,22 @@ def assembly_equilibrium(
             f"(n, {len(LOADS)}), for {', '.join(LOADS)}"
         )
     together = assembly.together
-    V, stiffness = assembly.shapes(shapes)
+    every, k = assembly.shapes(len(assembly.stiffness))
+    kept = len(assembly.shapes(shapes)[1])
+    V, stiffness = every[:, :kept], k[:kept]
     total = sum(together.counts)
     approach, lean = np.ascontiguousarray(V[:total]), np.ascontiguousarray(V[total:])
     body = Body(approach, lean, stiffness, soft_springs(together, approach, lean))
-    found = solve_on_body(body, together, f @ assembly.loads.T @ V, tolerance, warm=warm)
+    G = f @ assembly.loads.T
+    found = solve_on_body(body, together, G @ V, tolerance, warm=warm)
+    # the shapes that were left out follow the others
+    pushes = G - np.hstack([found.rollers, found.moments])
+    others = every[:, kept:]
+    rest = (pushes @ others / k[kept:]) @ others.T
     return AssemblyEquilibrium(
         assembly,
         f,
-        found.unknowns @ V.T,
+        found.unknowns @ V.T + rest,
         found.rollers,
         found.moments,
         found.residuals,

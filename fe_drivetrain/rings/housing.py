@@ -1,8 +1,10 @@
 """The housing of a scene as the outer ring of a bearing: its compliance at the rollers.
 
-The bore is the raceway. Each roller presses on a window of it: as long as the roller, and round the
-axis as far as its neighbours' places, falling off evenly. So wide, a window leaves out the approach
-close to the contact, which is part of the contact's own law.
+The bore is the raceway. Each roller presses on a window of it: what its length meets along the
+contact normals, and round the axis as far as its neighbours' places, falling off evenly. So wide, a
+window leaves out the approach close to the contact, which is part of the contact's own law. On any
+mesh, a load on a window has the resultant of the roller's, so that a ring that moves as a rigid
+body moves its windows as rigid rings do.
 """
 
 from __future__ import annotations
@@ -215,26 +217,39 @@ def contact_rows(mesh: Mesh, face: str, centre: float, bearing: Bearing) -> Floa
         middle = centre + row.place + (bore - row.radius) * sin / cos
         if row.aligning and np.ptp(radius) > 1e-6 * bore:
             middle = centre + bore * sin  # on a sphere
-        half = 0.5 * row.length * cos
+        half = 0.5 * row.length / cos
         if middle - half < low - 1e-6 or middle + half > high + 1e-6:
             raise InputError(
                 f"row {number} of {bearing.name} reaches from x = {middle - half:.4g} m to "
                 f"{middle + half:.4g} m, beyond the bore from {low:.4g} m to {high:.4g} m: give "
                 "the scene's bearing a larger width"
             )
-        along = (x - middle) / cos
+        along = (x - middle) * cos
         on = (np.abs(x - middle) <= half) * at.areas
         pitch = 2.0 * np.pi / row.rollers
         for angle in angles(row):
             away = np.abs(np.angle(np.exp(1j * (psi - angle))))
             share = np.maximum(1.0 - away / pitch, 0.0) * on
-            normal = np.array([sin, -cos * np.cos(angle), cos * np.sin(angle)])
+            e_r = np.array([0.0, -np.cos(angle), np.sin(angle)])
+            normal = cos * e_r + [sin, 0.0, 0.0]
+            tangent = np.array([0.0, -np.sin(angle), -np.cos(angle)])
+            place = (row.place + centre) * np.array([1.0, 0.0, 0.0]) + row.radius * e_r
             off = along - (share * along).sum() / share.sum()
-            for found, weights in (
-                (loads, share / share.sum()),
-                (moments, share * off / (share * off**2).sum()),
+            spread = np.zeros(len(mesh.points))
+            np.add.at(spread, facets, share @ at.values**2)
+            near = np.flatnonzero(spread)
+            rigid = rigid_motions(mesh.points[near], place)
+            weighted = np.repeat(spread[near], 3)[:, None] * rigid
+            for found, weights, motion in (
+                (loads, share / share.sum(), np.r_[normal, 0.0, 0.0, 0.0]),
+                (moments, share * off / (share * off**2).sum(), np.r_[0.0, 0.0, 0.0, tangent]),
             ):
                 nodal = np.zeros(len(mesh.points))
                 np.add.at(nodal, facets, weights @ at.values)
-                found.append(np.outer(nodal, normal).ravel())
+                column = np.outer(nodal, normal)
+                left = motion - rigid.T @ column[near].ravel()
+                column[near] += (weighted @ np.linalg.solve(rigid.T @ weighted, left)).reshape(
+                    -1, 3
+                )
+                found.append(column.ravel())
     return np.column_stack([*loads, *moments])

@@ -67,7 +67,7 @@ def races_of_revolution(
             0.5 * row.length * cos,
         )
         nodes, mean, slope = strip_averages(mesh, Strip(radius, middle - half, middle + half))
-        for column, weights in ((number, mean), (len(bearing.rows) + number, cos * slope)):
+        for column, weights in ((number, mean), (len(bearing.rows) + number, slope / cos)):
             np.add.at(pushes[:, column], dofs(nodes, 0), sin * weights)
             np.add.at(pushes[:, column], dofs(nodes, 1), cos * weights)
     highest = max(bearing.counts) if harmonics is None else harmonics
