@@ -44,6 +44,7 @@ from .geometry import Bearing as Bearing
 from .geometry import RollerRow as RollerRow
 from .geometry import angles as angles
 from .geometry import pitch_ratio as pitch_ratio
+from .races import SOFTEST_LEFT_OUT as SOFTEST_LEFT_OUT
 from .races import Races as Races
 from .races import RacesEquilibrium as RacesEquilibrium
 from .races import contact_softness as contact_softness
