@@ -20,7 +20,7 @@ FLOORS = (
     {"common"},
     {"geometry", "compare", "histories"},
     {"bearing", "mesh", "scene", "torsion", "hub_loads"},
-    {"operator", "revolution"},
+    {"life", "operator", "revolution"},
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
