@@ -27,7 +27,7 @@ CHANGE = "solids over housing in series [%]"
 )
 def run(run: Run, page: Page) -> None:
     """Solve the solids once, then loads; beside them a beam on the bearing with rigid rings."""
-    scene = housed_scene((2.5, 12) if run.quick else (1.6, None))
+    scene = housed_scene((3.6, 8) if run.quick else (1.6, None))
     # fewer rollers are fewer solves
     bearing = catalogue_bearing("bearing_s_o20", laminae=0, elements=12 if run.quick else 36)
     factors = factors_of(list(LOADS.values()), scene.gearbox.weight)

@@ -21,7 +21,7 @@ from fe_drivetrain.export import find_calculix
 from fe_drivetrain.rings import housing_solid
 from fe_drivetrain.suite import Page, Record, Run
 
-SIZE, QUICK_SIZE = (1.6, None), (2.5, 12)
+SIZE, QUICK_SIZE = (1.6, None), (3.6, 8)
 ALL = 144
 REFERENCE_LAMINAE = 200
 

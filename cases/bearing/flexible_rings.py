@@ -57,7 +57,7 @@ OTHERS = (
 HEAVY = 1e6
 
 #: Meshes, coarse to fine.
-SIZES: tuple[Size, ...] = ((2.5, 12), (1.6, None), (1.0, None))
+SIZES: tuple[Size, ...] = ((3.6, 8), (1.6, None), (1.0, None))
 
 #: Springs of the scene's joint [N/m]: as stiff as contacts, and soft.
 SPRING, SOFT = 2e9, 2e4

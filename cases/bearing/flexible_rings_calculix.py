@@ -24,7 +24,7 @@ from fe_drivetrain.suite import Page, Run
 LOADS = {"radial, up": (0.0, 0.0, 4e5, 0.0, 0.0), "combined": (2e5, 0.0, -4e5, 8e5, 0.0)}
 PART = f"{NAME}.housing"
 SIZE: Size = (1.0, None)
-QUICK_SIZE: Size = (2.5, 12)
+QUICK_SIZE: Size = (3.6, 8)
 
 #: Points of a spring's curve, graded towards zero, where its power law is bent most. Of 400
 #: ccx misreads some.
