@@ -280,7 +280,7 @@ def _mesh() -> Mesh:
     return Mesh(np.empty((0, 3)), empty, empty[:, 0], ("shaft",), {}, {})
 
 
-def test_another_mesher_or_other_code_meshes_anew(
+def test_another_mesher_or_other_code_meshes_again(
     folder: Path, meshings: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = coarse_scene("bonded")
@@ -293,7 +293,7 @@ def test_another_mesher_or_other_code_meshes_anew(
 
 
 @pytest.mark.parametrize("damage", ["lost", "cut"])
-def test_a_mesh_that_is_not_as_it_was_written_is_made_anew(
+def test_a_mesh_that_is_not_as_it_was_written_is_made_again(
     folder: Path, meshings: list[int], damage: str
 ) -> None:
     scene = coarse_scene("bonded")

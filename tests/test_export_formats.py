@@ -209,7 +209,7 @@ def test_h5py_reads_hdf5(tmp_path: Path, shaft: Superelement) -> None:
         assert (file["mass"][:] == shaft.mass).all()
         assert (file["positions"][:] == shaft.positions).all()
         assert [name.decode() for name in file["points"][:]] == list(shaft.points)
-        assert file["freedoms"][4].decode() == "hub ry"
+        assert file["degrees_of_freedom"][4].decode() == "hub ry"
         assert file.attrs["scene hash"] == shaft.origin.scene_hash
 
 

@@ -298,7 +298,7 @@ def test_wrong_settings_are_refused(change, message):
         shaft_hexahedra(ROD, **({"size": 0.5} | change))
 
 
-def test_fillet_is_refused_with_the_mend():
+def test_fillet_is_refused_with_the_fix():
     shaft = Shaft(
         front=0.0,
         sections=[

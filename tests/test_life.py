@@ -55,7 +55,7 @@ def loaded(angle: float, *load: float, edge: float = 0.83, riser=ONES) -> list[R
 
 @pytest.fixture(scope="module", params=BEARINGS)
 def radial(request: pytest.FixtureRequest) -> tuple[float, list[RowLoads]]:
-    """Pure radial load: both rows alike, half of their rollers carry."""
+    """Pure radial load: both rows equally, half of their rollers carry."""
     return request.param, loaded(request.param, 0, 0, -F, 0, 0)
 
 

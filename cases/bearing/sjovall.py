@@ -88,7 +88,7 @@ def run(run: Run, page: Page) -> None:
         float(axial[Z:].min()) / 1e3,
         FORCE / (Z * np.sin(row.angle)) / 1e3,
         within=1e-10,
-        why="round-off: all rollers are alike",
+        why="round-off: all rollers are equal",
         source="F / (Z sin(alpha))",
         unit="kN",
         measure="reaction",

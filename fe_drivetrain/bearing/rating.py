@@ -54,8 +54,8 @@ def ratings(bearing: Bearing, b_m: float = 1.1) -> Ratings:
         The rows are not rollers, or not equal.
     """
     rows = [row for row in bearing.rows if isinstance(row, RollerRow)]
-    alike = {(r.rollers, r.radius, abs(r.angle), r.diameter, r.length) for r in rows}
-    if len(rows) != len(bearing.rows) or len(alike) != 1:
+    different = {(r.rollers, r.radius, abs(r.angle), r.diameter, r.length) for r in rows}
+    if len(rows) != len(bearing.rows) or len(different) != 1:
         raise InputError(
             f"ratings of {bearing.name}: its rows must be rollers, equal in number, size and "
             "contact angle"

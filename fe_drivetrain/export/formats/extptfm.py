@@ -108,7 +108,7 @@ def write(
     found = reduced(element, damping, gravity)
     first, *others = element.points
     entries = statement(element) | {
-        "freedoms": f"ux uy uz rx ry rz of {first}, the interface"
+        "degrees_of_freedom": f"ux uy uz rx ry rz of {first}, the interface"
         + "".join(f"; of {name}, relative to its static share in that" for name in others),
         "gravity": f"{gravity!r} m/s^2 along -z",
         "damping": "none" if damping is None else "as given",

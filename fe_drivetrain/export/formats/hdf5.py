@@ -27,7 +27,7 @@ def write(path: Path, element: Superelement) -> None:
         file["positions"] = element.positions
         file["positions"].attrs["units"] = "m"
         file["points"] = list(element.points)
-        file["freedoms"] = dof_labels(element)
+        file["degrees_of_freedom"] = dof_labels(element)
         for kind, matrix in (("stiffness", element.stiffness), ("mass", element.mass)):
             if matrix is not None:
                 file[kind] = matrix

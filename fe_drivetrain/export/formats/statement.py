@@ -34,7 +34,7 @@ def statement(element: Superelement) -> dict[str, str]:
         "mesh": origin.mesh,
         "frame": FRAME,
         "units": UNITS,
-        "freedoms": f"{' '.join(MOTIONS)} of each point, in this order",
+        "degrees_of_freedom": f"{' '.join(MOTIONS)} of each point, in this order",
         "supports": "in the stiffness" if element.supported else "none: the body is free",
         "band": "not known" if element.band is None else f"{element.band!r} of the stiffness",
     }

@@ -20,7 +20,7 @@ class StiffnessMatrix(BaseModel):
 
     name: str
     reference_point: tuple[float, float, float] = Field(description="[m], in the frame")
-    freedoms: tuple[str, ...] = MOTIONS
+    degrees_of_freedom: tuple[str, ...] = MOTIONS
     units: Literal["N/m, N, N m/rad"] = "N/m, N, N m/rad"
     matrix: list[list[float]]
     description: str

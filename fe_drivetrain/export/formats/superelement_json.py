@@ -40,7 +40,9 @@ class SuperelementFile(_File):
     name: str
     frame: str = FRAME
     units: str = UNITS
-    freedoms: tuple[str, ...] = Field(default=MOTIONS, description="order of each point's six")
+    degrees_of_freedom: tuple[str, ...] = Field(
+        default=MOTIONS, description="order of each point's six"
+    )
     points: list[str]
     positions: list[tuple[float, float, float]] = Field(description="[m]")
     supported: bool = Field(
