@@ -131,8 +131,8 @@ def quick_cases(
     folder = tmp_path_factory.mktemp("quick")
     script = Path(__file__).with_name("quick_cases.py")
     # one core is these tests' own: three processes on two would each wait for the others
-    cores = str(max(1, (os.cpu_count() or 1) - 1))
-    environment = os.environ | {threads.CORES_VARIABLE: cores}
+    cores = max(1, (os.cpu_count() or 1) - 1)
+    environment = os.environ | threads.thread_limits(cores) | {threads.CORES_VARIABLE: str(cores)}
     with (
         folder.with_suffix(".log").open("wb") as log,
         subprocess.Popen(
