@@ -14,29 +14,78 @@ MAX_STEPS = 100
 MAX_TRIALS = 80
 
 
-@njit(cache=True, error_model="numpy")
-def _solve(A: Floats, b: Floats, m: int, x: Floats) -> bool:
-    """x = A^-1 b of a positive definite m x m system by Cholesky, A overwritten; whether it is."""
-    for j in range(m):
-        for k in range(j):
-            A[j, j] -= A[j, k] * A[j, k]
-        if not A[j, j] > 0.0:
-            return False
-        A[j, j] = np.sqrt(A[j, j])
-        for i in range(j + 1, m):
-            for k in range(j):
-                A[i, j] -= A[i, k] * A[j, k]
-            A[i, j] /= A[j, j]
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+def solve(A: Floats, b: Floats, x: Floats) -> bool:
+    """x = A^-1 b by Cholesky of the lower half, overwritten; whether A is positive definite."""
+    m = len(b)
     for i in range(m):
-        x[i] = b[i]
+        row = A[i]
+        for j in range(i + 1):
+            other = A[j]
+            value = row[j]
+            for k in range(j):
+                value -= row[k] * other[k]
+            if j < i:
+                row[j] = value / other[j]
+            else:
+                if not value > 0.0:
+                    return False
+                row[i] = np.sqrt(value)
+    for i in range(m):
+        value = b[i]
+        row = A[i]
         for k in range(i):
-            x[i] -= A[i, k] * x[k]
-        x[i] /= A[i, i]
+            value -= row[k] * x[k]
+        x[i] = value / row[i]
     for i in range(m - 1, -1, -1):
-        for k in range(i + 1, m):
-            x[i] -= A[k, i] * x[k]
         x[i] /= A[i, i]
+        row = A[i]
+        for k in range(i):
+            x[k] -= row[k] * x[i]
     return True
+
+
+Bracket = tuple[float, float, float, float, float]
+
+
+@njit(cache=True, error_model="numpy")
+def narrowed(
+    low: float, high: float, slope_low: float, slope_high: float, step: float, slope: float
+) -> Bracket:
+    """Where to look next for the zero of a slope, which along a line only grows: energy is convex.
+
+    Parameters
+    ----------
+    low, high : float
+        Steps between which the zero is; ``high`` is negative where none is known.
+    slope_low, slope_high : float
+        Slopes there.
+    step, slope : float
+        The step that was tried, and the slope there.
+
+    Returns
+    -------
+    low, high, slope_low, slope_high, step : float
+        The same, narrowed, and the step to try.
+    """
+    if slope > 0.0:
+        high, slope_high = step, slope
+    else:
+        low, slope_low = step, slope
+    if high < 0.0:
+        step *= 4.0
+    else:
+        share = slope_low / (slope_low - slope_high)
+        step = low + (high - low) * min(max(share, 0.1), 0.9)
+    return low, high, slope_low, slope_high, step
+
+
+@njit(cache=True, error_model="numpy")
+def over_allowed(norm: float, allowed: float) -> float:
+    """A residual over what is allowed; nothing is allowed, and left, where there is no load."""
+    if allowed > 0.0:
+        return norm / allowed
+    return 0.0 if norm == 0.0 else np.inf
 
 
 @njit(cache=True, error_model="numpy")
@@ -104,8 +153,7 @@ def _newton(
         norm = _norm(g)
         allowed = max(tolerance * size, 1e-14 * total)
         if norm <= allowed or steps == MAX_STEPS:
-            over = norm / allowed if allowed > 0.0 else (0.0 if norm == 0.0 else np.inf)
-            return steps, evaluations, over, total
+            return steps, evaluations, over_allowed(norm, allowed), total
         # Newton's direction; what no contact carries yet is as soft as a thousandth of all contacts
         # and stiffens as the residual goes.
         mu = scale * (1e-3 * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
@@ -117,9 +165,9 @@ def _newton(
                     for p in range(5):
                         part += K[k, p] * B[p, j]
                     A[i, j] += B[k, i] * part
-        if not _solve(A, g, m, d):
+        if not solve(A, g, d):
             A[:] = scale * soft
-            _solve(A, g, m, d)
+            solve(A, g, d)
         slope = 0.0
         for i in range(m):
             d[i], base[i] = -d[i], w[i]
@@ -137,18 +185,11 @@ def _newton(
             for i in range(m):
                 g[i] -= target[i]
                 here += g[i] * d[i]
-            # Along a line the slope of a convex function only grows: its zero is bracketed.
             if not damped or abs(here) <= 0.6 * abs(slope):
                 break
-            if here > 0.0:
-                high, slope_high = step, here
-            else:
-                low, slope_low = step, here
-            if high < 0.0:
-                step *= 4.0
-            else:
-                share = slope_low / (slope_low - slope_high)
-                step = low + (high - low) * min(max(share, 0.1), 0.9)
+            low, high, slope_low, slope_high, step = narrowed(
+                low, high, slope_low, slope_high, step, here
+            )
             if step in (low, high):
                 break
         steps += 1

@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from fe_drivetrain.bearing.kernels import GAP, LENGTH, Packed, roller_sums, row_of
+from fe_drivetrain.bearing.newton import narrowed, over_allowed, solve
 from fe_drivetrain.common.arrays import Floats, Ints
 
 MAX_STEPS = 100
@@ -93,37 +94,6 @@ def _tangent(body: Body, s: Floats, A: Floats) -> None:
                     row[k] += x * P[k] + y * C[k]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def _solve(A: Floats, b: Floats, x: Floats) -> bool:
-    """x = A^-1 b by Cholesky of the lower half, overwritten; whether A is positive definite."""
-    m = len(b)
-    for i in range(m):
-        row = A[i]
-        for j in range(i + 1):
-            other = A[j]
-            value = row[j]
-            for k in range(j):
-                value -= row[k] * other[k]
-            if j < i:
-                row[j] = value / other[j]
-            else:
-                if not value > 0.0:
-                    return False
-                row[i] = np.sqrt(value)
-    for i in range(m):
-        value = b[i]
-        row = A[i]
-        for k in range(i):
-            value -= row[k] * x[k]
-        x[i] = value / row[i]
-    for i in range(m - 1, -1, -1):
-        x[i] /= A[i, i]
-        row = A[i]
-        for k in range(i):
-            x[k] -= row[k] * x[i]
-    return True
-
-
 @njit(cache=True, error_model="numpy")
 def _newton(
     load: Floats,
@@ -154,8 +124,7 @@ def _newton(
         norm = np.sqrt(_dot(g, g))
         allowed = max(tolerance * size, 1e-14 * total)
         if norm <= allowed or steps == MAX_STEPS:
-            over = norm / allowed if allowed > 0.0 else (0.0 if norm == 0.0 else np.inf)
-            return steps, evaluations, over
+            return steps, evaluations, over_allowed(norm, allowed)
         # What no contact carries yet is as soft as a thousandth of all contacts, and stiffens as
         # the residual goes.
         mu = scale * (1e-3 * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
@@ -163,11 +132,11 @@ def _newton(
         for i in range(m):
             for k in range(i + 1):
                 A[i, k] += mu * body.soft[i, k]
-        if not _solve(A, g, d):
+        if not solve(A, g, d):
             A[:] = scale * body.soft
             for i in range(m):
                 A[i, i] += body.stiffness[i]
-            _solve(A, g, d)
+            solve(A, g, d)
         # Along the step the slope is that of the quadratic part, which is a line, and of rollers.
         slope, rest, bend = 0.0, 0.0, 0.0
         for i in range(m):
@@ -190,15 +159,9 @@ def _newton(
                     here += s[j, 0] * db[j] + s[j, 1] * dc[j]
             if not damped or abs(here) <= 0.6 * abs(slope):
                 break
-            if here > 0.0:
-                high, slope_high = step, here
-            else:
-                low, slope_low = step, here
-            if high < 0.0:
-                step *= 4.0
-            else:
-                share = slope_low / (slope_low - slope_high)
-                step = low + (high - low) * min(max(share, 0.1), 0.9)
+            low, high, slope_low, slope_high, step = narrowed(
+                low, high, slope_low, slope_high, step, here
+            )
             if step in (low, high):
                 break
         for i in range(m):
@@ -259,7 +222,7 @@ def solve_cases(
             A[:] = scales[i] * body.soft
             for k in range(m):
                 A[k, k] += body.stiffness[k]
-            if not _solve(A, loads[i], unknowns[i]):
+            if not solve(A, loads[i], unknowns[i]):
                 unknowns[i] = 0.0
         steps[i], evaluations[i], residuals[i] = _newton(
             loads[i],
