@@ -15,7 +15,14 @@ from fe_drivetrain.bearing import (
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.flexible_rings_calculix import PART, calculix_rollers
 from fe_drivetrain.cases.bearing.housed import NAME, housed_races, housed_scene, state_housing
-from fe_drivetrain.cases.bearing.ladder import CROWN, FIVE, LOADS, closed_form, peaks
+from fe_drivetrain.cases.bearing.ladder import (
+    CROWN,
+    FIVE,
+    LOADS,
+    closed_form,
+    error_against_time,
+    peaks,
+)
 from fe_drivetrain.common import Floats, MissingToolError
 from fe_drivetrain.export import find_calculix
 from fe_drivetrain.rings import housing_solid
@@ -116,17 +123,7 @@ def run(run: Run, page: Page) -> None:
         f"rollers by {at[combined, FEW]:.1f} %, most of it the profile. The housing is condensed "
         f"once, in {condensed:.0f} s.",
     )
-    page.section("Error against time")
-    for kind in LOADS:
-        page.sweep(
-            f"Peak roller, {kind}",
-            [row for row in rows if row["load"] == kind],
-            "time per load case [us]",
-            "error [%]",
-            by="model",
-            log="xy",
-            points=True,
-        )
+    error_against_time(page, rows)
     state_housing(page)
     page.text(
         "Gap springs have rollers without length, and their time is that of CalculiX for one load "

@@ -57,6 +57,21 @@ RUNGS: tuple[tuple[str, dict[str, float], Callable[[Bearing, Floats], Floats]], 
 )
 
 
+def error_against_time(page: Page, rows: list[Record]) -> None:
+    """Each rung's error of the peak roller against its time, load by load."""
+    page.section("Error against time")
+    for kind in LOADS:
+        page.sweep(
+            f"Peak roller, {kind}",
+            [row for row in rows if row["load"] == kind],
+            "time per load case [us]",
+            "error [%]",
+            by="model",
+            log="xy",
+            points=True,
+        )
+
+
 @case(
     "Peak roller: error against time, from closed form to profiled laminae",
     source="bearing S with the profile of ISO/TS 16281 and 400 laminae as reference",
@@ -128,17 +143,7 @@ def run(run: Run, page: Page) -> None:
         f"degrees miss it by {out:.0f} % with the moment 45 deg out of plane; five degrees with "
         "straight rollers are left with what the profile changes.",
     )
-    page.section("Error against time")
-    for kind in LOADS:
-        page.sweep(
-            f"Peak roller, {kind}",
-            [row for row in rows if row["load"] == kind],
-            "time per load case [us]",
-            "error [%]",
-            by="model",
-            log="xy",
-            points=True,
-        )
+    error_against_time(page, rows)
     page.text(
         "Rings are rigid here: `flexible_ladder` goes on with races that give way, up to the "
         "contact of the whole solid."
