@@ -205,12 +205,13 @@ def life_command(
             f"life/{name}",
             f"{found.title}: rating life of its bearings",
             "the user's scene and files",
-            lambda run, page: lived(run, page, found, bearings, files, rules, reading, **more),
+            lambda run, page: lived(
+                run, page, found, bearings, files, rules, reading, place, choices, resume
+            ),
         )
         with show_steps() as report:
             report("bearings")
             bearings = bearings_of(found, choices)
-            more = {"site": place, "choices": choices, "resume": resume}
             target = out or Path("reports") / "life" / name
             results = run_case(case, target.resolve(), report=report)
         write(sys.stdout, results_text(results, target / "report.html"))

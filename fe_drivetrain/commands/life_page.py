@@ -178,7 +178,8 @@ def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Si
             )
         if life.site is not None:
             shares = life.site.of_winds("L10mr")
-            words += f", winds about {life.site.speeds[np.argmax(shares)]:g} m/s {100 * shares.max():.0f} %"
+            most = life.site.speeds[np.argmax(shares)]
+            words += f", winds about {most:g} m/s {100 * shares.max():.0f} %"
         page.answer(words + ".")
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.geometry import Bearing
-from fe_drivetrain.common.arrays import Floats, chunks
+from fe_drivetrain.common.arrays import Bools, Floats, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.coupled.body import LinearBody, factors_of
@@ -63,7 +63,7 @@ class LoadPath:
             )
         object.__setattr__(self, "_model", self.rollers or rigid_rings(self.bearings[self.name]))
 
-    def bearing_loads(self, hub_loads: ArrayLike) -> tuple[Floats, np.ndarray]:
+    def bearing_loads(self, hub_loads: ArrayLike) -> tuple[Floats, Bools]:
         """Loads on the inner ring of the named bearing.
 
         Parameters
@@ -75,7 +75,7 @@ class LoadPath:
         -------
         loads : Floats
             (n, 5) Fx, Fy, Fz [N], My, Mz [N m] at its centre.
-        converged : ndarray
+        converged : Bools
             (n,) whether there is equilibrium.
         """
         factors = factors_of(hub_loads, self.gearbox_weight, self.gravity)

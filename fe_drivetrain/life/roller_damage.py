@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.geometry import BallRow
 from fe_drivetrain.bearing.rating import LAMBDA
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.life.lubricants import Lubricant
 from fe_drivetrain.life.modified_life import BRANCHES, LAST_KAPPA, MIX, life_factor
@@ -108,7 +108,7 @@ class Steps:
         (n,) of the turning ring against the other [1/min].
     seconds : Floats
         (n,) how long each lasts.
-    converged : ndarray
+    converged : Bools
         (n,) whether the loads of laminae balance those of the ring.
     """
 
@@ -116,7 +116,7 @@ class Steps:
     laminae: tuple[Floats, ...]
     speed: Floats
     seconds: Floats
-    converged: np.ndarray
+    converged: Bools
 
 
 @dataclass(frozen=True, eq=False)
