@@ -124,14 +124,14 @@ def masta(page: Page) -> None:
     for name, own, theirs, source, why in (
         (
             "grease, slight to typical, D_pw 3329 mm",
-            contamination_factor(1.0, 3.3286, "grease", "slight to typical"),
+            float(contamination_factor(1.0, 3.3286, "grease", "slight to typical")),
             0.888378,
             STUDY,
             "the study does not name its class: this one fits",
         ),
         (
             "oil bath, kappa 3.413, D_pw 51.56 mm",
-            contamination_factor(3.413, 0.05156, "oil bath", "-/13/10"),
+            float(contamination_factor(3.413, 0.05156, "oil bath", "-/13/10")),
             0.8174,
             "MASTA, bearing HR30306J, quoted in public code, which names the class -/15/12",
             "four digits are quoted",
@@ -139,7 +139,7 @@ def masta(page: Page) -> None:
     ):
         page.equals(
             f"e_C: {name}",
-            float(own),
+            own,
             theirs,
             within=1e-3,
             why=why,

@@ -58,6 +58,10 @@ def life_command(
             "says under 'catalogue'. May be repeated.",
         ),
     ] = None,
+    only: Annotated[
+        str | None,
+        typer.Option("--only", metavar="NAME", help="The one bearing whose life is asked for."),
+    ] = None,
     catalogue: Annotated[
         list[Path] | None,
         typer.Option(
@@ -122,8 +126,10 @@ def life_command(
     ] = "rigid",
     reliability: Annotated[
         float,
-        typer.Option("--a1", metavar="FACTOR", help="a_1 of modified lives: 1 at 90 %."),
-    ] = 1.0,
+        typer.Option(
+            "--reliability", metavar="PERCENT", help="Of modified lives: 90, 95 to 99, 99.5, 99.9."
+        ),
+    ] = 90.0,
     channel: Annotated[
         list[str] | None,
         typer.Option(
@@ -192,11 +198,11 @@ def life_command(
         rules = LifeRules(
             parse_lubricant(lubricant, temperature, supply, cleanliness),
             "standard" if riser else "none",
-            reliability=reliability,
+            reliability=_a_1(reliability),
         )
         reading = Reading(parse_channels(channel or ()), skip, every, rotor_speed)
         choices = Choices(
-            _pairs(bearing or ()), tuple(catalogue or ()), profile, support, rings, weight
+            _pairs(bearing or ()), tuple(catalogue or ()), profile, support, rings, weight, only
         )
         place = None if site is None else parse_site(site)
         files = recorded_files(loads)
@@ -260,6 +266,16 @@ def parse_lubricant(
             ) from error
     usual = "normal" if supply == "grease" else "-/15/12"
     return Lubricant(at_40, at_100, temperature, supply, cleanliness or usual)  # type: ignore[arg-type]
+
+
+def _a_1(percent: float) -> float:
+    """a_1 of a reliability."""
+    from fe_drivetrain.life.roller_damage import RELIABILITY
+
+    if percent not in RELIABILITY:
+        known = ", ".join(f"{value:g}" for value in RELIABILITY)
+        raise InputError(f"--reliability {percent:g}: choose one of {known} %")
+    return RELIABILITY[percent]
 
 
 def _pairs(texts: Iterable[str]) -> dict[str, str]:

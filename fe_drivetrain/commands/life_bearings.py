@@ -44,6 +44,8 @@ class Choices:
         See `SUPPORTS` and `RINGS_OF`.
     weight : bool
         Whether the weight of gearbox and shaft counts.
+    only : str or None
+        The one bearing whose life is asked for.
     """
 
     named: Mapping[str, str]
@@ -52,6 +54,7 @@ class Choices:
     support: str
     rings: str
     weight: bool
+    only: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +93,7 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
     Returns
     -------
     bearings : list of OneBearing
-        In the scene's order.
+        In the scene's order; all of them, or the one that is asked for.
 
     Raises
     ------
@@ -105,6 +108,10 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
         raise InputError(
             f"--bearing {wrong[0]}={choices.named[wrong[0]]}: the scene has no bearing "
             f"{wrong[0]!r}; name one of {', '.join(units)}"
+        )
+    if choices.only is not None and choices.only not in units:
+        raise InputError(
+            f"--only {choices.only}: the scene has no such bearing; name one of {', '.join(units)}"
         )
     known = read_catalogue(*choices.catalogues)
     found: dict[str, tuple[str, Entry, RatedBearing]] = {}
@@ -123,6 +130,8 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
     body = scene_body(scene, 1)
     result = []
     for name, (entry_name, entry, rated) in found.items():
+        if choices.only not in (None, name):
+            continue
         model = None
         if choices.rings == "three-degree":
             model = three_degree_rings(rated.bearing)

@@ -330,7 +330,7 @@ def _assumptions(
     page.assume(
         "lambda nu taken out of C", rules.reduction, "-", "0.83 with a stress riser, else 1"
     )
-    page.assume("a_1", rules.reliability, "-", "--a1")
+    page.assume("a_1", rules.reliability, "-", "--reliability, as public code has it")
     share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
     page.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
     page.assume("turning ring", rules.turning, "", "of a shaft's bearing in a housing")

@@ -17,7 +17,7 @@ from fe_drivetrain.coupled.newton import coupled_equilibrium
 from fe_drivetrain.coupled.springs import on_springs, tilt_springs
 from fe_drivetrain.life.rated import RatedBearing
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_history
-from fe_drivetrain.life.roller_models import CHUNK, RollerModel, rigid_rings
+from fe_drivetrain.life.roller_models import CHUNK, RollerModel, balanced, rigid_rings
 
 PINNED = 0.0
 """Tilting stiffness of a support that carries no moment [N m/rad]."""
@@ -114,9 +114,10 @@ class LoadPath:
             np.broadcast_to(np.asarray(v, dtype=float), (len(hub),)) for v in (speed, seconds)
         )
         for part in chunks(len(hub), chunk):
-            loads, balanced = self.bearing_loads(hub[part])
+            loads, found = self.bearing_loads(hub[part])
             laminae, converged = self._model(loads)
-            yield Steps(loads, laminae, turns[part], lasting[part], balanced & converged)
+            both = found & converged
+            yield Steps(loads, balanced(laminae, both), turns[part], lasting[part], both)
 
 
 def damage_of_hub_loads(

@@ -41,6 +41,18 @@ KINDS = ("L10", "L10m", "L10r", "L10mr")
 
 RINGS = ("inner", "outer")
 
+RELIABILITY = {
+    90.0: 1.0,
+    95.0: 0.64,
+    96.0: 0.55,
+    97.0: 0.47,
+    98.0: 0.37,
+    99.0: 0.25,
+    99.5: 0.175,
+    99.9: 0.093,
+}
+"""a_1 by reliability [%] (ISO 281, table 12, as public code has it)."""
+
 STANDING = 0.1
 """Below this speed [1/min] a bearing stands: no life is computed, its time is counted apart."""
 
