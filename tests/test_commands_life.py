@@ -150,6 +150,7 @@ def test_a_bearing_that_stands_is_said_to_stand(
         (["--site", "class-V"], "choose I, II, III"),
         (["--reliability", "91"], "99.9"),
         (["--only", "rear"], "no such bearing"),
+        (["--turning", "both"], "'inner' or 'outer'"),
         (["--temperature", "900"], "-60 to 200"),
         (["--channel", "rotor speed=nothing"], "no channel 'nothing'"),
     ],

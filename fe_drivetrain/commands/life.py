@@ -106,6 +106,12 @@ def life_command(
             "--riser/--no-riser", help="Whether the stress riser of ISO/TS 16281 is applied."
         ),
     ] = True,
+    turning: Annotated[
+        str,
+        typer.Option(
+            "--turning", metavar="RING", help="The ring that turns against the load: inner, outer."
+        ),
+    ] = "inner",
     support: Annotated[
         str,
         typer.Option(
@@ -198,6 +204,7 @@ def life_command(
         rules = LifeRules(
             parse_lubricant(lubricant, temperature, supply, cleanliness),
             "standard" if riser else "none",
+            turning=turning,  # type: ignore[arg-type]
             reliability=_a_1(reliability),
         )
         reading = Reading(parse_channels(channel or ()), skip, every, rotor_speed)

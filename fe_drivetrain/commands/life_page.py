@@ -333,7 +333,7 @@ def _assumptions(
     page.assume("a_1", rules.reliability, "-", "--reliability, as public code has it")
     share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
     page.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
-    page.assume("turning ring", rules.turning, "", "of a shaft's bearing in a housing")
+    page.assume("ring that turns against the load", rules.turning, "", "--turning")
     words = {
         "rollers": "bearings in equilibrium with the shaft, a beam",
         "pinned": "pinned bearings: no moment on them",

@@ -141,7 +141,7 @@ class Limits:
         Time [s]: below the speed of standing; with kappa below 0.1, and above 4; with P above C/2;
         with P_0 above C_0; without equilibrium.
     reversals : float
-        How often the direction of rotation changed.
+        How often the direction of rotation changed, within each chunk of steps.
     largest_load, largest_static, largest_roller : float
         Of P, P_0 and one rolling element [N].
     """
