@@ -341,9 +341,7 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
         rate[loaded] = million[loaded] * total[loaded] ** (1.0 / slope - 1.0)
         parts.append(
             tuple(
-                np.stack(
-                    [_by_place(rate[:, None] * risk[ring], row.shares[ring]) for ring in (0, 1)]
-                )
+                np.stack([_by_place(rate, risk[i], row, i) for i in (0, 1)])
                 for risk, (_, row) in zip(risks, found, strict=True)
             )
         )
@@ -406,10 +404,12 @@ def damage_of_history(chunks: Iterable[Steps], rated: RatedBearing, rules: LifeR
 
 @dataclass(frozen=True, eq=False)
 class _Row:
-    """Equivalent loads P (n, laminae) of a row, and the part that each place has in a risk."""
+    """Of a row: P (n, laminae); for both rings the powers of loads (n, elements, laminae) by which
+    places share a risk, and one over their sums (n, laminae)."""
 
     P: Floats
-    shares: tuple[Floats, Floats]
+    powers: tuple[Floats, Floats]
+    over_sums: tuple[Floats, Floats]
 
 
 def _slope(rated: RatedBearing) -> float:
@@ -435,14 +435,14 @@ def _row_risks(
     half = fourth * (np.cbrt(q) if isinstance(row, BallRow) else np.sqrt(q))
     by_ring = (fourth, half) if rules.turning == "inner" else (half, fourth)
     exponents = (turning, standing) if rules.turning == "inner" else (standing, turning)
-    loads, risks, shares = [], [], []
+    loads, risks, over_sums = [], [], []
     for powers, p, capacity in zip(by_ring, exponents, (inner, outer), strict=True):
         mean = powers.mean(axis=1)
         load = mean ** (1.0 / p)
         loads.append(load)
         risks.append((load / capacity) ** power)
-        whole = powers.shape[1] * mean[:, None]
-        shares.append(np.divide(powers, whole, out=np.zeros_like(powers), where=whole > 0.0))
+        whole = powers.shape[1] * mean
+        over_sums.append(np.divide(1.0, whole, out=np.zeros_like(whole), where=whole > 0.0))
     risk = np.stack(risks)
     if isinstance(row, BallRow):
         # one load of the whole row: what has its life by the basic rating
@@ -453,12 +453,13 @@ def _row_risks(
         mixed = (loads[0] ** LINE + weight * loads[1] ** LINE) / (1.0 + weight)
         scale = MIX * rules.reduction * q.shape[1] * np.cos(row.angle) * count
         P = scale * mixed ** (1.0 / LINE)
-    return risk, _Row(P, (shares[0], shares[1]))
+    return risk, _Row(P, by_ring, (over_sums[0], over_sums[1]))
 
 
-def _by_place(weights: Floats, shares: Floats) -> Floats:
-    """(elements, laminae): sum over steps of weights (n, laminae) times shares."""
-    return np.asarray(np.einsum("nk,njk->jk", weights, shares))
+def _by_place(rate: Floats, risk: Floats, row: _Row, ring: int) -> Floats:
+    """(elements, laminae): sum over steps of a rate (n,) times risks (n, laminae), by place."""
+    weights = rate[:, None] * risk * row.over_sums[ring]
+    return np.asarray(np.einsum("nk,njk->jk", weights, row.powers[ring]))
 
 
 def _lubrication(
