@@ -178,8 +178,8 @@ class Damage:
         For each row (2 rings, elements, laminae): parts of the damage by L10r, and by L10mr, of
         the inner and the outer ring; of a ring that stands at the place of each element, of one
         that turns by where it takes the load.
-    of_standard : Floats
-        (2,) damage by L10 and by L10m.
+    of_standard, of_bearing : Floats
+        (2,) damage by L10 and by L10m; by L10r and by L10mr, from the lives of steps.
     alone : Floats
         (2, rows, 2) basic and modified damage of each row's inner and outer ring if it were alone:
         more than its part, since risks add up by Weibull's slope.
@@ -192,6 +192,7 @@ class Damage:
     basic: tuple[Floats, ...]
     modified: tuple[Floats, ...]
     of_standard: Floats
+    of_bearing: Floats
     alone: Floats
     limits: Limits
 
@@ -203,6 +204,7 @@ class Damage:
             tuple(a + b for a, b in zip(self.basic, other.basic, strict=True)),
             tuple(a + b for a, b in zip(self.modified, other.modified, strict=True)),
             self.of_standard + other.of_standard,
+            self.of_bearing + other.of_bearing,
             self.alone + other.alone,
             self.limits + other.limits,
         )
@@ -226,6 +228,7 @@ class Damage:
             tuple(factor * a for a in self.basic),
             tuple(factor * a for a in self.modified),
             factor * self.of_standard,
+            factor * self.of_bearing,
             factor * self.alone,
             self.limits,
         )
@@ -236,8 +239,8 @@ class Damage:
         return {
             "L10": float(self.of_standard[0]),
             "L10m": float(self.of_standard[1]),
-            "L10r": float(sum(part.sum() for part in self.basic)),
-            "L10mr": float(sum(part.sum() for part in self.modified)),
+            "L10r": float(self.of_bearing[0]),
+            "L10mr": float(self.of_bearing[1]),
         }
 
     def lives(self, unit: Literal["Mrev", "hours", "years"] = "hours") -> dict[str, float]:
@@ -332,10 +335,11 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
     a_iso = [factor(row.P) for _, row in found]
     basic_risks = [risk for risk, _ in found]
     modified_risks = [risk * a[None] ** -slope for risk, a in zip(basic_risks, a_iso, strict=True)]
-    parts, alone = [], []
+    parts, alone, of_bearing = [], [], []
     for risks, a_1 in ((basic_risks, 1.0), (modified_risks, rules.reliability)):
         total = np.sum([risk.sum(axis=(0, 2)) for risk in risks], axis=0)
         million = 1e-6 * turns / a_1
+        of_bearing.append(float(million @ total ** (1.0 / slope)))
         rate = np.zeros_like(total)
         loaded = total > 0.0
         rate[loaded] = million[loaded] * total[loaded] ** (1.0 / slope - 1.0)
@@ -367,7 +371,14 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
         largest_roller=max(float(q.sum(axis=2).max(initial=0.0)) for q in steps.laminae),
     )
     return Damage(
-        float(time.sum()), float(turns.sum()), parts[0], parts[1], standard, np.array(alone), limits
+        float(time.sum()),
+        float(turns.sum()),
+        parts[0],
+        parts[1],
+        standard,
+        np.array(of_bearing),
+        np.array(alone),
+        limits,
     )
 
 
