@@ -210,6 +210,40 @@ def test_real_files_have_lives_that_fall_with_the_load_on_the_row(
     assert of_outer[0] > 100 * of_outer[1]
 
 
+OWN = """
+big_ball:
+  title: A large deep-groove ball bearing
+  kind: ball
+  elements: 20
+  element_diameter: 0.06
+  pitch_diameter: 0.6
+  contact_angle: 0
+  ratings: {C: 8.0e+5, C0: 1.2e+6, Cu: 4.0e+4}
+  sources:
+    elements: assumed
+    element_diameter: assumed
+    pitch_diameter: assumed
+    contact_angle: a deep groove
+    ratings: assumed
+"""
+
+
+def test_balls_of_an_own_catalogue_in_oil(invoke: Callable[..., Result], histories: Path) -> None:
+    (histories / "own.yaml").write_text(OWN)
+    out = histories.parent / "out"
+    status, printed, error = invoke(
+        *("life", SCENE, "--loads", str(histories / "v14.csv"), "--out", str(out)),
+        *("--catalogue", str(histories / "own.yaml"), "--bearing", "main_bearing=big_ball"),
+        *("--lubricant", "100,11", "--supply", "oil bath", "--cleanliness=-/17/14"),
+    )
+    assert status == 0, printed + error
+    (lives,) = rows_of(out / "lives.csv")
+    ratio = float(lives["C [kN]"]) / float(lives["P_ref [kN]"])
+    assert ratio**3 == pytest.approx(float(lives["L10r [Mrev]"]), rel=1e-6)
+    assert len(rows_of(out / "places.csv")) == 20
+    assert not (out / "laminae.csv").exists()
+
+
 def test_ends_of_rollers_are_stated_with_profile_and_riser() -> None:
     scene = library_scene(SCENE)
     (profiled,) = bearings_of(scene, CHOICES)
