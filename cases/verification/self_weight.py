@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.beam import Beam, BeamSection, Support, solve
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
@@ -108,10 +108,10 @@ def run(run: Run, page: Page) -> None:
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-        ("overhang", LENGTH, "m", "chosen"),
+        ("overhang", LENGTH, "m"),
         ("gravity", GRAVITY, "m/s^2", "standard"),
         ("density", STEEL.density, "kg/m^3", "steel, assumed"),
-        *steel_rows(STEEL),
+        steel=STEEL,
     )
     title = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
     title += "section; beside it the beam with that of an evenly held root"

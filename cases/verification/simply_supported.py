@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.beam import Beam, BeamSection, BeamSolution, Support, solve
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
@@ -129,12 +129,12 @@ def run(run: Run, page: Page) -> None:
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-        ("span", LENGTH, "m", "chosen"),
-        ("force at mid span", FORCE / 1e6, "MN", "chosen"),
-        ("moment at the downwind end", MOMENT / 1e6, "MN m", "chosen"),
+        ("span", LENGTH, "m"),
+        ("force at mid span", FORCE / 1e6, "MN"),
+        ("moment at the downwind end", MOMENT / 1e6, "MN m"),
         ("gravity", GRAVITY, "m/s^2", "standard"),
         ("density", STEEL.density, "kg/m^3", "steel, assumed"),
-        *steel_rows(STEEL),
+        steel=STEEL,
     )
     fine = np.linspace(0.0, LENGTH, 81)
     traces = []

@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.cases.verification.torsion_bound import BOUNDS, check_plane_sections
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS
@@ -130,11 +130,11 @@ def run(run: Run, page: Page) -> None:
     page.section("Cone")
     show_inputs(
         page,
-        ("radius at the thin end", RADII[0], "m", "chosen"),
-        ("radius at the thick end", RADII[1], "m", "chosen"),
-        ("half angle of the cone", HALF_ANGLE, "degrees", "chosen"),
+        ("radius at the thin end", RADII[0], "m"),
+        ("radius at the thick end", RADII[1], "m"),
+        ("half angle of the cone", HALF_ANGLE, "degrees"),
         ("length", shaft.length, "m", "of these"),
-        *steel_rows(STEEL),
+        steel=STEEL,
     )
     title = "How much too stiff the integral of dx / GJ is: against rigid flat ends, and against "
     title += "Michell's cone between spheres through the ends' centres"

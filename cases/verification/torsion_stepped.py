@@ -1,7 +1,7 @@
 """Torsion of a stepped shaft: the series sum of L / GJ, and the flexibility of the step."""
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.cases.verification.torsion_bound import BOUNDS, check_plane_sections
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.mesh import Grading
@@ -124,12 +124,12 @@ def run(run: Run, page: Page) -> None:
     page.section("What a step adds")
     show_inputs(
         page,
-        ("large diameter", LARGE, "m", "chosen"),
-        ("small diameter", SMALL, "m", "chosen"),
-        ("bore of the bored shaft", BORE, "m", "chosen"),
-        ("length of each part", LENGTH, "m", "chosen"),
+        ("large diameter", LARGE, "m"),
+        ("small diameter", SMALL, "m"),
+        ("bore of the bored shaft", BORE, "m"),
+        ("length of each part", LENGTH, "m"),
         ("fillet", 0.0, "m", "sharp step: the most that a step can add"),
-        *steel_rows(STEEL),
+        steel=STEEL,
     )
     title = "Length of the thin part that twists as the step does beside the series sum, solid "
     title += "shaft, sharp step: between the two bounds"

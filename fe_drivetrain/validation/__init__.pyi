@@ -9,6 +9,7 @@ from . import elliptic_plate as elliptic_plate
 from . import end_flexibilities as end_flexibilities
 from . import end_loaded as end_loaded
 from . import exact_blocks as exact_blocks
+from . import exact_shafts as exact_shafts
 from . import extreme_parts as extreme_parts
 from . import faulty_meshes as faulty_meshes
 from . import fillet_factors as fillet_factors
@@ -54,6 +55,7 @@ from . import spherical_shells as spherical_shells
 from . import squeezed_rings as squeezed_rings
 from . import stiffness_choices as stiffness_choices
 from . import streamed_series as streamed_series
+from . import supported_shafts as supported_shafts
 from . import thin_bodies as thin_bodies
 from . import tied_bars as tied_bars
 from . import tied_rings as tied_rings

@@ -73,6 +73,16 @@ class Tube:
         return float(cowper_shear_coefficient(nu, m)) * self.material.shear_modulus * self.area
 
 
+def solid_and_bored(
+    outer: float, bore: float, length: float, material: Material
+) -> dict[str, Tube]:
+    """The same shaft "solid" and "bored"; diameters and length in m."""
+    return {
+        name: Tube(outer, inner, length, material)
+        for name, inner in (("solid", 0.0), ("bored", bore))
+    }
+
+
 def evenly_loaded_shear(tube: Tube) -> float:
     """Shear rigidity [N] of a beam whose loads and supports act evenly over its sections.
 
@@ -134,6 +144,19 @@ def parabola_slope(per_turn: int) -> float:
     """Largest angle [rad] between such a parabola and the circle: (1 - cos t)^2 / t."""
     half = np.pi / per_turn
     return float((1 - np.cos(half)) ** 2 / half)
+
+
+def within_lean(per_turn: int) -> tuple[float, str]:
+    """How much of the meshed section's stiffness parabolic arcs may miss, relative, and why.
+
+    They lean against the circle: `parabola_slope` squared, and that in words.
+    """
+    slope = parabola_slope(per_turn)
+    why = "the exact displacement is one of the element's; the meshed surface leans against the "
+    return (
+        slope**2,
+        why + f"circle by at most {slope:.2g} rad, and what that warps is of second order",
+    )
 
 
 def within_arcs(per_turn: int, what: str, power: int) -> tuple[float, str]:
