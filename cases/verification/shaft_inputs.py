@@ -1,7 +1,10 @@
-"""Tables of inputs, shared by the cases of shafts."""
+"""Tables of inputs, and a check, shared by the cases of shafts."""
+
+from collections.abc import Sequence
 
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page
+from fe_drivetrain.suite import Page, Record, Target
+from fe_drivetrain.validation.solid_shafts import mesh_band
 
 #: Name, value, unit, and where it comes from: "chosen" where it is left out.
 Input = tuple[str, float | str, str] | tuple[str, float | str, str, str]
@@ -31,3 +34,47 @@ def show_uniform(
         *more,
         steel=steel,
     )
+
+
+def check_motion(
+    page: Page,
+    title: str,
+    unit: str,
+    closed: tuple[float, str],
+    by_frame: float,
+    by_mesh: Sequence[float],
+    evenly: tuple[float, float, str, str],
+) -> Record:
+    """The frame against a closed form with shear, ever finer solids against a beam held evenly.
+
+    Parameters
+    ----------
+    page : Page
+        Where it is checked.
+    title, unit : str
+        What moves.
+    closed : tuple of float, str
+        The closed form, and where it comes from.
+    by_frame : float
+        The frame of the library.
+    by_mesh : sequence of float
+        Of the solids, meshes 1, 2, ... of a family.
+    evenly : tuple of float, float, str, str
+        Of the solid: the beam, by what share it may differ, why, and where the beam comes from.
+
+    Returns
+    -------
+    row : dict
+        Of a table: closed form, frame, solid, its band.
+    """
+    exact = "the frame's sections are exact: round-off"
+    framed = Target(f"{title}, frame [{unit}]", closed[0], 1e-10, exact, closed[1])
+    band = mesh_band(range(1, len(by_mesh) + 1), by_mesh)
+    page.meets(by_frame, framed)
+    page.meets(by_mesh[-1], Target(f"{title}, solid [{unit}]", *evenly), band)
+    return {
+        "closed form": closed[0],
+        "frame": by_frame,
+        "solid": float(by_mesh[-1]),
+        "band of the solid": band,
+    }

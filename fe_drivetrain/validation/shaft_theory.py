@@ -96,6 +96,11 @@ def evenly_loaded_shear(tube: Tube) -> float:
     return 1.0 / (1.0 / tube.kGA - extra_curvature(tube))
 
 
+def sag(load: float, EI: float, kGA: float, length: float) -> float:
+    """Deflection of a cantilever's tip under a load per length [N/m], with shear [m]."""
+    return load * length**4 / (8 * EI) + load * length**2 / (2 * kGA)
+
+
 def recovery_error(per_turn: int) -> float:
     """Error of stress recovered at the skin of a shaft in bending or torsion, over the stress.
 
@@ -279,6 +284,22 @@ def michell_torque(half_angle: float, shear_modulus: float) -> float:
     """
     c = np.cos(half_angle)
     return float(2 * np.pi * shear_modulus * (2 - 3 * c + c**3))
+
+
+def between_spheres(radii: tuple[float, float], half_angle: float, shear_modulus: float) -> float:
+    """Stiffness [N m/rad] of Michell's cone between spheres about its apex.
+
+    Parameters
+    ----------
+    radii : tuple of float
+        Of the flat ends through whose centres the spheres go [m].
+    half_angle : float
+        Of the cone [rad].
+    shear_modulus : float
+        G [Pa].
+    """
+    near, far = (r / np.tan(half_angle) for r in radii)
+    return float(michell_torque(float(half_angle), shear_modulus) / (near**-3 - far**-3))
 
 
 @dataclass(frozen=True)

@@ -104,6 +104,21 @@ def straight(stations: Sequence[float], outer: float, inner: float = 0.0) -> Sha
     )
 
 
+def stepped(outer: Sequence[float], length: float, bore: float = 0.0) -> Shaft:
+    """Parts of one length with sharp steps between them; diameters and length in m."""
+    sections = [Section(length=length, outer_diameter=d, inner_diameter=bore) for d in outer]
+    return Shaft(front=0.0, sections=tuple(sections))
+
+
+def cone(radii: tuple[float, float], half_angle: float) -> Shaft:
+    """A solid cone between flat ends, its apex at the origin; radii in m, angle in degrees."""
+    start, end = (r / np.tan(np.radians(half_angle)) for r in radii)
+    thin, thick = (2 * r for r in radii)
+    length = float(end - start)
+    section = Section(length=length, outer_diameter=thin, outer_diameter_end=thick)
+    return Shaft(front=float(start), sections=(section,))
+
+
 def solid(
     shaft: Shaft,
     refinement: int,

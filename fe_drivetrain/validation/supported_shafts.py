@@ -18,6 +18,7 @@ from fe_drivetrain.validation.shaft_theory import (
     evenly_loaded_shear,
     macaulay,
     parabola_shortfall,
+    sag,
 )
 from fe_drivetrain.validation.solid_shafts import Compliance, Supported
 
@@ -138,6 +139,25 @@ class SupportedShaft:
         acts = np.zeros((len(self.stations), 2))
         acts[load.station] = load.force, load.moment
         return solid_shafts.on_springs(compliance, self.supports, acts, load.gravity)
+
+
+def sag_over_beam(tube: Tube) -> tuple[float, float]:
+    """Sag of an overhung solid under its weight, over Timoshenko's beam with Cowper's coefficient.
+
+    Returns
+    -------
+    solid, evenly : float, float
+        Of a mesh of hexahedra, and of the beam with the coefficient of an evenly held root. With
+        the mesh's own mass and I, so that what is left is not the section's error.
+    """
+    shaft = solid_shafts.straight((0.0, tube.length), tube.outer, tube.inner)
+    mesh = solid_shafts.solid(shaft, 2, size=tube.outer)
+    C = solid_shafts.sectional_compliance(mesh, tube.material, (0.0, tube.length))
+    load = float(C.weight_resultant[0]) / tube.length
+    EI = tube.material.youngs_modulus * solid_shafts.meshed_moment(mesh) / tube.length / 2
+    cowper = sag(load, EI, tube.kGA, tube.length)
+    even = sag(load, EI, evenly_loaded_shear(tube), tube.length)
+    return float(C.weight[1, 0]) / cowper, even / cowper
 
 
 def within_evenly(per_turn: int) -> tuple[float, str]:
