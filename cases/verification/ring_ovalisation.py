@@ -73,11 +73,11 @@ def run(run: Run, page: Page) -> None:
         rows = [run.timed(f"n = {n}", solve, n, level) for level in (1, 2, 4)]
         last[n] = rows[-1]
         targets = [
-            Target(key, value, within, why, MICHELL, f"n = {n}: {key.partition(' [')[0]}")
+            Target(key, value, *((5e-3, stress) if "stress" in key else (1e-4, moved)), MICHELL)
             for key, value in thick[n].items()
-            for within, why in [(5e-3, stress) if "stress" in key else (1e-4, moved)]
         ]
-        page.targets(f"By mesh, n = {n}", MeshSeries(rows, THROUGH), targets, "exact")
+        series, wave = MeshSeries(rows, THROUGH), f"n = {n}"
+        page.targets(f"By mesh, {wave}", series, targets, "exact", wave)
     thin = inextensible_ring(np.array(list(thick)), INNER, OUTER, PRESSURE, PLANE)
     ratio = np.array([of[RADIAL] for of in thick.values()]) / (1e6 * thin)
     oval, michell = last[2], thick[2]

@@ -1,9 +1,11 @@
 from . import bar_sections as bar_sections
 from . import bent_blocks as bent_blocks
 from . import bracket_plane as bracket_plane
+from . import bracket_solid as bracket_solid
 from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
 from . import curved_bars as curved_bars
+from . import determinate_bearings as determinate_bearings
 from . import distorted_blocks as distorted_blocks
 from . import elliptic_plate as elliptic_plate
 from . import end_flexibilities as end_flexibilities
@@ -27,6 +29,7 @@ from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import low_speed_shaft as low_speed_shaft
 from . import manufactured as manufactured
+from . import matrix_readers as matrix_readers
 from . import moved_bodies as moved_bodies
 from . import one_norm as one_norm
 from . import other_precisions as other_precisions
