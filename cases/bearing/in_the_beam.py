@@ -78,7 +78,7 @@ def run(run: Run, page: Page) -> None:
     page.sweep(
         "Peak roller, error of its root mean square over load cases, against time per load case",
         rungs,
-        "time per load case [us]",
+        "time per load case [µs]",
         "error of the peak roller [%]",
         by="model",
         log="xy",
@@ -392,7 +392,7 @@ def ladder(run: Run, factors: Floats) -> list[Record]:
             rows.append(
                 {
                     "model": name,
-                    "time per load case [us]": 1e6 * seconds,
+                    "time per load case [µs]": 1e6 * seconds,
                     "error of the peak roller [%]": 100.0 * error,
                 }
             )

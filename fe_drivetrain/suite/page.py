@@ -454,7 +454,7 @@ class Page:
         self.chart(caption, traces, x, axis or next(iter(keys)), tuple(log), safe)
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
         if table is not False:
-            self.table(caption, rows, plain if table is True else table)
+            self.table("The same in numbers", rows, plain if table is True else table)
         self.data(caption, [{key: row[key] for key in plain} for row in rows])
 
     def data(self, name: str, value: Any) -> None:
