@@ -317,7 +317,7 @@ def roller_table(page: Page, files: dict[str, list[Answer]]) -> None:
     page.answer(
         f"Between loop and constant K_R the largest roller changes by {largest_change(ratios):.0f} "
         f"% at most, roller 1 by {largest_change(ones):.0f} %; the thesis's factor of more than 2 "
-        f"does not come of it, but of 145 MN m/rad: {min(soft):.1f} to {max(soft):.1f}."
+        f"is not an effect of the loop, but of 145 MN m/rad: {min(soft):.1f} to {max(soft):.1f}."
     )
 
 

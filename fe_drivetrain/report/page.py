@@ -22,6 +22,7 @@ from markupsafe import Markup, escape
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.report.results import (
+    Cell,
     Chart,
     Image,
     Limit,
@@ -63,7 +64,9 @@ _CHART_TEMPLATE: dict[str, Any] = {
         "font": {"family": "system-ui, 'Segoe UI', Arial, sans-serif", "size": 14},
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
-        "margin": {"l": 60, "r": 20, "t": 30, "b": 50},
+        "margin": {"l": 60, "r": 44, "t": 30, "b": 50},
+        # beside the plot, not over the last names of the legend
+        "modebar": {"orientation": "v"},
         "legend": {"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"},
         "hovermode": "closest",
         "hoverlabel": {"align": "left"},
@@ -124,7 +127,7 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
         row: dict[str, Any] = {"name": name, "group": name.partition("/")[0], "results": None}
         row |= {"skipped": False, "pending": False}
         if name in problems:
-            row["problem"] = problems[name].message
+            row["problem"] = escape(problems[name].message)  # to be typed again, perhaps
             row["skipped"] = problems[name].is_missing_tool
             row["pending"] = problems[name].is_pending
         else:
@@ -177,7 +180,7 @@ def _environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         # of plain strings alone: what is Markup is scripts, styles, and what is to be typed again
-        finalize=lambda value: typeset(value) if type(value) is str else value,
+        finalize=lambda value: _printed(value) if type(value) is str else value,
     )
     shared: dict[str, Callable[..., str]] = {
         "seconds": lambda s: f"{s:.3g}" if abs(s) < 1000 else f"{s:.0f}",
@@ -198,6 +201,17 @@ def _style() -> Markup:
     return Markup((_TEMPLATES / "report.css").read_text(encoding="utf-8"))
 
 
+def _printed(text: str) -> str:
+    """Text as a page prints it; what stands between backticks is code, and stays as it is."""
+    if text.count("`") % 2 or "`" not in text:
+        return typeset(text)
+    parts = [
+        Markup("<code>{}</code>").format(part) if i % 2 else escape(typeset(part))
+        for i, part in enumerate(text.split("`"))
+    ]
+    return Markup("").join(parts)
+
+
 def render(results: Results, folder: Path) -> str:
     """The page as text; see `write_page`."""
     charts = [i for s in results.sections for i in s.items if isinstance(i, Chart)]
@@ -212,6 +226,7 @@ def render(results: Results, folder: Path) -> str:
         "figure": _figure_as_json,
         "unit_unbroken": _unit_unbroken,
         "numeric_columns": _numeric_columns,
+        "in_column": _in_column,
         "height": _chart_height,
         "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
         "data_url": lambda image: _as_data_url(image, folder),
@@ -259,10 +274,7 @@ def formatted(
     if decimals:
         number = number.rstrip("0").rstrip(".")
     number = number.replace(",", THIN_SPACE).replace("-", MINUS)
-    if not power:
-        return number
-    ten = f"10{superscript(power)}"
-    return ten if number == "1" else f"{number}\u00a0×\u00a0{ten}"
+    return f"{number}\u00a0×\u00a010{superscript(power)}" if power else number
 
 
 def computed_text(verdict: Verdict) -> str:
@@ -352,6 +364,12 @@ def _numeric_columns(table: Table) -> set[int]:
     }
 
 
+def _in_column(value: Cell, heading: str) -> str:
+    """A cell: of percentages and pure numbers, which the heading says, with any power of ten."""
+    unit = next((unit for unit in ("%", "-") if heading.endswith(f"[{unit}]")), None)
+    return formatted(value, unit=unit)
+
+
 def _chart_height(item: Chart) -> int:
     """Pixels, so that the page does not jump when the chart appears."""
     height = item.figure.get("layout", {}).get("height")
@@ -390,7 +408,7 @@ def _log_ticks(axis: str, traces: list[dict[str, Any]]) -> dict[str, Any]:
     decades = math.log10(max(values) / min(values)) if values else 0.0
     if decades > 12:
         return {}
-    return {"dtick": 1} if decades >= 2 else {"dtick": "D2"}
+    return {"dtick": 1 if decades >= 2 else "D2" if decades >= 1 else "D1"}
 
 
 def _distinguished(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -11,6 +11,7 @@ THIN_SPACE = "\u202f"
 _SUPERSCRIPTS = str.maketrans("-0123456789.", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹\u00b7")
 # 1e-8, 3.4e+05; not x1e5 of a name, nor key=4e5 of a command
 _SCIENTIFIC = re.compile(r"(?<![\w.=])(-?\d+(?:\.\d+)?)e([+-]?\d+)\b")
+_FACTOR = re.compile(r"(?<=\d\))e([+-]?\d+)\b")
 _POWER = re.compile(r"\^(-?\d+(?:\.\d+)?)(?![\d/])")
 _NEGATIVE = re.compile(r"(?<![\w.=\"'\])-])-(?=\d)")
 
@@ -23,9 +24,12 @@ def superscript(power: int | str) -> str:
 def typeset(text: str) -> str:
     """Text with m^2 as m², 1e-8 as 10⁻⁸, 3.4e+05 as 3.4 × 10⁵, and minus signs before numbers.
 
-    What is to be typed again, as ``--set key=-4e5``, is left alone.
+    A number and its % stay on one line. What is to be typed again, as ``--set key=-4e5``, is
+    left alone.
     """
     text = _SCIENTIFIC.sub(_power_of_ten, text)
+    text = _FACTOR.sub(lambda found: f"\u00a0×\u00a010{superscript(int(found[1]))}", text)
+    text = re.sub(r"(?<=\d) %", "\u00a0%", text)
     text = _POWER.sub(lambda found: superscript(found[1]), text)
     return _NEGATIVE.sub(MINUS, text)
 

@@ -355,7 +355,10 @@ class Page:
         logarithmic: Iterable[str] = (),
         safe: tuple[float | None, float | None] | None = None,
     ) -> None:
-        """Add a chart of traces; see `fe_drivetrain.report.chart`."""
+        """Add a chart of traces, or a sentence if they have no point; see `report.chart`."""
+        if not any(len(trace.get(axis, ())) for trace in traces for axis in "xyz"):
+            self.text(f"{caption}: there is nothing to show in this run.")
+            return
         self.add(chart(caption, traces, x, y, logarithmic, safe))
 
     def targets(
