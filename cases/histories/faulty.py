@@ -75,7 +75,7 @@ def slow(page: Page) -> None:
                 found.amplitude(at, near=0.0),
                 LINES[3] - LINES[6],
                 within=0.02,
-                why="two lines of one frequency cannot be told apart; no other line leaks in",
+                why="two lines of one frequency cannot be distinguished; no other line leaks in",
                 source="sin(2 pi 1.2 n / 1.8) = -sin(2 pi 0.6 n / 1.8)",
             )
             continue

@@ -146,7 +146,7 @@ def run(run: Run, page: Page) -> None:
         alone = QUICK_INDEPENDENT if run.quick else INDEPENDENT
         others = [run.timed("NGSolve", independent, seed) for seed in alone]
     except MissingToolError as error:
-        others, lacks = [], f"{error}; without it no shaft is compared with it."
+        others, missing = [], f"{error}; without it no shaft is compared with it."
     if others:
         page.at_least(
             "level 2: share of bands that hold against NGSolve",
@@ -165,7 +165,7 @@ def run(run: Run, page: Page) -> None:
         *(
             [f"Against NGSolve {sum(column(others, HOLDS))} of {len(others)} bands hold."]
             if others
-            else [lacks]
+            else [missing]
         ),
         *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),
     )

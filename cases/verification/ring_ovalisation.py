@@ -88,7 +88,7 @@ def run(run: Run, page: Page) -> None:
         f"n = 2; at n = 8 it is {100 * (ratio[6] - 1):.0f} %."
     )
     page.text(
-        "Plane strain. The pressure stands on the outside, positive at t = 0; the bore is free. "
+        "Plane strain. The pressure acts on the outside, positive at t = 0; the bore is free. "
         "One half wave is meshed, between planes of symmetry."
     )
     bearing = "bore and d1 of SKF 331555B (Stirling 2023, chapter 4) as the ring's wall"
