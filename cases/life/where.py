@@ -108,6 +108,7 @@ def run(run: Run, page: Page) -> None:
     page.data("where", rows)
     state_meaning(page)
     thesis, own = rows
+    more = [100.0 * (row["life by place over life by step"] - 1.0) for row in rows]
     page.answer(
         f"The upwind row does {thesis['upwind row [%]']:.0f} % of the damage with the choices of "
         f"the thesis, most of it at {thesis['upwind, centre [deg]']:.0f} deg, the downwind row's "
@@ -115,12 +116,10 @@ def run(run: Run, page: Page) -> None:
         "more, at 270; downwind row at 90). Back to back in a housing in series it is "
         f"{own['upwind row [%]']:.0f} %, at {own['upwind, centre [deg]']:.0f} and "
         f"{own['downwind, centre [deg]']:.0f} deg.",
-        f"The ring that turns does {own['inner rings [%]']:.0f} % or more of the damage. Because "
-        "the load zone wanders, places of the standing ring share it: damage that is summed place "
-        "by place gives "
-        f"{100 * (thesis['life by place over life by step'] - 1):.1f} and "
-        f"{100 * (own['life by place over life by step'] - 1):.1f} % more life than Miner's sum over steps "
-        "rated as one, which is on the safe side.",
+        f"The ring that turns does {min(row['inner rings [%]'] for row in rows):.0f} % of the "
+        "damage or more. Because the load zone wanders, places of the standing ring share it: "
+        f"damage that is summed place by place gives {more[0]:.1f} and {more[1]:.1f} % more life "
+        "than Miner's sum over steps that are rated as one, which is on the safe side.",
     )
 
 
