@@ -17,7 +17,15 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import LinearBody, coupled_equilibrium, factors_of
 from fe_drivetrain.histories import Site, site_life
 from fe_drivetrain.hub_loads import Condition, Rotor, hub_load_set
-from fe_drivetrain.life import RowLoads, equivalent_life, lamina_life, row_loads, years
+from fe_drivetrain.life import (
+    LifeRules,
+    RatedBearing,
+    RowLoads,
+    equivalent_life,
+    row_loads,
+    step_lives,
+    years,
+)
 from fe_drivetrain.suite import Page
 
 #: Mean wind speeds of Stirling 2023, section 5.1, and limits of their bins [m/s].
@@ -92,10 +100,25 @@ class Setup:
     def deflections(self, hub_loads: Floats) -> Floats:
         """(..., 5) of the inner ring [m, rad], of hub loads (..., 6)."""
         factors = factors_of(hub_loads.reshape(-1, 6), BEAM.gearbox_weight)
-        found = coupled_equilibrium(self.body, {"bearing": self.bearing}, factors)
+        found = coupled_equilibrium(self.body, {self.body.bearings[0]: self.bearing}, factors)
         if not found.converged.all():
             raise RuntimeError("a load case of the beam has no equilibrium")
         return found.deflections[:, 0].reshape(*hub_loads.shape[:-1], 5)
+
+    @property
+    def rated(self) -> RatedBearing:
+        """The bearing with its ratings."""
+        assumed = ("Stirling 2023, Table 4.1", "not used", "Stirling 2023, Table 4.1")
+        return RatedBearing(self.bearing, self.capacity, 1.66e7, self.fatigue, assumed)
+
+    @property
+    def rules(self) -> LifeRules:
+        """How basic lives are rated."""
+        return LifeRules(riser="standard" if self.riser is None else "none", edge=self.edge)
+
+    def lives(self, laminae: Sequence[Floats]) -> Floats:
+        """L10r (n,) [million revolutions] of (n, rollers, laminae) of each row."""
+        return step_lives(self.rated, laminae, self.rules)
 
     def rows(self, laminae: list[Floats]) -> list[RowLoads]:
         """Equivalent loads of the laminae of both rows, of (n, rollers, laminae) each."""
@@ -105,9 +128,10 @@ class Setup:
         ]
 
 
-def bearing_s(name: str, profile: bool) -> Bearing:
+def bearing_s(name: str, profile: bool, elements: int = 36) -> Bearing:
     """Bearing S of an arrangement, with straight or profiled rollers of 30 laminae."""
-    return catalogue_bearing(name, laminae=LAMINAE, crown=PROFILE if profile else 0.0)
+    crown = PROFILE if profile else 0.0
+    return catalogue_bearing(name, laminae=LAMINAE, crown=crown, elements=elements)
 
 
 def thesis_setup(name: str = "bearing_s") -> Setup:
@@ -146,7 +170,7 @@ def basic_lives(setup: Setup, deflections: Floats) -> Floats:
     found = by_chunks(
         len(flat),
         on_rigid_rings(setup.bearing, flat),
-        lambda q: {"L": lamina_life(setup.rows(q))},
+        lambda q: {"L": setup.lives(q)},
     )
     return found["L"].reshape(deflections.shape[:-1])
 

@@ -1,7 +1,6 @@
 """Modified life of a main bearing: grease, temperature, contamination, turbulence, shear, site."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +26,8 @@ from fe_drivetrain.cases.life.operating import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.life import (
+    GRADES,
+    Lubricant,
     RowLoads,
     basic_life,
     contamination,
@@ -34,8 +35,6 @@ from fe_drivetrain.life import (
     lamina_life,
     life_factor,
     modified_lamina_life,
-    needed_viscosity,
-    viscosity,
 )
 from fe_drivetrain.report import bars
 from fe_drivetrain.suite import Page, Record, Run
@@ -50,30 +49,13 @@ GREASES = {
     "G4": "very severe",
 }
 
-Known = tuple[tuple[float, float], tuple[float, float]]
-
-
-@dataclass(frozen=True)
-class Lubricant:
-    """Viscosities at two temperatures [degC, mm2/s], and the temperature of the bearing [degC]."""
-
-    known: Known
-    temperature: float
-
-    def kappa(self, speed: float) -> float:
-        """Viscosity ratio at a speed [1/min]."""
-        nu = viscosity(self.temperature, self.known)
-        return float(nu / needed_viscosity(speed, PITCH))
-
-
-VG460: Known = ((40.0, 460.0), (100.0, 30.5))
 BASE = "base"
 LUBRICANTS = {
-    BASE: Lubricant(VG460, 40.0),
-    "viscosity 200": Lubricant(((40.0, 200.0), (100.0, 16.0)), 40.0),
-    "viscosity 80": Lubricant(((40.0, 80.0), (100.0, 8.6)), 40.0),
-    "60 degC": Lubricant(VG460, 60.0),
-    "100 degC": Lubricant(VG460, 100.0),
+    BASE: Lubricant(*GRADES["VG 460"], temperature=40.0),
+    "viscosity 200": Lubricant(*GRADES["LGWM 1"], temperature=40.0),
+    "viscosity 80": Lubricant(*GRADES["LGWM 2"], temperature=40.0),
+    "60 degC": Lubricant(*GRADES["VG 460"], temperature=60.0),
+    "100 degC": Lubricant(*GRADES["VG 460"], temperature=100.0),
 }
 WINDS = {
     BASE: ("medium", 0.2),
@@ -95,7 +77,7 @@ Lives = dict[tuple[str, str], float]
 def run(run: Run, page: Page) -> None:
     """One change at a time, four contaminations each, with the thesis's choices and with ours."""
     state_assumptions(page)
-    page.assume("viscosity at 100 degC", 30.5, "mm2/s", "VG 460 with a viscosity index of 95")
+    page.assume("viscosity at 100 degC", 30.5, "mm2/s", "VG 460, viscosity index of 95")
     page.assume(
         "contamination", "grease, ISO 281 annex A", "", "constants from memory, not verified"
     )
@@ -150,7 +132,7 @@ def life_of_greases(
     """L10mr (n,) of each lubricant and contamination at a speed [1/min]."""
     P = [equivalent_loads(row) for row in rows]
     for lubricant in lubricants.values():
-        kappa = lubricant.kappa(speed)
+        kappa = lubricant.kappa(speed, PITCH)
         for grease in GREASES.values():
             limit = setup.fatigue * contamination(kappa, PITCH, grease)
             with np.errstate(divide="ignore"):  # a lamina without load has no damage
@@ -358,10 +340,13 @@ def show(page: Page, found: dict[str, Lives], basic: dict[str, dict[str, float]]
             "Modified life; base: VG 460, 40 degC, medium turbulence, shear 0.2, site 8 m/s", rows
         )
         page.data(f"modified life, {choices}", rows)
-    kappa = {name: [one.kappa(float(n)) for n in rotor_speed()] for name, one in LUBRICANTS.items()}
+    kappa = {name: one.kappa(rotor_speed(), PITCH) for name, one in LUBRICANTS.items()}
     page.table(
         "Viscosity ratio kappa, least (cut-in) and largest (from rated wind on)",
-        [{"lubricant": n, "least": min(k), "largest": max(k)} for n, k in kappa.items()],
+        [
+            {"lubricant": n, "least": float(k.min()), "largest": float(k.max())}
+            for n, k in kappa.items()
+        ],
     )
     page.text(
         "The thesis sets the C_u of the whole bearing against the load of one row, takes straight "
