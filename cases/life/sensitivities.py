@@ -1,6 +1,6 @@
 """Modified life of a main bearing: grease, temperature, contamination, turbulence, shear, site."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -83,9 +83,9 @@ def run(run: Run, page: Page) -> None:
     )
     found: dict[str, Lives] = {}
     basic: dict[str, dict[str, float]] = {}
-    size = (1, 100.0, 0.2) if run.quick else (6, 600.0, 0.25)
+    seeds, duration, rate = (1, 100.0, 0.2) if run.quick else (6, 600.0, 0.25)
     with run.step("hub loads"):
-        every = hub_loads_of([Winds(*wind, *size) for wind in WINDS.values()])
+        every = hub_loads_of([Winds(*wind, seeds, duration, rate) for wind in WINDS.values()])
         loads = dict(zip(WINDS, every, strict=True))
     for words, setup in (("thesis", thesis_setup()), ("ours", own_setup())):
         found[words], basic[words] = {}, {}
@@ -216,7 +216,7 @@ def statements(page: Page, found: dict[str, Lives], spherical: dict[str, float])
     clean200, severe460 = ("viscosity 200", "G1"), (BASE, "G3")
     clean80, worst200 = ("viscosity 80", "G1"), ("viscosity 200", "G4")
     hot = ("100 degC", "G1"), ("100 degC", "G4")
-    kinds = (
+    kinds: tuple[tuple[str, Callable[[Lives], str], Callable[[Lives], bool]], ...] = (
         (
             "very severe contamination reduces life drastically",
             lambda L: f"{100 * (ratio(L, (BASE, 'G4'), (BASE, 'G1')) - 1):.0f} % from G1 to G4",

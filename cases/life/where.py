@@ -58,7 +58,8 @@ class Used:
         """At a site: of each part, with all its winds."""
         weights = Site(mean_wind).shares(EDGES)
         parts = (np.tensordot(weights, one, 1)[None] for one in (self.outer, self.inner))
-        return Used(*parts, np.array([weights @ self.steps]))
+        outer, inner = parts
+        return Used(outer, inner, np.array([weights @ self.steps]))
 
     def risks(self) -> tuple[Floats, Floats]:
         """Of each place (winds, rows, places, laminae) and of the rings that turn."""
