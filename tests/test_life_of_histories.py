@@ -300,6 +300,10 @@ def test_life_factors_of_balls_meet_between_branches() -> None:
         (lambda: damage_of_history([], RATED, RULES), "no load step"),
         (lambda: next(steps_of(rigid_rings(BEARING), np.zeros((4, 5)), [1, 2], 1)), "one for each"),
         (lambda: of_geometry(Bearing("b", (ball_row(7, 0.01, 0.04, 12.0),))), "20 to 45"),
+        (
+            lambda: three_degree_rings(rated_from_catalogue("planet_nj2232").bearing),
+            "does not resist",
+        ),
     ],
 )
 def test_mistakes_are_named(call, words: str) -> None:

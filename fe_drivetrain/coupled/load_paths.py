@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.geometry import Bearing
-from fe_drivetrain.common.arrays import Floats, chunks
+from fe_drivetrain.common.arrays import Bools, Floats, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.coupled.body import LinearBody, factors_of
@@ -17,7 +17,7 @@ from fe_drivetrain.coupled.newton import coupled_equilibrium
 from fe_drivetrain.coupled.springs import on_springs, tilt_springs
 from fe_drivetrain.life.rated import RatedBearing
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_history
-from fe_drivetrain.life.roller_models import CHUNK, RollerModel, rigid_rings
+from fe_drivetrain.life.roller_models import CHUNK, RollerModel, balanced, rigid_rings
 
 PINNED = 0.0
 """Tilting stiffness of a support that carries no moment [N m/rad]."""
@@ -63,7 +63,7 @@ class LoadPath:
             )
         object.__setattr__(self, "_model", self.rollers or rigid_rings(self.bearings[self.name]))
 
-    def bearing_loads(self, hub_loads: ArrayLike) -> tuple[Floats, np.ndarray]:
+    def bearing_loads(self, hub_loads: ArrayLike) -> tuple[Floats, Bools]:
         """Loads on the inner ring of the named bearing.
 
         Parameters
@@ -75,7 +75,7 @@ class LoadPath:
         -------
         loads : Floats
             (n, 5) Fx, Fy, Fz [N], My, Mz [N m] at its centre.
-        converged : ndarray
+        converged : Bools
             (n,) whether there is equilibrium.
         """
         factors = factors_of(hub_loads, self.gearbox_weight, self.gravity)
@@ -114,9 +114,10 @@ class LoadPath:
             np.broadcast_to(np.asarray(v, dtype=float), (len(hub),)) for v in (speed, seconds)
         )
         for part in chunks(len(hub), chunk):
-            loads, balanced = self.bearing_loads(hub[part])
+            loads, found = self.bearing_loads(hub[part])
             laminae, converged = self._model(loads)
-            yield Steps(loads, laminae, turns[part], lasting[part], balanced & converged)
+            both = found & converged
+            yield Steps(loads, balanced(laminae, both), turns[part], lasting[part], both)
 
 
 def damage_of_hub_loads(

@@ -33,6 +33,7 @@ from .reference_life import row_loads as row_loads
 from .reference_life import rows_of as rows_of
 from .reference_life import stress_riser as stress_riser
 from .roller_damage import KINDS as KINDS
+from .roller_damage import RELIABILITY as RELIABILITY
 from .roller_damage import RINGS as RINGS
 from .roller_damage import Damage as Damage
 from .roller_damage import LifeRules as LifeRules

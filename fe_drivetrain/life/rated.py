@@ -7,7 +7,7 @@ for (`fe_drivetrain.life.roller_damage`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, tan
 from pathlib import Path
 from typing import Any
@@ -249,18 +249,19 @@ def rated_bearing(
     if isinstance(bearing.rows[0], BallRow):
         if dynamic is None:
             raise InputError(f"{bearing.name} has balls: give its C [N] from a catalogue")
-        C0 = static if static is not None else ball_static_rating(bearing)
-        own = (dynamic, C0, C0 / FATIGUE_OF_BALLS * min(0.1 / (2.0 * bearing.arm), 1.0) ** 0.5)
+        of_balls = static if static is not None else ball_static_rating(bearing)
+        smaller = min(0.1 / (2.0 * bearing.arm), 1.0) ** 0.5
+        own = (dynamic, of_balls, of_balls / FATIGUE_OF_BALLS * smaller)
     elif None in given:
         computed = ratings(bearing, b_m)
-        C0 = static if static is not None else computed.static
-        own = (computed.dynamic, C0, computed.fatigue * C0 / computed.static)
+        given_over_own = 1.0 if static is None else static / computed.static
+        own = (computed.dynamic, computed.static, computed.fatigue * given_over_own)
     else:
         own = (1.0, 1.0, 1.0)
-    values = [o if g is None else g for g, o in zip(given, own, strict=True)]
+    C, C0, C_u = (o if g is None else g for g, o in zip(given, own, strict=True))
     words = [f"from its rolling elements by {by}" for by in ("ISO 281", "ISO 76", "ISO 281")]
     sources = ["given" if g is not None else w for g, w in zip(given, words, strict=True)]
-    return RatedBearing(bearing, *values, (sources[0], sources[1], sources[2]), factors)
+    return RatedBearing(bearing, C, C0, C_u, (sources[0], sources[1], sources[2]), factors)
 
 
 def ball_static_rating(bearing: Bearing) -> float:
@@ -300,6 +301,9 @@ def rated_from_catalogue(name: str, *more: str | Path, **changes: Any) -> RatedB
         entry = validated(Entry, entry.model_dump() | changes, f"bearing {name}")
     printed = entry.ratings.model_dump() if entry.ratings else {}
     b_m = 1.15 if entry.kind == "spherical_roller" else 1.1
-    return rated_bearing(
+    rated = rated_bearing(
         entry.bearing(name), printed.get("C"), printed.get("C0"), printed.get("Cu"), b_m=b_m
     )
+    source = entry.sources.get("ratings", "given")
+    words = [source if text == "given" else text for text in rated.sources]
+    return replace(rated, sources=(words[0], words[1], words[2]))

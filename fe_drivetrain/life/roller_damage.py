@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.geometry import BallRow
 from fe_drivetrain.bearing.rating import LAMBDA
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.life.lubricants import Lubricant
 from fe_drivetrain.life.modified_life import BRANCHES, LAST_KAPPA, MIX, life_factor
@@ -40,6 +40,18 @@ KINDS = ("L10", "L10m", "L10r", "L10mr")
 """Basic and modified life of ISO 281; basic and modified reference life of ISO/TS 16281."""
 
 RINGS = ("inner", "outer")
+
+RELIABILITY = {
+    90.0: 1.0,
+    95.0: 0.64,
+    96.0: 0.55,
+    97.0: 0.47,
+    98.0: 0.37,
+    99.0: 0.25,
+    99.5: 0.175,
+    99.9: 0.093,
+}
+"""a_1 by reliability [%] (ISO 281, table 12, as public code has it)."""
 
 STANDING = 0.1
 """Below this speed [1/min] a bearing stands: no life is computed, its time is counted apart."""
@@ -108,7 +120,7 @@ class Steps:
         (n,) of the turning ring against the other [1/min].
     seconds : Floats
         (n,) how long each lasts.
-    converged : ndarray
+    converged : Bools
         (n,) whether the loads of laminae balance those of the ring.
     """
 
@@ -116,7 +128,7 @@ class Steps:
     laminae: tuple[Floats, ...]
     speed: Floats
     seconds: Floats
-    converged: np.ndarray
+    converged: Bools
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +141,7 @@ class Limits:
         Time [s]: below the speed of standing; with kappa below 0.1, and above 4; with P above C/2;
         with P_0 above C_0; without equilibrium.
     reversals : float
-        How often the direction of rotation changed.
+        How often the direction of rotation changed, within each chunk of steps.
     largest_load, largest_static, largest_roller : float
         Of P, P_0 and one rolling element [N].
     """

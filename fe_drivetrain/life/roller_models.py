@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing.answers import by_row, lamina_loads
+from fe_drivetrain.bearing.answers import by_row, lamina_loads, laminae_of_contacts
 from fe_drivetrain.bearing.geometry import LAMINAE, BallRow, Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races, equilibrium_on_races, roller_motions
-from fe_drivetrain.bearing.rolling import Equilibrium, equilibrium, three_degrees
+from fe_drivetrain.bearing.rolling import Equilibrium, equilibrium, free_motions, three_degrees
 from fe_drivetrain.common.arrays import Bools, Floats, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.life.roller_damage import Steps
@@ -43,8 +43,29 @@ def rigid_rings(bearing: Bearing) -> RollerModel:
 
 
 def three_degree_rings(bearing: Bearing) -> RollerModel:
-    """The same, reduced to three degrees of freedom (Stirling 2023); see `three_degrees`."""
+    """The same, reduced to three degrees of freedom (Stirling 2023); see `three_degrees`.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        That resists axial and radial displacement and tilt.
+
+    Returns
+    -------
+    model : callable
+        See `RollerModel`.
+
+    Raises
+    ------
+    InputError
+        The bearing does not resist one of these.
+    """
     sliced = with_laminae(bearing)
+    if not free_motions(sliced)[1].all():
+        raise InputError(
+            f"three degrees of freedom of {bearing.name}: it does not resist all of axial and "
+            "radial displacement and tilt; take rigid rings"
+        )
     return lambda loads: _of(three_degrees(sliced, loads))
 
 
@@ -75,9 +96,7 @@ def flexible_rings(races: Races, shapes: int | None = None) -> RollerModel:
         laminae = []
         for row, middle, t in zip(sliced.rows, middles, leans, strict=True):
             assert isinstance(row, RollerRow)
-            along = t[..., None] * (0.0 if row.aligning else 1.0) * row.places
-            free = middle[..., None] + along - row.clearance - row.free
-            laminae.append(row.law.load(free) / max(row.laminae, 1))
+            laminae.append(laminae_of_contacts(row, middle, t))
         return tuple(laminae), found.converged
 
     return model
@@ -138,7 +157,28 @@ def steps_of(
         ) from error
     for part in chunks(n, chunk):
         laminae, converged = model(F[part])
-        yield Steps(F[part], laminae, turns[part], lasting[part], converged)
+        kept = balanced(laminae, converged)
+        yield Steps(F[part], kept, turns[part], lasting[part], converged)
+
+
+def balanced(laminae: tuple[Floats, ...], converged: Bools) -> tuple[Floats, ...]:
+    """Loads of laminae, zero in steps without equilibrium, where they may be no numbers.
+
+    Parameters
+    ----------
+    laminae : tuple of Floats
+        For each row (n, elements, laminae) [N].
+    converged : Bools
+        (n,).
+
+    Returns
+    -------
+    laminae : tuple of Floats
+        The same where all are in equilibrium.
+    """
+    if converged.all():
+        return laminae
+    return tuple(np.where(converged[:, None, None], q, 0.0) for q in laminae)
 
 
 def _of(found: Equilibrium) -> LaminaLoads:
