@@ -265,6 +265,7 @@ def as_arrays(found: LifeDigest) -> dict[str, Floats]:
         "numbers": np.array([damage.seconds, damage.turns, found.wind, found.speed, found.samples]),
         "limits": np.array(astuple(damage.limits)),
         "of standard": damage.of_standard,
+        "of bearing": damage.of_bearing,
         "alone": damage.alone,
         **{f"basic {r}": part for r, part in enumerate(damage.basic)},
         **{f"modified {r}": part for r, part in enumerate(damage.modified)},
@@ -286,6 +287,7 @@ def from_arrays(kept: Mapping[str, Floats]) -> LifeDigest:
         tuple(kept[f"basic {r}"] for r in rows),
         tuple(kept[f"modified {r}"] for r in rows),
         kept["of standard"],
+        kept["of bearing"],
         kept["alone"],
         Limits(*kept["limits"].tolist()),
     )

@@ -356,7 +356,7 @@ def _checks(page: Page, found: Sequence[BearingLife]) -> None:
                 float(parts / whole - 1.0) if whole else 0.0,
                 within=1e-9,
                 why="each place takes its part: rounding of the sums",
-                source="sums of the same parts",
+                source="lives of the steps, by Miner's rule",
                 basis="self-consistency",
             )
         page.vanishes(

@@ -178,8 +178,8 @@ class Damage:
         For each row (2 rings, elements, laminae): parts of the damage by L10r, and by L10mr, of
         the inner and the outer ring; of a ring that stands at the place of each element, of one
         that turns by where it takes the load.
-    of_standard : Floats
-        (2,) damage by L10 and by L10m.
+    of_standard, of_bearing : Floats
+        (2,) damage by L10 and by L10m; by L10r and by L10mr, from the lives of steps.
     alone : Floats
         (2, rows, 2) basic and modified damage of each row's inner and outer ring if it were alone:
         more than its part, since risks add up by Weibull's slope.
@@ -192,6 +192,7 @@ class Damage:
     basic: tuple[Floats, ...]
     modified: tuple[Floats, ...]
     of_standard: Floats
+    of_bearing: Floats
     alone: Floats
     limits: Limits
 
@@ -203,6 +204,7 @@ class Damage:
             tuple(a + b for a, b in zip(self.basic, other.basic, strict=True)),
             tuple(a + b for a, b in zip(self.modified, other.modified, strict=True)),
             self.of_standard + other.of_standard,
+            self.of_bearing + other.of_bearing,
             self.alone + other.alone,
             self.limits + other.limits,
         )
@@ -226,6 +228,7 @@ class Damage:
             tuple(factor * a for a in self.basic),
             tuple(factor * a for a in self.modified),
             factor * self.of_standard,
+            factor * self.of_bearing,
             factor * self.alone,
             self.limits,
         )
@@ -236,8 +239,8 @@ class Damage:
         return {
             "L10": float(self.of_standard[0]),
             "L10m": float(self.of_standard[1]),
-            "L10r": float(sum(part.sum() for part in self.basic)),
-            "L10mr": float(sum(part.sum() for part in self.modified)),
+            "L10r": float(self.of_bearing[0]),
+            "L10mr": float(self.of_bearing[1]),
         }
 
     def lives(self, unit: Literal["Mrev", "hours", "years"] = "hours") -> dict[str, float]:
@@ -332,18 +335,17 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
     a_iso = [factor(row.P) for _, row in found]
     basic_risks = [risk for risk, _ in found]
     modified_risks = [risk * a[None] ** -slope for risk, a in zip(basic_risks, a_iso, strict=True)]
-    parts, alone = [], []
+    parts, alone, of_bearing = [], [], []
     for risks, a_1 in ((basic_risks, 1.0), (modified_risks, rules.reliability)):
         total = np.sum([risk.sum(axis=(0, 2)) for risk in risks], axis=0)
         million = 1e-6 * turns / a_1
+        of_bearing.append(float(million @ total ** (1.0 / slope)))
         rate = np.zeros_like(total)
         loaded = total > 0.0
         rate[loaded] = million[loaded] * total[loaded] ** (1.0 / slope - 1.0)
         parts.append(
             tuple(
-                np.stack(
-                    [_by_place(rate[:, None] * risk[ring], row.shares[ring]) for ring in (0, 1)]
-                )
+                np.stack([_by_place(rate, risk[i], row, i) for i in (0, 1)])
                 for risk, (_, row) in zip(risks, found, strict=True)
             )
         )
@@ -369,7 +371,14 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
         largest_roller=max(float(q.sum(axis=2).max(initial=0.0)) for q in steps.laminae),
     )
     return Damage(
-        float(time.sum()), float(turns.sum()), parts[0], parts[1], standard, np.array(alone), limits
+        float(time.sum()),
+        float(turns.sum()),
+        parts[0],
+        parts[1],
+        standard,
+        np.array(of_bearing),
+        np.array(alone),
+        limits,
     )
 
 
@@ -406,10 +415,12 @@ def damage_of_history(chunks: Iterable[Steps], rated: RatedBearing, rules: LifeR
 
 @dataclass(frozen=True, eq=False)
 class _Row:
-    """Equivalent loads P (n, laminae) of a row, and the part that each place has in a risk."""
+    """Of a row: P (n, laminae); for both rings the powers of loads (n, elements, laminae) by which
+    places share a risk, and one over their sums (n, laminae)."""
 
     P: Floats
-    shares: tuple[Floats, Floats]
+    powers: tuple[Floats, Floats]
+    over_sums: tuple[Floats, Floats]
 
 
 def _slope(rated: RatedBearing) -> float:
@@ -435,14 +446,14 @@ def _row_risks(
     half = fourth * (np.cbrt(q) if isinstance(row, BallRow) else np.sqrt(q))
     by_ring = (fourth, half) if rules.turning == "inner" else (half, fourth)
     exponents = (turning, standing) if rules.turning == "inner" else (standing, turning)
-    loads, risks, shares = [], [], []
+    loads, risks, over_sums = [], [], []
     for powers, p, capacity in zip(by_ring, exponents, (inner, outer), strict=True):
         mean = powers.mean(axis=1)
         load = mean ** (1.0 / p)
         loads.append(load)
         risks.append((load / capacity) ** power)
-        whole = powers.shape[1] * mean[:, None]
-        shares.append(np.divide(powers, whole, out=np.zeros_like(powers), where=whole > 0.0))
+        whole = powers.shape[1] * mean
+        over_sums.append(np.divide(1.0, whole, out=np.zeros_like(whole), where=whole > 0.0))
     risk = np.stack(risks)
     if isinstance(row, BallRow):
         # one load of the whole row: what has its life by the basic rating
@@ -453,12 +464,13 @@ def _row_risks(
         mixed = (loads[0] ** LINE + weight * loads[1] ** LINE) / (1.0 + weight)
         scale = MIX * rules.reduction * q.shape[1] * np.cos(row.angle) * count
         P = scale * mixed ** (1.0 / LINE)
-    return risk, _Row(P, (shares[0], shares[1]))
+    return risk, _Row(P, by_ring, (over_sums[0], over_sums[1]))
 
 
-def _by_place(weights: Floats, shares: Floats) -> Floats:
-    """(elements, laminae): sum over steps of weights (n, laminae) times shares."""
-    return np.asarray(np.einsum("nk,njk->jk", weights, shares))
+def _by_place(rate: Floats, risk: Floats, row: _Row, ring: int) -> Floats:
+    """(elements, laminae): sum over steps of a rate (n,) times risks (n, laminae), by place."""
+    weights = rate[:, None] * risk * row.over_sums[ring]
+    return np.asarray(np.einsum("nk,njk->jk", weights, row.powers[ring]))
 
 
 def _lubrication(
