@@ -134,7 +134,7 @@ def fitted(world: World, hub: Floats) -> Floats:
     tilt, moment = (deflections + forces @ compliance)[:, 3:], forces[:, 3:]
     tilt, moment = tilt - tilt.mean(axis=0), moment - moment.mean(axis=0)
     slope = (moment * tilt).sum(axis=0) / (tilt**2).sum(axis=0)
-    return np.maximum(slope, 0.0)
+    return np.asarray(np.maximum(slope, 0.0))
 
 
 def on_both(world: World, hub: Floats) -> Laminae:
