@@ -364,5 +364,6 @@ def show(
         "of five degrees with the housing in series, a rigid housing "
         f"{of_models[models.RIGID]:.2f} times, a factor of {span:.0f} between them where all "
         f"inputs make {rows[0]['high over low']:.1f}; flexible rings have "
-        f"{of_models[models.FLEXIBLE]:.2f} times. A wrong model is no scatter, and more samples do not show it.",
+        f"{of_models[models.FLEXIBLE]:.2f} times. "
+        "A wrong model is no scatter, and more samples do not show it.",
     )
