@@ -153,7 +153,7 @@ def loads_command(
             _share(gate),
             None if rotor_speed is None else rotor_speed * 3.141592653589793 / 30.0,
         )
-        place = None if site is None else _site(site)
+        place = None if site is None else parse_site(site)
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)
         others = recorded_files(against or [])
@@ -198,14 +198,25 @@ def parse_channels(texts: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def _site(text: str) -> Site:
-    """The site of a class, or of a mean wind speed."""
+def parse_site(text: str) -> Site:
+    """The site of a class, as in II, IIB or class-II, or of a mean wind speed [m/s].
+
+    Parameters
+    ----------
+    text : str
+        Of ``--site``.
+
+    Raises
+    ------
+    InputError
+        There is no such class, or the speed is not positive.
+    """
     from fe_drivetrain.histories.sites import Site, site_of_class
 
     try:
         mean = float(text)
     except ValueError:
-        return site_of_class(text)
+        return site_of_class(text.removeprefix("class-"))
     return Site(mean)
 
 
