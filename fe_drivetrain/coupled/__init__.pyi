@@ -9,6 +9,7 @@ from .newton import CoupledEquilibrium as CoupledEquilibrium
 from .newton import contact_stiffness as contact_stiffness
 from .newton import coupled_equilibrium as coupled_equilibrium
 from .of_scene import scene_body as scene_body
+from .on_races import body_on_races as body_on_races
 from .scenarios import SCENARIOS as SCENARIOS
 from .scenarios import TiltCurve as TiltCurve
 from .scenarios import best_fit as best_fit

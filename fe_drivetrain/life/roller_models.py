@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing.answers import by_row, lamina_loads
+from fe_drivetrain.bearing.answers import by_row, lamina_loads, laminae_of_contacts
 from fe_drivetrain.bearing.geometry import LAMINAE, BallRow, Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races, equilibrium_on_races, roller_motions
 from fe_drivetrain.bearing.rolling import Equilibrium, equilibrium, free_motions, three_degrees
@@ -96,9 +96,7 @@ def flexible_rings(races: Races, shapes: int | None = None) -> RollerModel:
         laminae = []
         for row, middle, t in zip(sliced.rows, middles, leans, strict=True):
             assert isinstance(row, RollerRow)
-            along = t[..., None] * (0.0 if row.aligning else 1.0) * row.places
-            free = middle[..., None] + along - row.clearance - row.free
-            laminae.append(row.law.load(free) / max(row.laminae, 1))
+            laminae.append(laminae_of_contacts(row, middle, t))
         return tuple(laminae), found.converged
 
     return model
