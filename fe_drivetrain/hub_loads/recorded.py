@@ -21,7 +21,8 @@ from fe_drivetrain.hub_loads.histories import (
     LoadHistory,
     require_sound,
 )
-from fe_drivetrain.hub_loads.openfast import loads_from_channels, openfast_channels
+from fe_drivetrain.hub_loads.openfast import LOAD_CHANNELS, loads_from_channels
+from fe_drivetrain.hub_loads.openfast_output import openfast_channels
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
@@ -103,12 +104,12 @@ def read_recorded(
             "convert the file or rename it"
         )
     loads_mapped = [name for name in mapped if name in _STANDARD]
+    known = [name for names in KNOWN.values() for name in names]
+    wanted = {n.lower() for n in (*_STANDARD, *known, *mapped.values())}
     if suffix == ".csv":
-        known = [name for names in KNOWN.values() for name in names]
-        wanted = {n.lower() for n in (*_STANDARD, *known, *mapped.values())}
         channels = csv_channels(file, wanted)
     else:
-        channels = openfast_channels(file)
+        channels = openfast_channels(file, wanted | LOAD_CHANNELS)
     named = {name: _named(file, channels, column) for name, column in mapped.items()}
     attributes: dict[str, Attribute] = {}
     if suffix == ".csv" and not loads_mapped:
