@@ -14,6 +14,7 @@ from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.report.results import read_results
@@ -177,10 +178,45 @@ def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Pat
         (["--skip", "100"], "skip less"),
         (["--site", "VII"], "choose I, II, III"),
         (["--slope", "50"], "must be from 1 to 20"),
+        (["--ultimate", "My=3 kN"], "as in 'My=25 MNm'"),
+        (["--ultimate", "My=2 kNm"], "give the load that breaks the part"),
+        (["--winds", "24:4"], "as in 4:24"),
+        (["--transient", "a.csv=3"], "give --site, too"),
+        (["--transient", "a.csv=often", "--site", "I"], "as in 'stops/*.outb=700'"),
     ):
         status, _, err = invoke("loads", str(histories), *arguments)
         assert status == 2, arguments
         assert said in err
+
+
+def test_a_lifetime_has_the_hours_of_its_winds_and_the_events_of_its_years(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out = histories.parent / "out"
+    write_history(histories.parent / "stop.csv", 30.05, 0.05, 9.0)
+    more = ("--site", "9", "--shape", "2.2", "--years", "25", "--winds", "4:14", "--target", "2")
+    events = ("--transient", f"{histories.parent}/stop.csv=700", "--ultimate", "My=5 MN m")
+    command = ("loads", str(histories), "--out", str(out), *COLUMNS, "--frequency", "2")
+    status, printed, err = invoke(*command, *more, *events)
+    assert status == 0, err
+    assert "Capture matrix: 20 windows are missing at 11 of 11 wind speeds." in printed
+    hours = sum(float(row["hours"]) for row in rows_of(out / "site.csv"))
+    levels = rows_of(out / "lifetime_levels.csv")
+    of_torque = [r for r in levels if r["channel"] == "Mx" and r["of"] == "hours [h]"]
+    with_stops = hours + 25 * 700 * 30.05 / 3600
+    assert sum(float(r["amount"]) for r in of_torque) == pytest.approx(with_stops)
+    shares = rows_of(out / "lifetime_damage.csv")
+    own = [r for r in shares if (r["channel"], r["slope"]) == ("Mx", "4")]
+    assert {r["from"] for r in own} == {"8 m/s", "12 m/s", "stop"}
+    assert sum(float(r["share of damage [%]"]) for r in own) == pytest.approx(100.0)
+    figures = read_results(out / "results.json").figures
+    about_zero = figures["equivalent_loads_about_zero"]["My"]["4.0"]
+    as_counted = figures["equivalent_loads"]["My"]["4.0"]
+    # cycles of a range of 600 kN m about 100: Goodman's factor is 5000 / 4900
+    assert about_zero / as_counted == pytest.approx(50.0 / 49.0, rel=1e-3)
+    equivalent = rows_of(out / "equivalent_loads.csv")
+    my = next(r for r in equivalent if (r["file"], r["channel"], r["slope"]) == ("a", "My", "3"))
+    assert float(my["DEL at 2 Hz"]) == pytest.approx(600e3 * (0.75 / 2.0) ** (1 / 3), rel=0.02)
 
 
 def test_parquet_without_its_package_is_one_sentence(
@@ -211,12 +247,13 @@ def test_loads_under_other_names_are_read(tmp_path: Path) -> None:
         + "".join(f"{k},{k},2,3,4,5,{k * k}\n" for k in range(5))
     )
     names = dict(zip(("time", *FORCES), "tabcdef", strict=True))
-    found = read_recorded(file, names).history
+    mapped = ChannelMap(channels=names)
+    found = read_recorded(file, mapped).history
     assert found.loads[:, 0].tolist() == [0.0, 1e3, 2e3, 3e3, 4e3]
     assert found.loads[2, 1:].tolist() == [2.0, 3.0, 4.0, 5.0, 4.0]
     twice = tmp_path / "twice.csv"
     twice.write_text(file.read_text().replace("f [N m]", "f [N m],a [kN]").replace("\n", ",9\n"))
-    assert read_recorded(twice, names).history.loads[1, 0] == 1e3  # the first of that name
+    assert read_recorded(twice, mapped).history.loads[1, 0] == 1e3  # the first of that name
     file.write_text(file.read_text().replace("\n3,3", "\n3,three"))
     with pytest.raises(InputError, match="'three' to float64 at row 3, column 2"):
-        read_recorded(file, names)
+        read_recorded(file, mapped)

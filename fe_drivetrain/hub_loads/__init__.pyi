@@ -1,5 +1,7 @@
 from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
+from .channel_map import ChannelMap as ChannelMap
+from .channel_map import read_channel_map as read_channel_map
 from .csv_table import write_csv as write_csv
 from .files import hub_load_files as hub_load_files
 from .files import read_hub_load_files as read_hub_load_files
