@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -16,6 +16,7 @@ from fe_drivetrain.commands.loads_lifetime import Event, lifetime
 from fe_drivetrain.commands.loads_shape import shape
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import WIND_BIN, Together, windows_table
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.processes import Processes
@@ -33,7 +34,10 @@ TURBULENCE_BIN = 0.02
 """Height of the capture matrix's rows; its columns are `WIND_BIN` wide, about whole m/s."""
 
 FRAME = "x downwind along the shaft, z up, y = z cross x; it does not turn with the rotor"
-ORIGIN = "about the hub, the apex of the rotor, or about what a table calls its origin"
+ORIGIN = (
+    "about the hub, the apex of the rotor; those of a table are taken to be so, unless the key "
+    "moments_at of a mapping says another point"
+)
 
 _SHOWN = 20
 _MOST_BINS = 60
@@ -327,9 +331,7 @@ def _capture(page: Page, found: Together, target: Target) -> list[Record]:
     most = float((deviation / mean).max())
     rows = TURBULENCE_BIN * np.arange(np.floor(most / TURBULENCE_BIN) + 2)
     matrix = capture_matrix(mean, deviation, columns, rows)
-    table = _matrix_rows(matrix)
     sums = matrix.counts.sum(axis=0)
-    totals = {"turbulence [%]": "all", **_by_column(matrix, sums.tolist())}
     middles = 0.5 * (columns[1:] + columns[:-1])
     asked = np.where(
         (middles >= (target.low or -np.inf)) & (middles <= (target.high or np.inf)),
@@ -337,15 +339,12 @@ def _capture(page: Page, found: Together, target: Target) -> list[Record]:
         0,
     )
     missing = np.maximum(asked - sums, 0)
-    wanted = {
-        "turbulence [%]": f"missing of {target.windows}",
-        **_by_column(matrix, missing.tolist()),
-    }
+    table = _matrix_rows(matrix, middles, missing)
     page.table(
-        f"Windows by mean wind speed [m/s] and turbulence intensity; {target.windows} of each wind "
-        "speed are asked for (IEC 61400-1 asks for six ten-minute series; --target takes another "
-        "number, --winds the range of wind speeds)",
-        [*table, totals, wanted],
+        f"Windows by mean wind speed and turbulence intensity; {target.windows} of each wind speed "
+        "are asked for (IEC 61400-1 asks for six ten-minute series; --target takes another number, "
+        "--winds the range of wind speeds)",
+        table,
     )
     if missing.any():
         page.answer(
@@ -365,22 +364,21 @@ def _capture(page: Page, found: Together, target: Target) -> list[Record]:
             "missing": missing,
         },
     )
-    return [*table, totals, wanted]
+    return table
 
 
-def _matrix_rows(matrix: CaptureMatrix) -> list[Record]:
+def _matrix_rows(matrix: CaptureMatrix, middles: Floats, missing: Ints) -> list[Record]:
+    """A row for each wind speed, without turbulence that no window has."""
+    filled = np.flatnonzero(matrix.counts.any(axis=1)).tolist()
+    limits = 100.0 * matrix.turbulence
     rows: list[Record] = []
-    for r, counted in enumerate(matrix.counts.tolist()):
-        if not any(counted):
-            continue
-        low, high = 100 * matrix.turbulence[r : r + 2]
-        rows.append({"turbulence [%]": f"{low:g} to {high:g}", **_by_column(matrix, counted)})
+    for c, middle in enumerate(middles.tolist()):
+        row: Record = {"wind [m/s]": middle}
+        for r in filled:
+            row[f"{limits[r]:g} to {limits[r + 1]:g} %"] = int(matrix.counts[r, c])
+        row |= {"all": int(matrix.counts[:, c].sum()), "missing": int(missing[c])}
+        rows.append(row)
     return rows
-
-
-def _by_column(matrix: CaptureMatrix, values: Sequence[int]) -> Mapping[str, int]:
-    middles = 0.5 * (matrix.wind[1:] + matrix.wind[:-1])
-    return {f"{middle:g} m/s": value for middle, value in zip(middles, values, strict=True)}
 
 
 def _checks(page: Page, found: Together) -> None:

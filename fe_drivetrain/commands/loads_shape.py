@@ -49,7 +49,13 @@ def heatmap(
         "x": rounded(x),
         "y": rounded(y),
         "z": cells,
-        "colorbar": {"title": {"text": colour}},
+        "colorbar": {
+            "title": {"text": colour, "side": "top"},
+            "orientation": "h",
+            "y": 1.0,
+            "yanchor": "bottom",
+            "thickness": 12,
+        },
     }
     axes: dict[str, Any] = {"xaxis": {"title": {"text": right}}, "yaxis": {"title": {"text": up}}}
     for axis, more in layout.items():
@@ -83,7 +89,8 @@ def _planes(page: Page, found: Together) -> None:
             origin = trace("origin", [0.0], [0.0], points=True, marker=cross, showlegend=False)
             chart.figure["data"] += [*_rings(across, above), origin]
         page.add(chart)
-    page.add(_rose(found))
+    for name in found.directions:
+        page.add(_rose(name, found.directions[name]))
 
 
 def _rings(across: Floats, above: Floats) -> list[Any]:
@@ -109,35 +116,27 @@ def _rings(across: Floats, above: Floats) -> list[Any]:
     return rings
 
 
-def _rose(found: Together) -> Chart:
+def _rose(name: str, seconds: Floats) -> Chart:
     """Share of time by direction, as a polar chart."""
     width = 360.0 / SECTORS
-    data = [
-        {
-            "type": "barpolar",
-            "name": name,
-            "theta": [width * k for k in range(SECTORS)],
-            "width": [width] * SECTORS,
-            "r": rounded(100.0 * seconds / seconds.sum()),
-            "opacity": 0.6,
-        }
-        for name, seconds in found.directions.items()
-    ]
+    data = {
+        "type": "barpolar",
+        "theta": [width * k for k in range(SECTORS)],
+        "width": [width] * SECTORS,
+        "r": rounded(100.0 * seconds / seconds.sum()),
+    }
     layout = {
         "polar": {
-            "angularaxis": {
-                "tickmode": "array",
-                "tickvals": [0, 90, 180, 270],
-                "ticktext": ["0, right", "90, up", "180, left", "270, down"],
-            },
+            "angularaxis": {"tickmode": "array", "tickvals": [0, 90, 180, 270], "ticksuffix": "°"},
             "radialaxis": {"title": {"text": "% of time"}, "angle": 45, "tickangle": 45},
         },
-        "height": 480,
+        "height": 380,
     }
     return Chart(
-        caption=f"Direction of force and of moment, looking downwind: share of time in sectors of "
-        f"{width:g} deg; a force by where it points, a moment by its axis",
-        figure={"data": data, "layout": layout},
+        caption=f"Direction of the {name} across the shaft, looking downwind: share of time in "
+        f"sectors of {width:g} deg; 0 deg is right, 90 deg up"
+        + ("; the axis of the moment" if name == "moment" else ""),
+        figure={"data": [data], "layout": layout},
     )
 
 

@@ -36,8 +36,9 @@ from fe_drivetrain.hub_loads.openfast_output import openfast_channels, reversed_
 _AXIAL = ("LSShftFxa", "LSShftFxs", "LSSGagFxa", "LSSGagFxs", "RotThrust")
 _TORQUE = ("LSShftMxa", "LSShftMxs", "LSSGagMxa", "LSSGagMxs", "RotTorq", "LSShftTq")
 _AZIMUTH = ("LSSTipPxa", "LSSTipPxs", "LSSTipP", "Azimuth")
-_PAIRS = ("LSShftF*s", "LSSGagF*s", "LSShftF*a", "LSSGagF*a")
-_PAIRS += ("LSSTipM*s", "LSSTipM*a", "LSSGagM*s", "LSSGagM*a")
+_PAIRS = tuple(
+    f"{n}*{frame}" for n in ("LSShftF", "LSSGagF", "LSSTipM", "LSSGagM") for frame in "sa"
+)
 
 LOAD_CHANNELS = frozenset(
     name.lower()
