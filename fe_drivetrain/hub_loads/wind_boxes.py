@@ -3,7 +3,7 @@
 Layouts: TurbSim User's Guide (Jonkman 2009), "TurbSim binary FF format"; InflowWind of OpenFAST
 (`IfW_HAWCWind.f90`) and PyConTurb's writer, which agree on HAWC2's boxes: z is the fastest index,
 upwards, then y, from the left to the right looking downwind, then the planes in the order in which
-they pass the rotor. TurbSim's y runs from the right to the left, after the component as the fastest.
+they pass the rotor. TurbSim's fastest index is the component, then y, from the right to the left.
 
 Only the along-wind component is used: see `wind`.
 """
