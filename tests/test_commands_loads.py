@@ -10,6 +10,7 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import loads_page
 from fe_drivetrain.commands.loads_digest import Options, digest
+from fe_drivetrain.commands.loads_reactions import scene_reactions
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.components import FORCES
@@ -18,6 +19,7 @@ from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.scene.reading import library_scene
 
 HERTZ = 0.25  # of the rotor
 COLUMNS = "--channel", "wind speed=Vhub", "--channel", "rotor speed=N"
@@ -146,6 +148,46 @@ def test_another_set_is_compared_by_wind(invoke: Callable[..., Result], historie
     assert {row["wind"] for row in rows} == {"8 m/s"}
     (torque,) = [row for row in rows if row["quantity"] == "Mx, largest [kN m]"]
     assert float(torque["these files"]) == pytest.approx(float(torque["the others"]))
+
+
+def test_reactions_of_a_scene_are_shown_and_compared(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out = histories.parent / "out"
+    others = histories.parent / "others"
+    others.mkdir()
+    for name in "cd":
+        write_history(others / f"{name}.csv", 70.1, 0.1, 8.0)
+    status, printed, err = invoke(
+        *("loads", str(histories), "--out", str(out), *COLUMNS, "--against", str(others)),
+        *("--scene", "main_bearing_spherical"),
+    )
+    assert status == 0, err
+    rows = {row["reaction"]: row for row in rows_of(out / "reactions.csv")}
+    # the bearing takes the whole thrust, and the torque goes on to the gearbox
+    assert float(rows["main_bearing, Fx [kN]"]["mean"]) == pytest.approx(200.0, rel=1e-6)
+    assert "main_bearing, Mx [kN m]" not in rows
+    assert float(rows["gearbox, Mx [kN m]"]["mean"]) == pytest.approx(900.0, rel=1e-3)
+    three = float(rows["main_bearing, Fz [kN]"]["3P"])
+    assert float(rows["gearbox, Fz [kN]"]["3P"]) == pytest.approx(three, rel=1e-3)  # one couple
+    compared = {row["quantity"] for row in rows_of(out / "beside.csv")}
+    assert {"My, 3P [kN m]", "main_bearing: Fz, DEL of m = 4 at 1 Hz [kN]"} <= compared
+    assert "main_bearing: loops of force, share of time [%]" in compared
+    assert "8 m/s:" in printed
+    status, _, err = invoke("loads", str(histories), "--scene", "bonded", "--level", "3")
+    assert status == 2
+    assert "choose 1, a beam, or 4" in err
+
+
+def test_reactions_balance_hub_loads_and_weights(rng: np.random.Generator) -> None:
+    found = scene_reactions(library_scene("main_bearing_bonded"), 1)
+    loads = 1e5 * rng.standard_normal((50, 6))
+    history = LoadHistory("random", np.arange(50.0), loads)
+    forces = sum(reaction[:, :3] for reaction in found.of(history).values()) - loads[:, :3]
+    weights = forces.mean(axis=0)
+    np.testing.assert_allclose(forces, np.broadcast_to(weights, (50, 3)), atol=1e-2)
+    assert weights[2] < -100e3
+    np.testing.assert_allclose(weights[:2], 0.0, atol=1e-2)
 
 
 def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:

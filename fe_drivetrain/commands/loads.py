@@ -159,6 +159,22 @@ def loads_command(
             "May be repeated.",
         ),
     ] = None,
+    scene: Annotated[
+        str | None,
+        typer.Option(
+            "--scene",
+            metavar="SCENE",
+            help="A scene whose bearing reactions to these loads are shown and compared, too.",
+        ),
+    ] = None,
+    level: Annotated[
+        str,
+        typer.Option(
+            "--level",
+            metavar="LEVEL",
+            help="Of the scene: 1, a beam on rigid housings, or 4, the assembly of solids.",
+        ),
+    ] = "1",
     parquet: Annotated[
         bool, typer.Option("--parquet", help="Write each table as Parquet, too (needs pyarrow).")
     ] = False,
@@ -185,6 +201,7 @@ def loads_command(
         hold_threads()
         from fe_drivetrain.commands.loads_digest import Options
         from fe_drivetrain.commands.loads_page import loaded
+        from fe_drivetrain.commands.loads_reactions import scene_reactions
         from fe_drivetrain.commands.loads_tables import parquet_writer
         from fe_drivetrain.commands.loads_words import (
             parse_channels,
@@ -194,6 +211,7 @@ def loads_command(
             parse_ultimate,
             parse_winds,
         )
+        from fe_drivetrain.commands.scenes import named_scene
         from fe_drivetrain.histories.cycles import RESIDUES
         from fe_drivetrain.histories.damage import SLOPES, check_slope
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
@@ -221,6 +239,11 @@ def loads_command(
         if transient and place is None:
             raise InputError("--transient counts events of a lifetime: give --site, too")
         events = parse_transients(transient or ())
+        if level not in ("1", "4"):
+            raise InputError(f"--level {level}: choose 1, a beam, or 4, the assembly of solids")
+        reactions = None
+        if scene is not None:
+            reactions = scene_reactions(named_scene(scene, {}), int(level))
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)
         others = recorded_files(against or [])
@@ -230,7 +253,7 @@ def loads_command(
             f"Load histories of {count} file{'s' * (count > 1)}",
             "the user's files",
             lambda run, page: loaded(
-                run, page, found, options, wanted, place, events, others, resume, writer
+                run, page, found, options, wanted, place, events, others, resume, writer, reactions
             ),
         )
         with show_steps() as report:

@@ -11,8 +11,14 @@ import numpy as np
 
 from fe_drivetrain.commands.loads_against import beside
 from fe_drivetrain.commands.loads_counts import counts
-from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options, digest
+from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options
 from fe_drivetrain.commands.loads_lifetime import Event, lifetime
+from fe_drivetrain.commands.loads_reactions import (
+    SceneReactions,
+    digest_with_reactions,
+    parts,
+    reactions_section,
+)
 from fe_drivetrain.commands.loads_shape import shape
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import WIND_BIN, Together, windows_table
@@ -75,6 +81,7 @@ def loaded(
     against: Sequence[Path] = (),
     resume: bool = False,
     parquet: ModuleType | None = None,
+    reactions: SceneReactions | None = None,
 ) -> None:
     """Read files one by one, add up what they hold, and show it.
 
@@ -100,6 +107,8 @@ def loaded(
         Take digests that an earlier run kept.
     parquet : module, optional
         Writer of Parquet.
+    reactions : SceneReactions, optional
+        Of a scene, which are shown and compared, too.
 
     Raises
     ------
@@ -107,11 +116,13 @@ def loaded(
         A file cannot be read, or holds no loads.
     """
     page.seed = None
-    found = Together()
+    every = {name: Together() for name in ("", *(reactions.names if reactions else ()))}
+    found = every[""]
     own: list[Digest] = []
     with run.step("files"):
-        for file, one in _digests(run, files, options, resume, "files"):
-            found.add(_name(file, files), one)
+        for file, one in _digests(run, files, options, resume, "files", reactions):
+            for name, part in parts(one).items():
+                every[name].add(_name(file, files), part)
             if against:
                 own.append(one)
     _require_loads(found)
@@ -133,6 +144,9 @@ def loaded(
     tables["capture_matrix"] = _capture(page, found, target)
     tables |= shape(page, found)
     tables |= counts(page, found, options, rule)
+    if reactions is not None:
+        of_scene = {name: every[name] for name in reactions.names}
+        tables |= reactions_section(page, of_scene, options, reactions.model, rule)
     if site is not None:
         with run.step("transients"):
             events = [
@@ -142,7 +156,8 @@ def loaded(
         tables |= lifetime(page, found, options, site, events)
     if against:
         with run.step("the others"):
-            others = [d for _, d in _digests(run, against, options, resume, "the others")]
+            made = _digests(run, against, options, resume, "the others", reactions)
+            others = [d for _, d in made]
         tables["beside"] = beside(page, own, others, options)
     _checks(page, found)
     facts = {
@@ -170,19 +185,32 @@ def loaded(
 
 
 def _digests(
-    run: Run, files: Sequence[Path], options: Options, resume: bool, step: str
+    run: Run,
+    files: Sequence[Path],
+    options: Options,
+    resume: bool,
+    step: str,
+    reactions: SceneReactions | None = None,
 ) -> Iterator[tuple[Path, Digest]]:
     """File by file, several at a time where there are cores; each kept as soon as it is done."""
     for start in range(0, len(files), _AT_ONCE):
         batch = files[start : start + _AT_ONCE]
         with Processes(len(batch) if len(batch) >= _MANY else 1, run.report) as processes:
-            jobs = [processes.start(kept_digest, file, options, resume) for file in batch]
+            jobs = [
+                processes.start(kept_digest, file, options, resume, reactions) for file in batch
+            ]
             for number, (file, job) in enumerate(zip(batch, jobs, strict=True), start + 1):
                 run.report(f"{step} ({number} of {len(files)})")
                 yield file, job.result()
 
 
-def kept_digest(_report: Progress, file: Path, options: Options, resume: bool) -> Digest:
+def kept_digest(
+    _report: Progress,
+    file: Path,
+    options: Options,
+    resume: bool,
+    reactions: SceneReactions | None = None,
+) -> Digest:
     """The digest of a file, or that of an earlier run where it is kept and asked for.
 
     Parameters
@@ -195,12 +223,17 @@ def kept_digest(_report: Progress, file: Path, options: Options, resume: bool) -
         How it is counted.
     resume : bool
         Take what is kept.
+    reactions : SceneReactions, optional
+        Of a scene.
     """
     cache, content = user_cache(), options.content(file)
+    if reactions is not None:
+        content |= {"reactions": reactions.content()}
     kept: Digest | None = cache.load("load-digests", content) if resume else None
     if kept is not None:
         return kept
-    found = digest(read_recorded(file, options.names, options.skip), options)
+    recorded = read_recorded(file, options.names, options.skip)
+    found = digest_with_reactions(recorded, options, reactions)
     cache.keep("load-digests", content, found)
     return found
 

@@ -124,7 +124,7 @@ def read_recorded(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0
         )
     speed, wind = (beside.get(name) for name in KNOWN)
     return Recorded(
-        replace(history, time=history.time[kept], loads=history.loads[kept]),
+        history.between(float(history.time[0]) + skip),
         None if speed is None else speed[kept],
         None if wind is None else wind[kept],
     )

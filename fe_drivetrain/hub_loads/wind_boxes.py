@@ -1,9 +1,9 @@
 """Wind fields of other programs: full-field files of TurbSim (.bts) and boxes of HAWC2 (.bin).
 
-Layouts: TurbSim User's Guide (Jonkman 2009), "TurbSim binary FF format"; InflowWind of OpenFAST
-(`IfW_HAWCWind.f90`) and PyConTurb's writer, which agree on HAWC2's boxes: z is the fastest index,
-upwards, then y, from the left to the right looking downwind, then the planes in the order in which
-they pass the rotor. TurbSim's fastest index is the component, then y, from the right to the left.
+Layouts: InflowWind of OpenFAST (`IfW_TSFFWind.f90`, `IfW_HAWCWind.f90`), TurbSim User's Guide
+(Jonkman 2009). A box of HAWC2 is plane after plane in the order in which they pass the rotor; in a
+plane, points upwards are the fastest, then those from the left to the right, looking downwind. In a
+file of TurbSim the component is the fastest, then points from the right to the left, then upwards.
 
 Only the along-wind component is used: see `wind`.
 """
@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.aero_rotor import Rotor, aerodynamic_hub_loads, operating_point
-from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.histories import Attribute, LoadHistory
 from fe_drivetrain.hub_loads.wind import power_law
 
 _HEADER = struct.Struct("<h4i12fi")
@@ -175,7 +175,10 @@ def box_hub_loads(
     point = operating_point(rotor, mean)
     psi = azimuth + point.rotor_speed * time
     loads = aerodynamic_hub_loads(rotor, point, box.on_blades(rotor, time, psi), psi)
-    source = {"source": f"surrogate in the wind of {box.name}", "wind_speed": mean}
+    source: dict[str, Attribute] = {
+        "source": f"surrogate in the wind of {box.name}",
+        "wind_speed": mean,
+    }
     return LoadHistory(box.name, time, loads + rotor.weight(), source)
 
 
