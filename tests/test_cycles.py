@@ -137,6 +137,22 @@ def test_a_peer_that_counts_in_classes_finds_the_same_within_a_class(
         assert ours == pytest.approx(peer, abs=width * cycles.counts.sum() ** (1.0 / slope))
 
 
+@pytest.mark.needs("pylife")
+def test_a_peer_of_four_points_has_the_same_cycles_with_its_residue_as_halves(
+    rng: np.random.Generator,
+) -> None:
+    from pylife.stress.rainflow import FourPointDetector, LoopValueRecorder
+
+    signal = np.cumsum(rng.standard_normal(3000))
+    recorder = LoopValueRecorder()
+    residue = np.asarray(FourPointDetector(recorder).process(signal).residuals)
+    whole = np.abs(np.asarray(recorder.values_from) - np.asarray(recorder.values_to))
+    half = np.abs(np.diff(residue))
+    cycles = rainflow_cycles(signal)
+    found = np.sort(np.repeat(cycles.ranges, (2 * cycles.counts).astype(int)))
+    np.testing.assert_allclose(found, np.sort([*whole, *whole, *half]), rtol=1e-12)
+
+
 def test_published_equivalent_loads_within_their_classes() -> None:
     """wetb's test of the standard's series in 50 classes, of the openfast_toolbox @d34b283."""
     cycles = rainflow_cycles(EXAMPLE)
