@@ -16,6 +16,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.classes import Classes, in_classes
 from fe_drivetrain.histories.cycles import Residue, gated, rainflow_cycles
 from fe_drivetrain.histories.damage import FREQUENCY, goodman
+from fe_drivetrain.histories.faults import lone_samples
 from fe_drivetrain.histories.levels import torque_reversals
 from fe_drivetrain.histories.polar import direction
 from fe_drivetrain.histories.spectra import (
@@ -31,7 +32,7 @@ from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.loops import find_loops, loop_statistics, time_on_loops
 from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
 
-VERSION = 2
+VERSION = 3
 """Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 LOADS = (*FORCES, "radial force", "bending moment")
@@ -154,6 +155,10 @@ def digest(found: Recorded, options: Options) -> Digest:
     seconds = np.full(count, step)
     turns = None if speed is None else np.abs(speed) * step / (2.0 * np.pi)
     _count_cycles(result, loads, options)
+    alone = [lone_samples(column) for column in history.loads.T]
+    result["lone samples"] = np.array(
+        [[len(k), history.time[k[0]] if len(k) else np.nan] for k in alone]
+    )
     _spectra(result, loads, speed, step)
     for c, name in enumerate(LOADS):
         _put(result, f"time at {name}", in_classes(loads[:, c], weights=seconds))
@@ -211,6 +216,7 @@ def _count_cycles(result: Digest, loads: Floats, options: Options) -> None:
     """Sums of n r^m for each slope, exact; cycles in classes of range, and of range and mean."""
     sums = np.zeros((len(LOADS), len(options.slopes)))
     about_zero = np.full_like(sums, np.nan)
+    halves = np.zeros_like(sums)
     numbers = np.zeros((len(LOADS), 3))
     for c, name in enumerate(LOADS):
         cycles = rainflow_cycles(loads[:, c], options.residue)
@@ -218,6 +224,8 @@ def _count_cycles(result: Digest, loads: Floats, options: Options) -> None:
         if options.gate:
             cycles = gated(cycles, options.gate * largest)
         sums[c] = [float(cycles.counts @ cycles.ranges**m) for m in options.slopes]
+        half = cycles.counts < 1.0
+        halves[c] = [float(cycles.counts[half] @ cycles.ranges[half] ** m) for m in options.slopes]
         numbers[c] = largest, cycles.counts.sum(), cycles.left_out
         if name in options.ultimate:
             same = goodman(cycles, options.ultimate[name])
@@ -227,7 +235,7 @@ def _count_cycles(result: Digest, loads: Floats, options: Options) -> None:
             both = in_classes(cycles.ranges, cycles.means, weights=cycles.counts, least=24)
             _put(result, f"ranges and means of {name}", both)
     result["damage"], result["cycles"] = sums, numbers
-    result["damage about zero"] = about_zero
+    result["damage about zero"], result["damage of halves"] = about_zero, halves
 
 
 def _spectra(result: Digest, loads: Floats, speed: Floats | None, step: float) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from fe_drivetrain.commands.loads_against import beside
 from fe_drivetrain.commands.loads_counts import counts
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options
+from fe_drivetrain.commands.loads_faults import faults
 from fe_drivetrain.commands.loads_lifetime import Event, lifetime
 from fe_drivetrain.commands.loads_reactions import (
     SceneReactions,
@@ -137,6 +138,7 @@ def loaded(
         f"{found.seconds:,.6g} s; {rule}."
     )
     tables: dict[str, list[Record]] = {"files": found.files}
+    faults(page, found, options)
     _channels(page, found)
     _statistics(page, found)
     tables["windows"] = windows_table(found, UNIT_OF)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fe_drivetrain.commands.loads_digest import CHANNELS, Digest, classes_of
+from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, Digest, classes_of
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.classes import Classes, added
 from fe_drivetrain.histories.windows import COLUMNS
@@ -34,6 +34,12 @@ class Together:
     about_zero : ndarray
         (loads, slopes) the same of cycles about zero mean by Goodman's line; NaN where no ultimate
         load is given.
+    halves : ndarray
+        (loads, slopes) the part of half cycles in the sums.
+    lone : list of tuple
+        File, channel, number of lone samples and time of the first [s].
+    constant : dict
+        Channels that do not move, and in how many files.
     cycles : ndarray or None
         (loads, 3) largest range, number of cycles, and how many were left out.
     torque : ndarray
@@ -67,6 +73,9 @@ class Together:
     samples: int = 0
     damage: Floats | None = None
     about_zero: Floats = field(default_factory=lambda: np.zeros((1, 1)))
+    halves: Floats = field(default_factory=lambda: np.zeros((1, 1)))
+    lone: list[tuple[str, str, int, float]] = field(default_factory=list)
+    constant: dict[str, int] = field(default_factory=dict)
     cycles: Floats | None = None
     torque: Floats = field(default_factory=lambda: np.zeros(5))
     classes: dict[str, Classes] = field(default_factory=dict)
@@ -95,6 +104,12 @@ class Together:
         self.damages.append(damage)
         self.damage = damage if self.damage is None else self.damage + damage
         self.about_zero = self.about_zero + found["damage about zero"]
+        self.halves = self.halves + found["damage of halves"]
+        for c, (number, first) in enumerate(found["lone samples"].tolist()):
+            if number:
+                self.lone.append((name, LOADS[c], int(number), first))
+            if not found["cycles"][c, 0]:
+                self.constant[LOADS[c]] = self.constant.get(LOADS[c], 0) + 1
         channels = str(found["read"])
         self.read[channels] = self.read.get(channels, 0) + 1
         if self.cycles is None:
