@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import struct
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -360,6 +361,20 @@ def test_binary_files_of_each_kind_are_read_as_by_the_package(
     np.testing.assert_allclose(found["rotthrust"].values, expected[:, 1])
     np.testing.assert_allclose(found["rottorq"].values, -expected[:, 2])  # reversed by OutList
     assert not found["other"].values.size
+
+
+def test_a_file_of_many_channels_takes_the_memory_of_those_that_are_used(tmp_path: Path) -> None:
+    columns = fixed_columns() | {f"X{k}": ("(m)", TIME) for k in range(300)}
+    long = {n: (unit, np.tile(values, 10)) for n, (unit, values) in columns.items()}
+    long["Time"] = ("(s)", 0.05 * np.arange(4000))
+    file = write_outb(tmp_path / "wide.outb", long)
+    read_openfast(file)
+    tracemalloc.start()
+    read_openfast(file)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    # a block of packed samples, and some copies of seven channels; all channels are 10 MB
+    assert peak < file.stat().st_size + 30 * 8 * 4000
 
 
 def test_truncated_binary_file_is_refused(tmp_path: Path) -> None:
