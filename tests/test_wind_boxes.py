@@ -9,7 +9,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.aero_rotor import Rotor
 from fe_drivetrain.hub_loads.surrogate import Condition, hub_loads
-from fe_drivetrain.hub_loads.wind import power_law
+from fe_drivetrain.hub_loads.wind import at_azimuth, power_law
 from fe_drivetrain.hub_loads.wind_boxes import (
     WindBox,
     box_hub_loads,
@@ -105,6 +105,16 @@ def test_a_wind_that_is_stronger_on_the_left_yaws_the_rotor() -> None:
     change = (found - even).mean(axis=0)
     assert change[5] < -50e3
     assert abs(change[4]) < 0.1 * abs(change[5])
+
+
+def test_harmonics_of_a_ring_have_the_wind_of_its_nodes(rng: np.random.Generator) -> None:
+    rotor, box = Rotor(), box_of(10.0 + rng.standard_normal((30, 13, 13)))
+    time = box.time[:-1] + 0.05
+    harmonics = box.ring_harmonics(rotor, time, 4)
+    for node in range(9):
+        azimuth = np.full(len(time), 2.0 * np.pi * node / 9)
+        found = at_azimuth(harmonics, azimuth)
+        np.testing.assert_allclose(found, box.on_blades(rotor, time, azimuth)[0], atol=1e-4)
 
 
 def test_a_rotor_that_reaches_out_of_the_field_is_refused() -> None:

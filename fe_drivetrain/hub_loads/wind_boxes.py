@@ -136,6 +136,40 @@ class WindBox:
             wind[blade] = self.at(when, across, rotor.hub_height + above)
         return wind
 
+    def ring_harmonics(self, rotor: Rotor, time: ArrayLike, highest: int) -> NDArray[np.float32]:
+        """The wind around each ring of blade elements, in harmonics of azimuth.
+
+        Parameters
+        ----------
+        rotor : Rotor
+            Its elements are the rings.
+        time : array_like, (n,)
+            [s].
+        highest : int
+            Highest harmonic M; the 2 M + 1 nodes of a ring have the wind of the field exactly.
+
+        Returns
+        -------
+        ndarray, (2 M + 1, r, n)
+            Mean, cosines, sines [m/s]: what `wind.at_azimuth` takes.
+
+        Raises
+        ------
+        InputError
+            As of `at`.
+        """
+        radius, _ = rotor.element_radius()
+        when = np.asarray(time, dtype=float)
+        nodes = 2.0 * np.pi * np.arange(2 * highest + 1) / (2 * highest + 1)
+        shape = (len(nodes), len(radius), len(when))
+        y = -np.sin(nodes)[:, None] * radius
+        z = rotor.hub_height + np.cos(nodes)[:, None] * radius * np.cos(rotor.shaft_tilt)
+        places = (np.broadcast_to(a[..., None], shape) for a in (y, z))
+        wind = self.at(np.broadcast_to(when, shape), *places)
+        turns = np.outer(np.arange(1, highest + 1), nodes)
+        waves = np.concatenate([np.ones((1, len(nodes))), 2.0 * np.cos(turns), 2.0 * np.sin(turns)])
+        return np.asarray(np.tensordot(waves / len(nodes), wind, axes=1), dtype=np.float32)
+
     def mean_speed(self, rotor: Rotor) -> float:
         """Mean over time at a rotor's hub [m/s]."""
         zero = np.zeros(len(self.speed))
