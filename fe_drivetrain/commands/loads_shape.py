@@ -49,13 +49,7 @@ def heatmap(
         "x": rounded(x),
         "y": rounded(y),
         "z": cells,
-        "colorbar": {
-            "title": {"text": colour, "side": "top"},
-            "orientation": "h",
-            "y": 1.0,
-            "yanchor": "bottom",
-            "thickness": 12,
-        },
+        "colorbar": {"title": {"text": colour, "side": "right"}, "thickness": 12},
     }
     axes: dict[str, Any] = {"xaxis": {"title": {"text": right}}, "yaxis": {"title": {"text": up}}}
     for axis, more in layout.items():
