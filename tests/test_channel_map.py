@@ -5,9 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.channel_map import ChannelMap, read_channel_map
 from fe_drivetrain.hub_loads.recorded import read_recorded
+from fe_drivetrain.scene.reading import library_scene
 
 TIME = 0.1 * np.arange(50)
 FORCE = np.array([200e3, -15e3, -400e3])
@@ -79,6 +81,17 @@ def test_rotating_loads_are_turned_back_by_the_azimuth(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.loads[:, 4:], np.broadcast_to(MOMENT[1:], (50, 2)))
     with pytest.raises(InputError, match="no azimuth to turn them back"):
         read_recorded(file, ChannelMap(channels=NAMES, units=units, rotating=True))
+
+
+def test_a_study_reads_files_of_other_programs(tmp_path: Path) -> None:
+    waving = np.concatenate([FORCE, MOMENT]) * (1.0 + 0.1 * np.sin(TIME))[:, None]
+    write_table(tmp_path / "a.csv", waving)
+    scene = library_scene("main_bearing_bonded")
+    mapping = ChannelMap(channels=NAMES, units={"yaw": "kN m"})
+    (history,) = own_loads(str(tmp_path), 1.0, scene, mapping).histories
+    np.testing.assert_allclose(history.loads, waving[10:])
+    with pytest.raises(InputError, match="no column Fx, Fy"):
+        own_loads(str(tmp_path), 1.0, scene)
 
 
 @pytest.mark.parametrize(

@@ -179,6 +179,32 @@ def test_reactions_of_a_scene_are_shown_and_compared(
     assert "choose 1, a beam, or 4" in err
 
 
+def test_any_other_channel_has_statistics_in_its_own_unit(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out, others = histories.parent / "out", histories.parent / "others"
+    others.mkdir()
+    for name in "cd":
+        write_history(others / f"{name}.csv", 70.1, 0.1, 8.0)
+    command = ("loads", str(histories), "--out", str(out), *COLUMNS, "--also", "vhub")
+    status, _, err = invoke(*command, "--also", "N", "--against", str(others))
+    assert status == 0, err
+    rows = {row["channel"]: row for row in rows_of(out / "other_channels.csv")}
+    assert float(rows["N [rpm]"]["mean"]) == pytest.approx(60.0 * HERTZ)
+    assert float(rows["N [rpm]"]["DEL, m = 3"]) == 0.0
+    wind = rows["Vhub [m/s]"]
+    assert float(wind["least"]) == pytest.approx(7.0, abs=0.01)
+    # 0.3 rad/s and a range of 2 m/s
+    assert float(wind["DEL, m = 3"]) == pytest.approx(2.0 * (0.3 / 2 / np.pi) ** (1 / 3), rel=0.05)
+    windows = rows_of(out / "other_windows.csv")
+    assert {row["file"] for row in windows} == {"a", "b"}
+    compared = {row["quantity"]: row for row in rows_of(out / "beside.csv")}
+    assert float(compared["N [rpm], mean"]["these files"]) == pytest.approx(60.0 * HERTZ)
+    status, _, err = invoke(*command, "--also", "Q")
+    assert status == 2
+    assert "there is no channel 'Q'" in err
+
+
 def test_reactions_balance_hub_loads_and_weights(rng: np.random.Generator) -> None:
     found = scene_reactions(library_scene("main_bearing_bonded"), 1)
     loads = 1e5 * rng.standard_normal((50, 6))

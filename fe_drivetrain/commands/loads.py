@@ -48,6 +48,15 @@ def loads_command(
             "(docs/loads.md); --channel goes before it.",
         ),
     ] = None,
+    also: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--also",
+            metavar="COLUMN",
+            help="Another channel of the files, as BldPitch1: statistics, equivalent loads and "
+            "multiples of it, too. May be repeated.",
+        ),
+    ] = None,
     rotor_speed: Annotated[
         float | None,
         typer.Option(
@@ -233,6 +242,7 @@ def loads_command(
             parse_ultimate(ultimate or ()),
             frequency,
             OWN_NAMES if mapping is None else read_channel_map(mapping),
+            tuple(also or ()),
         )
         wanted = parse_winds(winds, target)
         place = None if site is None else parse_site(site, shape, years)

@@ -15,7 +15,7 @@ from fe_drivetrain.commands.loads_digest import (
     Digest,
     Options,
 )
-from fe_drivetrain.commands.loads_reactions import parts
+from fe_drivetrain.commands.loads_reactions import ALONE, OTHER, parts
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sets import CHANCE, Difference, differences
@@ -78,8 +78,16 @@ def all_features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:
     """
     result: dict[str, float] = {}
     for name, part in parts(found).items():
+        own = features(part, slopes)
+        if name.startswith(OTHER):  # one channel, in its own unit
+            start, shown = f"{ALONE}, ", name.removeprefix(OTHER)
+            for key, value in own.items():
+                if key.startswith(start):
+                    what = key.removeprefix(start).removesuffix(" [kN]")
+                    result[f"{shown}, {what}"] = 1e3 * value
+            continue
         before = f"{name}: " if name else ""
-        result |= {f"{before}{key}": v for key, v in features(part, slopes).items()}
+        result |= {f"{before}{key}": v for key, v in own.items()}
     return result
 
 
@@ -169,6 +177,8 @@ def _spectra(
     if not all("spectra" in found for own in sets for found in own):
         return
     for name in parts(sets[0][0]):
+        if name.startswith(OTHER):
+            continue
         for load in ("My",) if not name else ("Fz", "My"):
             traces = []
             for label, own in zip(names, sets, strict=True):

@@ -83,6 +83,8 @@ class Options:
         Of damage-equivalent loads [Hz]; what is kept of a file does not depend on it.
     mapping : ChannelMap
         How files call their channels, and their frame and origin.
+    also : Sequence[str]
+        Further channels, as files call them, of which there are statistics and cycles, too.
     """
 
     columns: Mapping[str, str]
@@ -94,6 +96,7 @@ class Options:
     ultimate: Mapping[str, float] = field(default_factory=dict)
     frequency: float = FREQUENCY
     mapping: ChannelMap = OWN_NAMES
+    also: Sequence[str] = ()
 
     @property
     def names(self) -> ChannelMap:
@@ -112,6 +115,7 @@ class Options:
             "mapping": self.names.content(),
             "slopes": [float(m) for m in self.slopes],
             "ultimate": dict(self.ultimate),
+            "also": list(self.also),
             **{name: getattr(self, name) for name in ("skip", "residue", "gate", "rotor_speed")},
         }
 

@@ -15,8 +15,10 @@ from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, 
 from fe_drivetrain.commands.loads_faults import faults
 from fe_drivetrain.commands.loads_lifetime import Event, lifetime
 from fe_drivetrain.commands.loads_reactions import (
+    OTHER,
     SceneReactions,
     digest_with_reactions,
+    others_section,
     parts,
     reactions_section,
 )
@@ -123,7 +125,7 @@ def loaded(
     with run.step("files"):
         for file, one in _digests(run, files, options, resume, "files", reactions):
             for name, part in parts(one).items():
-                every[name].add(_name(file, files), part)
+                every.setdefault(name, Together()).add(_name(file, files), part)
             if against:
                 own.append(one)
     _require_loads(found)
@@ -149,6 +151,8 @@ def loaded(
     if reactions is not None:
         of_scene = {name: every[name] for name in reactions.names}
         tables |= reactions_section(page, of_scene, options, reactions.model, rule)
+    others = {name: one for name, one in every.items() if name.startswith(OTHER)}
+    tables |= others_section(page, others, options, rule)
     if site is not None:
         with run.step("transients"):
             events = [
@@ -159,8 +163,7 @@ def loaded(
     if against:
         with run.step("the others"):
             made = _digests(run, against, options, resume, "the others", reactions)
-            others = [d for _, d in made]
-        tables["beside"] = beside(page, own, others, options)
+            tables["beside"] = beside(page, own, [d for _, d in made], options)
     _checks(page, found)
     facts = {
         "frame": FRAME,
@@ -234,7 +237,7 @@ def kept_digest(
     kept: Digest | None = cache.load("load-digests", content) if resume else None
     if kept is not None:
         return kept
-    recorded = read_recorded(file, options.names, options.skip)
+    recorded = read_recorded(file, options.names, options.skip, options.also)
     found = digest_with_reactions(recorded, options, reactions)
     cache.keep("load-digests", content, found)
     return found

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.commands.loads_counts import equivalent
-from fe_drivetrain.commands.loads_digest import LOADS, UNITS, Digest, Options, digest
+from fe_drivetrain.commands.loads_digest import (
+    CHANNELS,
+    LOADS,
+    UNITS,
+    Digest,
+    Options,
+    digest,
+)
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
@@ -25,7 +32,13 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 
-_BETWEEN = " / "  # name of a reaction, and of what a digest has of it
+OTHER = "channel "
+"""Before the name of a part that is another channel of the files."""
+
+ALONE = "Fx"
+"""Under which its digest has that channel, which is no vector; all else is zero."""
+
+_BETWEEN = " / "  # name of a part, and of what a digest has of it
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +97,7 @@ def scene_reactions(scene: Scene, level: int) -> SceneReactions:
 def digest_with_reactions(
     found: Recorded, options: Options, reactions: SceneReactions | None
 ) -> Digest:
-    """The digest of a file, and those of each reaction to it under names of their own.
+    """The digest of a file, those of each reaction to it, and of other channels, by name.
 
     Parameters
     ----------
@@ -100,11 +113,18 @@ def digest_with_reactions(
         history = LoadHistory(found.history.name, found.history.time, loads)
         one = digest(Recorded(history, found.rotor_speed, found.wind_speed), options)
         result |= {f"{name}{_BETWEEN}{key}": values for key, values in one.items()}
+    for name, values in found.others.items():
+        alone = np.zeros_like(found.history.loads)
+        alone[:, LOADS.index(ALONE)] = values
+        history = LoadHistory(found.history.name, found.history.time, alone)
+        plain = replace(options, ultimate={})
+        one = digest(Recorded(history, found.rotor_speed, found.wind_speed), plain)
+        result |= {f"{OTHER}{name}{_BETWEEN}{key}": values for key, values in one.items()}
     return result
 
 
 def parts(found: Digest) -> dict[str, Digest]:
-    """Digests of the hub loads, under "", and of each reaction.
+    """Digests of the hub loads, under "", of each reaction, and of other channels.
 
     Parameters
     ----------
@@ -166,6 +186,63 @@ def reactions_section(
             )
     page.data("reactions", rows)
     return {"reactions": rows, "reaction_loops": loops}
+
+
+def others_section(
+    page: Page, found: Mapping[str, Together], options: Options, rule: str
+) -> dict[str, list[Record]]:
+    """Add the section of other channels; the tables that go to files.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the table.
+    found : mapping
+        All files together, by name of the part.
+    options : Options
+        How they were counted.
+    rule : str
+        How cycles were counted.
+    """
+    if not found:
+        return {}
+    page.section("Other channels")
+    slopes = np.array(options.slopes, dtype=float)
+    place = LOADS.index(ALONE)
+    rows: list[Record] = []
+    windows: list[Record] = []
+    for part, one in found.items():
+        assert one.damage is not None
+        name = part.removeprefix(OTHER)
+        loads = equivalent(one.damage, one.seconds, slopes, options.frequency)[place]
+        row: Record = {"channel": name}
+        row |= dict(zip(COLUMNS, one.overall()[place].tolist(), strict=True))
+        row |= {f"DEL, m = {m:g}": v for m, v in zip(options.slopes, loads.tolist(), strict=True)}
+        amplitudes = one.median_multiples()
+        if amplitudes is not None:
+            row |= {
+                f"{n}P": None if np.isnan(v) else float(v)
+                for n, v in zip(MULTIPLES, amplitudes[place], strict=True)
+            }
+        rows.append(row)
+        for window in one.windows:
+            values = np.asarray(window["values"])
+            wind = float(values[CHANNELS.index("wind speed"), 1])
+            windows.append(
+                {
+                    "channel": name,
+                    "file": window["file"],
+                    "start [s]": float(window["start [s]"]),
+                    "seconds": float(window["seconds"]),
+                    "mean wind speed [m/s]": None if np.isnan(wind) else wind,
+                    **dict(zip(COLUMNS, values[place].tolist(), strict=True)),
+                }
+            )
+    page.table(
+        f"In the files' units; DEL: damage-equivalent at {options.frequency:g} Hz; {rule}", rows
+    )
+    page.data("other_channels", rows)
+    return {"other_channels": rows, "other_windows": windows}
 
 
 def _statistics(name: str, found: Together, options: Options) -> list[Record]:

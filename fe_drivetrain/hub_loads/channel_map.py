@@ -85,9 +85,9 @@ class ChannelMap(BaseModel):
         return [name for name in self.channels if name in LOAD_NAMES]
 
     def column(self, name: str) -> tuple[str, float]:
-        """Name in the files, in lower case, and sign of a mapped channel."""
+        """Name in the files and sign of a mapped channel."""
         text = self.channels[name]
-        return text.removeprefix("-").strip().lower(), -1.0 if text.startswith("-") else 1.0
+        return text.removeprefix("-").strip(), -1.0 if text.startswith("-") else 1.0
 
     def read_as(self, name: str) -> str:
         """The name of OpenFAST, in lower case, that a mapped load is read under."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ from fe_drivetrain.hub_loads.histories import (
     MIN_SAMPLES,
     LoadHistory,
     require_sound,
+    require_variation,
 )
 from fe_drivetrain.hub_loads.openfast import LOAD_CHANNELS, loads_from_channels
 from fe_drivetrain.hub_loads.openfast_output import openfast_channels
@@ -54,11 +55,14 @@ class Recorded:
         [rad/s].
     wind_speed : ndarray, (n,) or None
         [m/s].
+    others : Mapping[str, ndarray]
+        Further channels (n,), each in the file's unit, by name and unit as in "BldPitch1 [deg]".
     """
 
     history: LoadHistory
     rotor_speed: Floats | None = None
     wind_speed: Floats | None = None
+    others: Mapping[str, Floats] = field(default_factory=dict)
 
 
 def recorded_files(patterns: list[str]) -> list[Path]:
@@ -67,7 +71,9 @@ def recorded_files(patterns: list[str]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def read_recorded(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0) -> Recorded:
+def read_recorded(
+    path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0, also: Sequence[str] = ()
+) -> Recorded:
     """Read a history of any format, with rotor speed and wind speed where the file has them.
 
     Parameters
@@ -78,6 +84,8 @@ def read_recorded(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0
         How the file calls its channels, and their frame and origin.
     skip : float
         What is left out at the beginning [s].
+    also : sequence of str
+        Further channels, as the file calls them.
 
     Raises
     ------
@@ -93,7 +101,8 @@ def read_recorded(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0
         )
     is_table, loads_mapped = suffix == ".csv", mapping.loads_mapped
     beside_loads = [n.lower() for names in KNOWN.values() for n in names]
-    wanted = {*beside_loads, *(mapping.column(name)[0] for name in mapping.channels)}
+    wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
+    wanted |= {name.lower() for name in also}
     if is_table and loads_mapped:
         wanted |= {name.lower() for name in LOAD_NAMES}
     channels = (
@@ -103,7 +112,8 @@ def read_recorded(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0
     )
     units = {name.lower(): unit for name, unit in mapping.units.items()}
     channels = {n: replace(c, unit=units.get(n, c.unit)) for n, c in channels.items()}
-    named = {name: _named(file, channels, mapping, name) for name in mapping.channels}
+    named = {name: _named(file, channels, *mapping.column(name)) for name in mapping.channels}
+    further = [_named(file, channels, name) for name in also]
     if is_table and not loads_mapped:
         history = read_csv(file)
     else:
@@ -116,6 +126,8 @@ def read_recorded(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0
         if channel is not None:
             beside[name] = in_si(str(file), channel, sizes)
             require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
+    others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
+    require_sound(f"hub loads '{file}'", history.time, others)
     kept = history.time >= history.time[0] + skip
     if kept.sum() < MIN_SAMPLES:
         raise InputError(
@@ -127,7 +139,30 @@ def read_recorded(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0
         history.between(float(history.time[0]) + skip),
         None if speed is None else speed[kept],
         None if wind is None else wind[kept],
+        {name: values[kept] for name, values in others.items()},
     )
+
+
+def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHistory:
+    """Hub loads alone, as `read_recorded` reads them.
+
+    Parameters
+    ----------
+    mapping : ChannelMap
+        How the file calls its channels, and their frame and origin.
+    path : Path
+        The file.
+    skip : float
+        What is left out at the beginning [s].
+
+    Raises
+    ------
+    InputError
+        As of `read_recorded`, or the loads never vary.
+    """
+    history = read_recorded(path, mapping, skip).history
+    require_variation(f"hub loads '{path}'", history.loads)
+    return history
 
 
 def _of_channels(
@@ -223,13 +258,12 @@ def csv_channels(
     return found
 
 
-def _named(file: Path, channels: Mapping[str, Channel], mapping: ChannelMap, name: str) -> Channel:
-    column, sign = mapping.column(name)
-    found = channels.get(column)
+def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:
+    found = channels.get(column.lower())
     if found is None:
         names = ", ".join(channel.name for channel in list(channels.values())[:12])
         raise InputError(
-            f"hub loads '{file}': there is no channel '{mapping.channels[name]}'; it has {names}"
+            f"hub loads '{file}': there is no channel '{column}'; it has {names}"
             + (" and others" if len(channels) > 12 else "")
         )
     if sign > 0.0:
