@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.commands.loads import parse_channels, parse_site
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.scenes import named_scene
@@ -196,6 +195,7 @@ def life_command(
         from fe_drivetrain.commands.life_bearings import Choices, bearings_of
         from fe_drivetrain.commands.life_digest import Reading
         from fe_drivetrain.commands.life_page import lived
+        from fe_drivetrain.commands.loads_words import parse_channels, parse_site
         from fe_drivetrain.hub_loads.recorded import recorded_files
         from fe_drivetrain.life.roller_damage import LifeRules
         from fe_drivetrain.suite.case import Case
