@@ -415,8 +415,17 @@ def damage_of_history(chunks: Iterable[Steps], rated: RatedBearing, rules: LifeR
 
 @dataclass(frozen=True, eq=False)
 class _Row:
-    """Of a row: P (n, laminae); for both rings the powers of loads (n, elements, laminae) by which
-    places share a risk, and one over their sums (n, laminae)."""
+    """Equivalent loads of a row, and how its places share a risk.
+
+    Attributes
+    ----------
+    P : Floats
+        (n, laminae) [N].
+    powers : tuple of Floats
+        For both rings (n, elements, laminae), in proportion to which places share.
+    over_sums : tuple of Floats
+        For both rings (n, laminae) one over the sums of these; 0 without a load.
+    """
 
     P: Floats
     powers: tuple[Floats, Floats]
