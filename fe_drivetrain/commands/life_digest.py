@@ -15,6 +15,7 @@ from fe_drivetrain.commands.life_bearings import OneBearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Limits, Steps, damage_of_steps
 from fe_drivetrain.scene.scene import Scene
@@ -35,8 +36,8 @@ class Reading:
 
     Attributes
     ----------
-    columns : Mapping
-        What a channel is, and how files call it.
+    names : ChannelMap
+        How files call their channels, and their frame and origin.
     skip : float
         Left out at the beginning of each [s].
     every : int
@@ -45,7 +46,7 @@ class Reading:
         Of files that have none [1/min].
     """
 
-    columns: Mapping[str, str]
+    names: ChannelMap
     skip: float
     every: int
     rotor_speed: float | None
@@ -161,7 +162,7 @@ def digest(
     InputError
         The file cannot be read, or has no rotor speed.
     """
-    found = read_recorded(file, reading.columns, reading.skip)
+    found = read_recorded(file, reading.names, reading.skip)
     history = found.history.moved(scene.loads_at, scene.shaft.front)
     if found.rotor_speed is not None:
         speed = found.rotor_speed * 30.0 / np.pi
