@@ -37,7 +37,11 @@ class Reading:
     Attributes
     ----------
     names : ChannelMap
+<<<<<<< HEAD
         How files call their channels, and their frame and origin.
+=======
+        How files call their channels.
+>>>>>>> life
     skip : float
         Left out at the beginning of each [s].
     every : int
@@ -121,7 +125,8 @@ def content(
         "rated": repr(one.rated),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
         "rules": repr(rules),
-        "reading": repr(reading),
+        "mapping": reading.names.content(),
+        "reading": [reading.skip, reading.every, reading.rotor_speed],
         "scene": scene.model_dump_json(),
         "choices": repr(choices),
     }
