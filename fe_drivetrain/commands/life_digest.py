@@ -37,11 +37,7 @@ class Reading:
     Attributes
     ----------
     names : ChannelMap
-<<<<<<< HEAD
         How files call their channels, and their frame and origin.
-=======
-        How files call their channels.
->>>>>>> life
     skip : float
         Left out at the beginning of each [s].
     every : int
