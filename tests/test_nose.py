@@ -179,7 +179,7 @@ def test_a_deck_has_the_nose_and_the_springs_of_its_bearings(
     assert dict(plan.springs)[joint + 1] == dict(plan.springs)[joint + 2] == 2e10
     force = 2e10 * response.motions["downwind.joint"][2, 2]
     assert force == pytest.approx(response.reactions["downwind"][2, 2], rel=1e-9)
-    root = 3 * plan.references["nose"][0]
+    root = 3 * plan.references["nose.root"][0]
     assert set(range(root, root + 6)) <= set(plan.held.tolist())
 
 

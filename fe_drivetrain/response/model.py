@@ -64,7 +64,7 @@ class Model:
         their names; where there are
         such, "NAME.base" (on a bedplate that gives), "NAME.joint" or "NAME.roller K", whose
         motion is that of the bearing against its housing, or of the shaft against its nose; and
-        "nose", the nose's rear face.
+        "nose.root", the nose's rear face.
     constraints : tuple[Constraint, ...]
         All interfaces, couplings and supports.
     springs : tuple[tuple[ReferencePoint, Floats], ...]
@@ -248,8 +248,8 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         _stand(between, bearing.stiffness, conditions, springs, held)
     if scene.nose is not None:
         root = np.array([scene.nose.body.rear, 0.0, 0.0])
-        points["nose"] = couple("nose", "nose.rear", root)
-        _stand(points["nose"], ("rigid",) * 6, conditions, springs, held)
+        points["nose.root"] = couple("nose.root", "nose.rear", root)
+        _stand(points["nose.root"], ("rigid",) * 6, conditions, springs, held)
     _stand(points["gearbox"], scene.gearbox.stiffness, conditions, springs, held)
 
     refuse_mechanisms(mesh, conditions, springs)

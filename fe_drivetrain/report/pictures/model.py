@@ -30,7 +30,7 @@ from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, STRIP, View
 if TYPE_CHECKING:
     from fe_drivetrain.response.model import Model
 
-PARTS = {"shaft": "#9fb4c7", "bearing": "#e8a33d", "housing": "#6ba292", "nose": "#b08968"}
+PARTS = {"shaft": "#9fb4c7", "bearing": "#e8a33d", "housing": "#6ba292", "nose": "#b3bf72"}
 """Colour of each kind of part."""
 
 _SYMBOL = 0.11  # length of an arrow, of the length of the shaft
@@ -162,7 +162,7 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
         height = (top + bottom) / 2
         sheet.note([bearing.x, 0.0, height], bearing.name.replace("_", " "), (-60, 190))
     if model.scene.nose is not None:
-        sheet.note(model.points["nose"].position, "nose, held", (60, -150), GROUND)
+        sheet.note(model.points["nose.root"].position, "nose, held", (60, -150), GROUND)
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         # the upright face of the cut shows the bearing at y = 0, between seat and outer face
