@@ -177,7 +177,7 @@ def solve_scene(
 ) -> Solved:
     """Mesh, assemble and solve a scene, or take its solution from the cache, timing each step.
 
-    The operators of the parts, by far the largest of what comes out, are not kept: what is solved
+    The operators of the parts, by far the largest of the results, are not kept: what is solved
     side by side travels between processes.
 
     Parameters

@@ -84,6 +84,15 @@ def study_command(
             help="What is left out at the beginning of each file of --loads.",
         ),
     ] = 0.0,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            "--mapping",
+            metavar="YAML",
+            help="Names, units, frame and origin of channels in --loads, for files of other "
+            "programs (docs/loads.md).",
+        ),
+    ] = None,
     slope: Annotated[
         list[float] | None,
         typer.Option(
@@ -124,12 +133,16 @@ def study_command(
         from fe_drivetrain.commands.study_loads import own_loads
         from fe_drivetrain.commands.study_page import studied
         from fe_drivetrain.histories.damage import SLOPES, check_slope
+        from fe_drivetrain.hub_loads.channel_map import read_channel_map
 
         for exponent in slope or ():
             check_slope(exponent)
+        if mapping is not None and loads is None:
+            raise InputError("--mapping says how files call their channels: give --loads, too")
+        names = None if mapping is None else read_channel_map(mapping)
 
         # before the work: a fault in a file is reported at once
-        own = None if loads is None else own_loads(loads, skip, found)
+        own = None if loads is None else own_loads(loads, skip, found, names)
         return _run_on_scene(
             "study",
             scene,

@@ -1,5 +1,7 @@
 from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
+from .channel_map import ChannelMap as ChannelMap
+from .channel_map import read_channel_map as read_channel_map
 from .csv_table import write_csv as write_csv
 from .files import hub_load_files as hub_load_files
 from .files import read_hub_load_files as read_hub_load_files
@@ -22,3 +24,9 @@ from .surrogate import hub_load_set as hub_load_set
 from .surrogate import hub_loads as hub_loads
 from .surrogate import not_kept as not_kept
 from .surrogate import surrogate_grid as surrogate_grid
+from .wind_boxes import WindBox as WindBox
+from .wind_boxes import box_hub_loads as box_hub_loads
+from .wind_boxes import read_bts as read_bts
+from .wind_boxes import read_hawc2 as read_hawc2
+from .wind_boxes import write_bts as write_bts
+from .wind_boxes import write_hawc2 as write_hawc2
