@@ -88,7 +88,7 @@ def run(run: Run, page: Page) -> None:
     page.sweep(
         "Peak roller, error of its root mean square over load cases, against time per load case",
         rungs,
-        "time per load case [us]",
+        "time per load case [µs]",
         "error of the peak roller [%]",
         by="model",
         log="xy",
@@ -360,7 +360,7 @@ def roller_table(page: Page, files: dict[str, list[Answer]]) -> None:
     page.answer(
         f"Between loop and constant K_R the largest roller changes by {largest_change(ratios):.0f} "
         f"% at most, roller 1 by {largest_change(ones):.0f} %; the thesis's factor of more than 2 "
-        f"does not come of it, but of 145 MN m/rad: {min(soft):.1f} to {max(soft):.1f}."
+        f"is not an effect of the loop, but of 145 MN m/rad: {min(soft):.1f} to {max(soft):.1f}."
     )
 
 
@@ -435,7 +435,7 @@ def ladder(run: Run, factors: Floats) -> list[Record]:
             rows.append(
                 {
                     "model": name,
-                    "time per load case [us]": 1e6 * seconds,
+                    "time per load case [µs]": 1e6 * seconds,
                     "error of the peak roller [%]": 100.0 * error,
                 }
             )

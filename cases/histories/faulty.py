@@ -43,7 +43,7 @@ def run(run: Run, page: Page) -> None:
         refused(page)
     page.answer(
         "6P needs more than two samples a period; sampled more slowly it appears as a load that is "
-        "not there, or falls on 3P and changes that: 'loads' says where.",
+        "not there, or falls on 3P and changes that: the page of `loads` states where.",
         f"The rule for the residue changes an equivalent load of m = 10 by {change:.2g} % in ten "
         "minutes of a load that drifts, so that every figure states it, and 'loads' names the "
         "share of half cycles. A spike decides equivalent loads of steep S-N curves: 'loads' names "
@@ -69,7 +69,7 @@ def slow(page: Page) -> None:
                 "samples per 6P": rate / SIX,
                 "line of 6P appears at [Hz]": six.appears_at,
                 "amplitude there over the true one": found.amplitude(at, near=0.0) / LINES[6],
-                "named as 6P": "yes" if six.amplitude is not None else "no: said on the page",
+                "named as 6P": "yes" if six.amplitude is not None else "no: stated on the page",
             }
         )
         if abs(at - 3.0 * HERTZ) < 1e-9:
@@ -78,7 +78,7 @@ def slow(page: Page) -> None:
                 found.amplitude(at, near=0.0),
                 LINES[3] - LINES[6],
                 within=0.02,
-                why="two lines of one frequency cannot be told apart; no other line leaks in",
+                why="two lines of one frequency cannot be distinguished; no other line leaks in",
                 source="sin(2 pi 1.2 n / 1.8) = -sin(2 pi 0.6 n / 1.8)",
             )
             continue

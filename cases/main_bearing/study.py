@@ -165,7 +165,7 @@ def mesh_of(run: Run, scene: Scene, label: str) -> Meshed:
 def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None) -> Solved:
     """Mesh, assemble and solve a scene, or take its solution from the cache, timing each step.
 
-    The operators of the parts, by far the largest of what comes out, are not kept: what is solved
+    The operators of the parts, by far the largest of the results, are not kept: what is solved
     side by side travels between processes.
 
     Parameters

@@ -37,13 +37,13 @@ def parse_channels(texts: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def parse_site(text: str, shape: float, years: float) -> Site:
+def parse_site(text: str, shape: float = Site.shape, years: float = Site.years) -> Site:
     """The site of a class, or of a mean wind speed.
 
     Parameters
     ----------
     text : str
-        A class, or a number in m/s.
+        A class, as II, IIB or class-II, or a number in m/s.
     shape : float
         Weibull's exponent.
     years : float
@@ -57,7 +57,7 @@ def parse_site(text: str, shape: float, years: float) -> Site:
     try:
         mean = float(text)
     except ValueError:
-        mean = site_of_class(text).mean_wind
+        mean = site_of_class(text.removeprefix("class-")).mean_wind
     return Site(mean, shape, years)
 
 

@@ -162,7 +162,7 @@ class Page:
             band=band,
         )
 
-    def finest(self, series: MeshSeries, *targets: Target) -> None:
+    def finest(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
         """The finest of several meshes meets targets; the band of each value is that of them all.
 
         Parameters
@@ -171,24 +171,41 @@ class Page:
             What each mesh gave.
         *targets : Target
             What the finest should give.
+        of : str
+            Whose quantities they are, put before each of them: "solid shaft".
         """
         for target in targets:
-            value, band = series.rows[-1][target.key], series.band(target.key, target.order)
-            self.meets(value, target, band)
+            band = series.band(target.key, target.order)
+            self.meets(series.last[target.key], target, band, of)
 
-    def meets(self, computed: float, target: Target, band: float | None = None) -> None:
-        """The computed value meets a target; `band` as for `equals`."""
+    def settled(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
+        """As `finest`, but the band is the change from the mesh before.
+
+        For what has no steady order of convergence, as the largest error of a field.
+        """
+        for target in targets:
+            self.meets(series.last[target.key], target, series.change(target.key), of)
+
+    def meets(
+        self, computed: float, target: Target, band: float | None = None, of: str = ""
+    ) -> None:
+        """The computed value meets a target; `band` as for `equals`, `of` as for `finest`."""
         quantity, unit = split_unit(target.key)
-        self.equals(
-            target.name or quantity,
+        quantity = target.name or quantity
+        zero = target.value == 0.0
+        self._judge(
+            "vanishes" if zero else "equals",
+            f"{of}: {quantity}" if of else quantity,
             computed,
             target.value,
-            within=target.within,
-            why=target.why,
-            source=target.source,
+            target.why,
+            target.source,
+            tolerance=target.within,
+            relative=target.relative and not zero,
             unit=unit,
-            relative=target.relative,
-            measure=target.measure or MEASURES.get(unit),
+            measure=target.measure
+            or MEASURES.get(unit)
+            or ("identity" if not target.value else None),
             band=band,
         )
 
@@ -338,11 +355,19 @@ class Page:
         logarithmic: Iterable[str] = (),
         safe: tuple[float | None, float | None] | None = None,
     ) -> None:
-        """Add a chart of traces; see `fe_drivetrain.report.chart`."""
+        """Add a chart of traces, or a sentence if they have no point; see `report.chart`."""
+        if not any(len(trace.get(axis, ())) for trace in traces for axis in "xyz"):
+            self.text(f"{caption}: there is nothing to show in this run.")
+            return
         self.add(chart(caption, traces, x, y, logarithmic, safe))
 
     def targets(
-        self, caption: str, series: MeshSeries, targets: Sequence[Target], heading: str = "target"
+        self,
+        caption: str,
+        series: MeshSeries,
+        targets: Sequence[Target],
+        heading: str = "target",
+        of: str = "",
     ) -> None:
         """Check the finest of several meshes against targets, and show all meshes beside them.
 
@@ -356,8 +381,10 @@ class Page:
             In the order of the checks.
         heading : str
             Of the targets' column.
+        of : str
+            Whose quantities they are, put before each of them in the checks.
         """
-        self.finest(series, *targets)
+        self.finest(series, *targets, of=of)
         rows = []
         for target in targets:
             unit = target.key.partition(" [")[2]
@@ -430,7 +457,7 @@ class Page:
         self.chart(caption, traces, x, axis or next(iter(keys)), tuple(log), safe)
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
         if table is not False:
-            self.table(caption, rows, plain if table is True else table)
+            self.table("The same in numbers", rows, plain if table is True else table)
         self.data(caption, [{key: row[key] for key in plain} for row in rows])
 
     def data(self, name: str, value: Any) -> None:

@@ -42,6 +42,15 @@ class MeshSeries(NamedTuple):
     by: str
     dimension: int = 1
 
+    @property
+    def last(self) -> Record:
+        """The record of the finest mesh."""
+        return self.rows[-1]
+
+    def change(self, key: str) -> float:
+        """By how much a value of the finest mesh differs from that of the mesh before."""
+        return float(abs(self.rows[-1][key] - self.rows[-2][key]))
+
     def band(self, key: str, order: float | None = None) -> float:
         """Numerical uncertainty of the finest mesh's value.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy import sparse
@@ -39,6 +40,11 @@ class Profile:
     def hoop_at(self, r: float) -> float:
         """Mean hoop stress of the nodes at a radius [Pa]."""
         return float(self.hoop[np.abs(self.r - r) < 1e-9].mean())
+
+    def along(self, stress: Literal["hoop", "radial"]) -> tuple[Floats, Floats]:
+        """Radii of the nodes, each once, and one of the stresses there [m, Pa]."""
+        at, first = np.unique(self.r.round(9), return_index=True)
+        return at, getattr(self, stress)[first]
 
 
 @dataclass(frozen=True)
