@@ -217,9 +217,8 @@ def life_command(
             turning=turning,  # type: ignore[arg-type]
             reliability=_a_1(reliability),
         )
-        named = OWN_NAMES if mapping is None else read_channel_map(mapping)
-        channels = {**named.channels, **parse_channels(channel or ())}
-        names = named.model_copy(update={"channels": channels})
+        names = OWN_NAMES if mapping is None else read_channel_map(mapping)
+        names = names.with_columns(parse_channels(channel or ()))
         reading = Reading(names, skip, every, rotor_speed)
         choices = Choices(
             _pairs(bearing or ()), tuple(catalogue or ()), profile, support, rings, weight, only

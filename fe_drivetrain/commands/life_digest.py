@@ -37,7 +37,7 @@ class Reading:
     Attributes
     ----------
     names : ChannelMap
-        How files call their channels.
+        How files call their channels, and their frame and origin.
     skip : float
         Left out at the beginning of each [s].
     every : int
