@@ -1,5 +1,10 @@
 from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
+from .controller import Controller as Controller
+from .controller import Tuning as Tuning
+from .controller import designed_controller as designed_controller
+from .controller import speed_poles as speed_poles
+from .controller import steady_operation as steady_operation
 from .csv_table import write_csv as write_csv
 from .files import hub_load_files as hub_load_files
 from .files import read_hub_load_files as read_hub_load_files
@@ -11,6 +16,12 @@ from .loops import Loops as Loops
 from .loops import find_loops as find_loops
 from .loops import loop_statistics as loop_statistics
 from .loops import time_on_loops as time_on_loops
+from .moving_turbine import Inflow as Inflow
+from .moving_turbine import TurbineHistory as TurbineHistory
+from .moving_turbine import even_inflow as even_inflow
+from .moving_turbine import simulate as simulate
+from .moving_turbine import turbine_histories as turbine_histories
+from .moving_turbine import turbine_history as turbine_history
 from .recorded import Recorded as Recorded
 from .recorded import read_recorded as read_recorded
 from .recorded import recorded_files as recorded_files
@@ -22,3 +33,8 @@ from .surrogate import hub_load_set as hub_load_set
 from .surrogate import hub_loads as hub_loads
 from .surrogate import not_kept as not_kept
 from .surrogate import surrogate_grid as surrogate_grid
+from .turbine import RIGID as RIGID
+from .turbine import Physics as Physics
+from .turbine import Turbine as Turbine
+from .turbine import natural_frequencies as natural_frequencies
+from .turbine import similar_turbine as similar_turbine
