@@ -136,7 +136,8 @@ def streamed_cycles(chunks: Iterable[ArrayLike], residue: Residue = "half") -> I
     if residue not in RESIDUES:
         raise InputError(f"residue '{residue}' is not a rule: choose one of {', '.join(RESIDUES)}")
     rest: list[float] = []
-    found = _extracted(_turning(chunks), rest)
+    last: list[float] = []
+    found = _extracted(_noting_last(_turning(chunks), last), rest)
     while block := list(islice(found, BLOCK)):
         table = np.array(block)
         half = table[:, 2] < 1.0
@@ -149,7 +150,8 @@ def streamed_cycles(chunks: Iterable[ArrayLike], residue: Residue = "half") -> I
         if len(table):
             yield Cycles(table[:, 0], table[:, 2], table[:, 1], residue)
     if residue == "repeated" and len(rest) > 1:
-        yield _closed(rest)
+        # to the last digit, or a history that ends where it began would close with a cycle of one
+        yield _closed([*rest[:-1], *last])
 
 
 def joined(parts: Sequence[Cycles], residue: Residue = "half") -> Cycles:
@@ -284,6 +286,12 @@ def _turning(chunks: Iterable[ArrayLike]) -> Iterator[Floats]:
             open_end = values
     if len(open_end) > 1:
         yield open_end[-1:]
+
+
+def _noting_last(points: Iterable[Floats], last: list[float]) -> Iterator[Floats]:
+    for part in points:
+        last[:] = part[-1:].tolist() or last
+        yield part
 
 
 def _extracted(

@@ -6,6 +6,10 @@ from .controller import designed_controller as designed_controller
 from .controller import speed_poles as speed_poles
 from .controller import steady_operation as steady_operation
 from .csv_table import write_csv as write_csv
+from .events import RATED as RATED
+from .events import Event as Event
+from .events import grid_loss as grid_loss
+from .events import made_event as made_event
 from .files import hub_load_files as hub_load_files
 from .files import read_hub_load_files as read_hub_load_files
 from .files import read_hub_loads as read_hub_loads
