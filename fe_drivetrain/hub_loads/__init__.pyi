@@ -36,6 +36,7 @@ from .surrogate import HubLoadSet as HubLoadSet
 from .surrogate import hub_load_set as hub_load_set
 from .surrogate import hub_loads as hub_loads
 from .surrogate import not_kept as not_kept
+from .surrogate import operating_grid as operating_grid
 from .surrogate import surrogate_grid as surrogate_grid
 from .turbine import RIGID as RIGID
 from .turbine import Physics as Physics

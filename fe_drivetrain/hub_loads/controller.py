@@ -1,9 +1,10 @@
 """A variable-speed, pitch-controlled turbine's controller, after Jonkman 2009, section 7.
 
-Torque of the generator by its speed: proportional to its square (region 2), a steep line up to
-rated torque (region 2 1/2), rated torque or rated power (region 3).  Pitch by a PI controller of
-the speed's error whose gains fall as pitch grows, since torque answers more to pitch there.  Both
-act on the speed behind a low-pass filter, and neither changes faster than its rate limit.
+Torque of the generator by its speed: none below a least speed, a line up from there (region 1 1/2),
+proportional to its square (region 2), a steep line up to rated torque (region 2 1/2), rated torque
+or rated power (region 3).  Pitch by a PI controller of the speed's error whose gains fall as pitch
+grows, since torque answers more to pitch there.  Both act on the speed behind a low-pass filter,
+and neither changes faster than its rate limit.
 All values are at the slow shaft.
 """
 
@@ -30,6 +31,9 @@ SLIP = 0.10
 
 TORQUE_SPEED = 0.99
 """Speed of rated torque over the speed that pitch holds, so that both do not act at once."""
+
+CUT_IN_SHARE, FULL_SHARE = 70.16224 / 121.6805, 91.21091 / 121.6805
+"""Speeds over that of rated torque where region 1 1/2 begins and ends (Jonkman 2009, Table 7-1)."""
 
 LEAST_PITCH = math.radians(1.0)
 """From here on torque is that of region 3 whatever the speed, so that no gust brings dips."""
@@ -125,6 +129,9 @@ class Controller:
             if self.tuning.constant_power:
                 return self.rated_power / max(speed, 0.5 * self.rated_speed)
             return self.rated_torque
+        begin, full = (share * self.torque_speed for share in (CUT_IN_SHARE, FULL_SHARE))
+        if speed < full:
+            return self.optimal * full**2 * max(speed - begin, 0.0) / (full - begin)
         if speed < self.transition:
             return self.optimal * speed**2
         return self.slope * (speed - self.torque_speed / (1.0 + SLIP))
@@ -284,7 +291,11 @@ def steady_operation(turbine: Turbine, controller: Controller, wind_speed: float
         at = steady_state(rotor, wind_speed, speed, 0.0)
         return at.torque - controller.torque(speed)
 
-    # tip-speed ratios about the best: slower, a rotor stalls and has other equilibria
-    best = rotor.design_tip_speed_ratio * wind_speed / rotor.radius
-    speed = float(brentq(surplus, 0.55 * best, min(1.3 * best, rated), xtol=1e-12))
+    # about the best tip-speed ratio: far slower, a rotor stalls and has other equilibria
+    low = high = min(rotor.design_tip_speed_ratio * wind_speed / rotor.radius, 0.999 * rated)
+    while surplus(low) < 0.0:
+        low *= 0.97
+    while surplus(high) > 0.0:
+        high = min(1.03 * high, rated)
+    speed = float(brentq(surplus, low, high, xtol=1e-12))
     return steady_state(rotor, wind_speed, speed, 0.0)

@@ -5,8 +5,8 @@ aerofoils and the mean state of the rotor.  What is new: the controller (`contro
 of the wake, blades that bend, a tower that moves and slows the wind, a shaft that twists
 (`turbine`), each of which can be left out.
 
-Left out: second and higher modes and coupling of flap and edge by pitch and twist, nacelle that
-nods or yaws, wind across and up, unsteady aerofoils, wake skew.
+Left out: second and higher modes of blades and tower, blades that twist, a nacelle that nods or
+yaws, wind across and up, unsteady aerofoils, wake skew.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.controller import (
+    CUT_IN_SHARE,
+    FULL_SHARE,
     LEAST_PITCH,
     SLIP,
     Controller,
@@ -32,13 +34,9 @@ from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistor
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.hub_loads.surrogate import DURATION, RATE, Condition
 from fe_drivetrain.hub_loads.turbine import (
-    EDGE_SHAPE,
-    FLAP_SHAPE,
-    ModeIntegrals,
     Physics,
     Turbine,
-    first_moment,
-    mode_integrals,
+    blade_modes,
 )
 from fe_drivetrain.hub_loads.wind import (
     DiscTurbulence,
@@ -49,7 +47,7 @@ from fe_drivetrain.hub_loads.wind import (
     turbulence_sigma,
 )
 
-VERSION = 1
+VERSION = 2
 """Raise whenever a change alters the histories: kept ones of another version are not used."""
 
 SETTLING = 60.0
@@ -181,7 +179,8 @@ def simulate(
     InputError
         The rotor stops or runs away.
     """
-    from fe_drivetrain.hub_loads import turbine_kernel as kernel
+    from fe_drivetrain.hub_loads import turbine_air as air
+    from fe_drivetrain.hub_loads.turbine_kernel import run_turbine
 
     chosen = physics or Physics()
     point = steady_operation(turbine, controller, inflow.speed)
@@ -190,26 +189,24 @@ def simulate(
     wake = np.empty((4, point.radius.size))
     wake[::2] = point.axial * inflow.speed * math.cos(turbine.rotor.shaft_tilt)
     wake[1::2] = point.tangential * point.rotor_speed * point.radius
-    state = np.zeros(kernel.STATES)
-    state[[kernel.PSI, kernel.SPEED, kernel.GENERATOR]] = azimuth, speed, speed
+    state = np.zeros(air.STATES)
+    state[[air.PSI, air.SPEED, air.GENERATOR]] = azimuth, speed, speed
     torque = controller.torque(speed, pitch)
-    state[kernel.TWIST] = torque / turbine.shaft_stiffness if chosen.torsion else 0.0
+    state[air.TWIST] = torque / turbine.shaft_stiffness if chosen.torsion else 0.0
     # blades and tower begin bent as the mean thrust bends them
     mean = even_inflow(turbine, inflow.speed, np.zeros(1), inflow.rate, inflow.shear)
-    rates, sums, loads = np.zeros(kernel.STATES), np.zeros((5, max(wake.shape[1], 6))), np.zeros(6)
+    sums = np.zeros((5, max(wake.shape[1], 6)))
     wind = np.zeros((3, point.radius.size))
-    kernel.met_wind(parts, mean.harmonics[0].astype(float), azimuth, wind, np.zeros(1))
-    kernel.blade_sums(parts, state, pitch, wind, wake, sums)
-    kernel.moving(parts, state, sums, torque, rates, loads)
+    air.met_wind(parts, mean.harmonics[0].astype(float), azimuth, wind, np.zeros(1))
+    air.blade_sums(parts, state, pitch, wind, wake, sums)
     if chosen.tower:
-        state[kernel.FORE] = sums[:3, 0].sum() / (turbine.top_mass * parts.tower_rate**2)
+        state[air.FORE] = sums[:3, 0].sum() / (turbine.top_mass * parts.tower_rate**2)
     if chosen.blades:
-        flap = mode_integrals(turbine, FLAP_SHAPE)
-        stiffness = flap.mass * parts.flap_rate**2 + speed**2 * flap.stiffening
-        own = sums[:3, 2] + turbine.cone * speed**2 * flap.moment
-        state[kernel.FLAP : kernel.FLAP + 3] = own.mean() / stiffness
+        stiffness = parts.stiffness[0] + speed**2 * parts.stiffening[0, 0]
+        own = sums[:3, 4] + turbine.cone * speed**2 * parts.moment[0, 0]
+        state[air.MODES : air.MODES + 3] = own.mean() / stiffness
     steps = math.ceil(1.0 / (inflow.rate * LONGEST_STEP))
-    made, beside = kernel.run_turbine(
+    made, beside = run_turbine(
         parts,
         _control(controller, held),
         np.ascontiguousarray(inflow.harmonics),
@@ -391,22 +388,23 @@ def _mean_shear(turbine: Turbine, inflow: Inflow) -> Floats:
 
 def _parts(turbine: Turbine, physics: Physics, inflow: Inflow):  # type: ignore[no-untyped-def]
     """The turbine as the compiled equations take it (whose module is slow to import)."""
-    from fe_drivetrain.hub_loads.turbine_kernel import Parts
+    from fe_drivetrain.hub_loads.turbine_air import Parts
 
     rotor = turbine.rotor
     radius, weight = rotor.element_radius()
     along = (radius - turbine.blade_root) / (rotor.radius - turbine.blade_root)
 
-    def integrals(found: ModeIntegrals) -> Floats:
-        return np.array([found.force, found.moment, found.mass, found.stiffening])
+    modes = blade_modes(turbine)
+    own = 2.0 * math.pi * np.array([turbine.flap_frequency, turbine.edge_frequency])
+    mass = np.diag(modes.mass)
+    shape = [[np.interp(along, modes.place, f) for f in mode] for mode in modes.shape]
 
     return Parts(
         radius=radius,
         weight=weight,
         chord=rotor.chord(radius),
         twist=rotor.twist(radius),
-        flap=np.asarray(FLAP_SHAPE(along)),
-        edge=np.asarray(EDGE_SHAPE(along)),
+        shape=np.array(shape),
         lift_slope=rotor.lift_slope,
         zero_lift=rotor.zero_lift_angle,
         stall=rotor.stall_angle,
@@ -418,14 +416,15 @@ def _parts(turbine: Turbine, physics: Physics, inflow: Inflow):  # type: ignore[
         cone=turbine.cone,
         gravity=rotor.gravity,
         rotor_mass=rotor.rotor_mass,
-        first_moment=first_moment(turbine),
+        first_moment=modes.first_moment,
         rotor_inertia=turbine.rotor_inertia,
         generator_inertia=turbine.generator_inertia,
-        of_flap=integrals(mode_integrals(turbine, FLAP_SHAPE)),
-        of_edge=integrals(mode_integrals(turbine, EDGE_SHAPE)),
-        flap_rate=2.0 * math.pi * turbine.flap_frequency,
-        edge_rate=2.0 * math.pi * turbine.edge_frequency,
-        blade_damping=turbine.blade_damping,
+        force=modes.force,
+        moment=modes.moment,
+        products=modes.products,
+        stiffening=modes.stiffening,
+        stiffness=mass * own**2,
+        damping=2.0 * turbine.blade_damping * mass * own,
         shaft_stiffness=turbine.shaft_stiffness,
         shaft_damping=turbine.shaft_damping,
         top_mass=turbine.top_mass,
@@ -456,6 +455,8 @@ def _control(controller: Controller, held: bool):  # type: ignore[no-untyped-def
         optimal=controller.optimal,
         slope=controller.slope,
         origin=controller.torque_speed / (1.0 + SLIP),
+        cut_in=CUT_IN_SHARE * controller.torque_speed,
+        full=FULL_SHARE * controller.torque_speed,
         transition=controller.transition,
         torque_speed=controller.torque_speed,
         rated_speed=controller.rated_speed,

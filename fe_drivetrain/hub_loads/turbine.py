@@ -14,12 +14,25 @@ from typing import Literal
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.aero_rotor import Rotor
 
 FLAP_SHAPE = Polynomial([0.0, 0.0, 0.0622, 1.7254, -3.2452, 4.7131, -2.2555])
 EDGE_SHAPE = Polynomial([0.0, 0.0, 0.3627, 2.5337, -3.5772, 2.3760, -0.6952])
 """First modes over the blade's length (0 root, 1 tip): ``NRELOffshrBsline5MW_Blade.dat``."""
+
+_PLACES = (np.arange(17) + 0.5) / 17.0
+_MASS = (
+    *(787.554, 464.487, 414.917, 412.664, 361.957, 346.452, 330.982, 304.395, 272.375, 250.787),
+    *(211.668, 177.049, 153.160, 128.005, 102.116, 77.547, 51.403),
+)
+_TWIST = (
+    *(13.308, 13.308, 13.308, 12.545, 10.770, 9.757, 8.731, 7.647, 6.549, 5.498, 4.462, 3.482),
+    *(2.693, 1.993, 1.292, 0.598, 0.141),
+)
+"""Mass per length [kg/m] and structural twist [deg] at 17 nodes along the blade of the NREL 5 MW
+turbine, as OpenFAST's summary of it prints them (r-test, ``5MW_Land_DLL_WTurb.ED.sum``)."""
 
 _JONKMAN = "NREL 5 MW (Jonkman 2009)"
 
@@ -49,7 +62,7 @@ class Turbine:
         "kg m^2", f"{_JONKMAN}, 38.76e6: 3 blades 11.78e6 about the axis, hub"
     )
     generator_inertia: float = _of("kg m^2", f"{_JONKMAN}, 534.116 x 97^2, at the slow shaft")
-    blade_mass: float = _of("kg", f"{_JONKMAN}, 17 740; falls evenly to nothing at the tip")
+    blade_mass: float = _of("kg", f"{_JONKMAN}, 17 740; shared along it as there")
     blade_root: float = _of("m", f"{_JONKMAN}, radius of the hub 1.5")
     flap_frequency: float = _of("Hz", f"{_JONKMAN}, Table 9-1: first flapwise 0.6993, standing")
     edge_frequency: float = _of("Hz", f"{_JONKMAN}, Table 9-1: first edgewise 1.0793, standing")
@@ -162,64 +175,96 @@ RIGID = Physics(blades=False, tower=False, torsion=False, shadow=False)
 """A rigid turbine whose speed and pitch vary, in a wind without tower."""
 
 
-@dataclass(frozen=True)
-class ModeIntegrals:
-    """Integrals over a blade of mass per length m, radius r and mode shape f.
+FLAP, EDGE = 0, 1
+OUT, IN = 0, 1
+"""Modes, and components out of and in the plane of rotation at zero pitch."""
+
+
+@dataclass(frozen=True, eq=False)
+class BladeModes:
+    """Shapes of the two modes of a blade, and integrals over its mass m and radius r.
+
+    Both bend about the axes of their sections, which structural twist turns, so that each moves out
+    of the plane of rotation and in it.
 
     Attributes
     ----------
-    force : float
-        Of m f [kg].
-    moment : float
-        Of m r f [kg m].
-    mass : float
-        Of m f^2 [kg].
-    stiffening : float
-        Of T f'^2 with the tension T under unit speed of rotation [kg]: stiffness is its product
-        with the square of the speed.
+    place : ndarray, (k,)
+        Share of the length.
+    shape : ndarray, (2, 2, k)
+        By mode, component and place.
+    force, moment : ndarray, (2, 2)
+        Of m and m r, times the shape, by mode and component [kg], [kg m].
+    products : ndarray, (2, 2, 2, 2)
+        Of m times two shapes, by both modes and both components [kg].
+    stiffening : ndarray, (2, 2)
+        Of the tension under unit speed of rotation times slopes of two modes [kg].
+    first_moment : float
+        Of m r [kg m].
     """
 
-    force: float
-    moment: float
-    mass: float
-    stiffening: float
+    place: Floats
+    shape: Floats
+    force: Floats
+    moment: Floats
+    products: Floats
+    stiffening: Floats
+    first_moment: float
+
+    @property
+    def mass(self) -> Floats:
+        """(2, 2), by mode [kg]."""
+        return np.asarray(np.einsum("abcc->ab", self.products))
 
 
-def mode_integrals(turbine: Turbine, shape: Polynomial) -> ModeIntegrals:
-    """Integrals of a mode over a blade whose mass per length falls evenly to nothing at the tip.
+def blade_modes(turbine: Turbine, count: int = 400) -> BladeModes:
+    """Modes and integrals of a blade, along which mass and twist are those of the NREL 5 MW.
 
     Parameters
     ----------
     turbine : Turbine
         Gives mass, root and tip of a blade.
-    shape : Polynomial
-        Over the length, 0 at the root and 1 at the tip.
+    count : int
+        Places of the integration.
     """
     length = turbine.rotor.radius - turbine.blade_root
-    density = 2.0 * turbine.blade_mass * Polynomial([1.0, -1.0])  # over the share of the length
-    radius = Polynomial([turbine.blade_root, length])
-
-    def whole(integrand: Polynomial) -> float:
-        return float(integrand.integ()(1.0))
-
-    inside = (density * radius).integ()
-    tension = float(inside(1.0)) - inside
-    return ModeIntegrals(
-        whole(density * shape),
-        whole(density * radius * shape),
-        whole(density * shape**2),
-        whole(tension * shape.deriv() ** 2) / length,
+    step = 1.0 / count
+    place = step * (np.arange(count) + 0.5)
+    density = np.interp(place, _PLACES, _MASS)
+    mass = turbine.blade_mass * density / density.sum()
+    radius = turbine.blade_root + length * place
+    twist = np.radians(np.interp(place, _PLACES, _TWIST))
+    slope = np.empty((2, 2, count))
+    for mode, polynomial in ((FLAP, FLAP_SHAPE), (EDGE, EDGE_SHAPE)):
+        bent = polynomial.deriv(2)(place)
+        own, other = np.cos(twist) * bent, np.sin(twist) * bent
+        if mode == FLAP:  # at a twist, the suction side looks into the sense of rotation
+            slope[mode] = _integral([own, other], step)
+        else:
+            slope[mode] = _integral([-other, own], step)
+    shape = _integral(slope, step)
+    tension = np.cumsum((mass * radius)[::-1])[::-1] - 0.5 * mass * radius
+    return BladeModes(
+        place,
+        shape,
+        shape @ mass,
+        shape @ (mass * radius),
+        np.einsum("acx,bdx,x->abcd", shape, shape, mass),
+        np.einsum("acx,bcx,x->ab", slope, slope, tension) * step / length,
+        float(mass @ radius),
     )
 
 
-def first_moment(turbine: Turbine) -> float:
-    """Of one blade about the axis of rotation [kg m]."""
-    length = turbine.rotor.radius - turbine.blade_root
-    return turbine.blade_mass * (turbine.blade_root + length / 3.0)
+def _integral(values: list[Floats] | Floats, step: float) -> Floats:
+    """From the root to each of the places, which are in the middle of their steps."""
+    whole = np.asarray(values)
+    return np.asarray((np.cumsum(whole, axis=-1) - 0.5 * whole) * step)
 
 
-def natural_frequencies(turbine: Turbine, rotor_speed: float) -> dict[str, float]:
-    """Frequencies of the modes that a turning rotor has without air [Hz].
+def natural_frequencies(
+    turbine: Turbine, rotor_speed: float, pitch: float = 0.0
+) -> dict[str, float]:
+    """Frequencies of the modes that a turning rotor has without air, on a tower that stands [Hz].
 
     Parameters
     ----------
@@ -227,25 +272,37 @@ def natural_frequencies(turbine: Turbine, rotor_speed: float) -> dict[str, float
         The turbine.
     rotor_speed : float
         [rad/s].
+    pitch : float
+        Of all blades [rad].
 
     Returns
     -------
     dict
-        "flap" and "edge" of one blade on a hub that stands; "edge, all blades" with a hub and rotor
-        free to answer (shaft free at the generator); "torsion" of rigid rotor and generator.
-        Both are in the frame that turns: forces on a standing frame have them plus and minus 1P.
+        "flap" and "edge" of one blade while the others move against it; "flap, all blades" and
+        "edge, all blades" with a rotor that answers and a shaft free at the generator; "torsion" of
+        rigid rotor and generator.  Forces on a standing frame have the first two plus and minus 1P.
     """
-    flap, edge = (mode_integrals(turbine, shape) for shape in (FLAP_SHAPE, EDGE_SHAPE))
-    square = rotor_speed**2
-    of_flap = (2.0 * np.pi * turbine.flap_frequency) ** 2 + square * flap.stiffening / flap.mass
-    of_edge = (2.0 * np.pi * turbine.edge_frequency) ** 2
-    of_edge += square * (edge.stiffening / edge.mass - 1.0)
-    together = 1.0 - 3.0 * edge.moment**2 / (edge.mass * turbine.rotor_inertia)
+    modes = blade_modes(turbine)
+    turn = np.array([[np.cos(pitch), -np.sin(pitch)], [np.sin(pitch), np.cos(pitch)]])
+    own = 2.0 * np.pi * np.array([turbine.flap_frequency, turbine.edge_frequency])
+    in_plane = np.einsum("c,d,abcd->ab", turn[IN], turn[IN], modes.products)
+    stiffness = np.diag(np.diag(modes.mass) * own**2)
+    stiffness = stiffness + rotor_speed**2 * (modes.stiffening - in_plane)
+    moment = modes.moment @ turn[IN]
+    # the rotor, of which nothing holds the angle, takes its share of inertia
+    together = modes.mass - 3.0 * np.outer(moment, moment) / turbine.rotor_inertia
+
+    def frequencies(mass: Floats) -> list[float]:
+        values = np.linalg.eigvals(np.linalg.solve(mass, stiffness))
+        return [math.sqrt(v) / (2.0 * math.pi) for v in np.sort(values.real).tolist()]
+
+    flap, edge = frequencies(modes.mass)
+    flap_all, edge_all = frequencies(together)
     torsion = turbine.shaft_stiffness * (1 / turbine.rotor_inertia + 1 / turbine.generator_inertia)
-    squares = {
-        "flap": of_flap,
-        "edge": of_edge,
-        "edge, all blades": of_edge / together,
-        "torsion": torsion,
+    return {
+        "flap": flap,
+        "edge": edge,
+        "flap, all blades": flap_all,
+        "edge, all blades": edge_all,
+        "torsion": math.sqrt(torsion) / (2.0 * math.pi),
     }
-    return {name: math.sqrt(value) / (2.0 * math.pi) for name, value in squares.items()}
