@@ -13,7 +13,7 @@ from fe_drivetrain.suite import Page, Record, Run
 SOURCE = "Al-Hamadani 2018, chapter 3"
 #: What the emergency stop is compared with: median range, median mean (normal operation over it),
 #: negative mean, equivalent load; the thesis gives equivalent loads of the fast shaft.
-STATED = {
+STATED: dict[str, dict[str, tuple[float | None, ...]]] = {
     "fast": {
         "normal operation": (5.0, None, None, 3.65),
         "emergency stop": (1.0, 2.0, 1.0, 1.0),

@@ -1,6 +1,6 @@
 """Loads on a main bearing over the operating range: 330 histories with a controller."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from fe_drivetrain.hub_loads import (
 from fe_drivetrain.suite import Page, Record, Run, grouped
 
 #: As the loads on the bearing are named, with the component or plane of it.
-LOADS = {
+LOADS: dict[str, Callable[[Floats], Floats]] = {
     "axial force [kN]": lambda loads: loads[:, 0],
     "radial force [kN]": lambda loads: np.hypot(*loads[:, 1:3].T),
     "moment [kN m]": lambda loads: np.hypot(*loads[:, 4:6].T),
@@ -158,59 +158,59 @@ def statements(page: Page, means: Sequence[Record]) -> None:
     }
     first, last = of(f"mean {radial}")[[0, -1]]
     radial_max = of(f"largest {radial}")[[0, -1]]
-    rows = [
-        ["axial: the mean peaks near rated wind (11 m/s)", f"at {peak:g} m/s", 8.0 < peak < 14.0],
-        [
+    rows: list[tuple[str, str, bool]] = [
+        ("axial: the mean peaks near rated wind (11 m/s)", f"at {peak:g} m/s", 8.0 < peak < 14.0),
+        (
             "axial: its mean is nearly the same for all turbulence",
             "high " + ratio(f"mean {axial}", high, low) + " low, from 12 m/s",
             near(f"mean {axial}", high, low),
-        ],
-        [
+        ),
+        (
             "axial: its largest grows with turbulence",
             "high " + ratio(f"largest {axial}", high, low) + " low",
             bool((of(f"largest {axial}", high) > of(f"largest {axial}", low))[above].all()),
-        ],
-        ["radial: its mean falls with wind", f"{first:.0f} to {last:.0f} kN", bool(last < first)],
-        [
+        ),
+        ("radial: its mean falls with wind", f"{first:.0f} to {last:.0f} kN", bool(last < first)),
+        (
             "radial: its largest grows with wind",
             f"{radial_max[0]:.0f} to {radial_max[1]:.0f} kN",
             bool(radial_max[1] > radial_max[0]),
-        ],
-        [
+        ),
+        (
             "radial: turbulence hardly changes its mean",
             "high " + ratio(f"mean {radial}", high, low) + " low",
             near(f"mean {radial}", high, low),
-        ],
-        [
+        ),
+        (
             "radial: the steepest shear has the least mean",
             "shear 0.4 " + ratio(f"mean {radial}", steep, flat) + " shear 0.1",
             bool((of(f"mean {radial}", steep) < of(f"mean {radial}", flat))[above].all()),
-        ],
-        [
+        ),
+        (
             "radial: it has the least maximum, too",
             "shear 0.4 " + ratio(f"largest {radial}", steep, flat) + " shear 0.1",
             bool((of(f"largest {radial}", steep) < of(f"largest {radial}", flat))[above].all()),
-        ],
-        [
+        ),
+        (
             "moment: its mean more than doubles from cut-in to cut-out",
             f"{growth[BASE]:.2f} times",
             bool(growth[BASE] > 2.0),
-        ],
-        [
+        ),
+        (
             "moment: it does so the more the higher turbulence is",
             f"high {growth[high]:.2f}, low {growth[low]:.2f} times",
             bool(growth[high] > growth[low]),
-        ],
-        [
+        ),
+        (
             "moment: its largest grows fourfold at high turbulence",
             f"{largest[high]:.2f} times",
             bool(largest[high] > 3.5),
-        ],
-        [
+        ),
+        (
             "moment: shear raises mean and largest strongly",
             "mean, shear 0.4 " + ratio(f"mean {moment}", steep, flat) + " shear 0.1",
             bool((of(f"mean {moment}", steep) > 1.2 * of(f"mean {moment}", flat))[above].all()),
-        ],
+        ),
     ]
     page.section("Statements of section 5.2.1")
     page.table(

@@ -212,8 +212,8 @@ def drawn_cycles(asked: Statistics, random: np.random.Generator) -> tuple[Floats
 
     power = 2.0
     if asked.equivalent is not None:
-        total = asked.seconds * asked.equivalent**SLOPE
-        total -= float((small**SLOPE).sum()) + asked.median**SLOPE
+        total = float(asked.seconds * asked.equivalent**SLOPE)
+        total -= float((small**SLOPE).sum() + asked.median**SLOPE)
 
         def surplus(log_power: float) -> float:
             return float((upper(math.exp(log_power)) ** SLOPE).sum()) / total - 1.0
