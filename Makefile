@@ -7,4 +7,4 @@ demo: ## run the main-bearing study and print where its report is
 
 test: ## run the whole test suite
 	@.ci/setup test
-	@.venv/bin/python -m pytest -q
+	@.venv/bin/python -m pytest -q -n auto --dist loadgroup

@@ -1,32 +1,34 @@
 """What several test modules use: coarse scenes, built once a session, and commands in a folder."""
 
-import json
 import os
 import shutil
 import signal
-import subprocess
 import sys
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import filelock
 import hypothesis
 import numpy as np
 import pytest
-from quick_cases import PROBLEMS
 from tiny_case import SCRIPT, Result, count
 
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common import cache, threads
+from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.report.results import Problem, Results, read_results
+from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case
+from fe_drivetrain.suite.result_folders import result_folder, run_case
+from fe_drivetrain.suite.resuming import finished_cases
+from fe_drivetrain.suite.suite import run_cases
 
 # The same few examples each time, or many new ones: HYPOTHESIS_PROFILE=thorough. How long an
 # example takes depends on who else works on the machine, so there is no deadline.
@@ -79,81 +81,76 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
     return report
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """As many processes of tests as there are cores, those of a second thread counted, too."""
+    return threads.cores()
+
+
+@pytest.fixture(scope="session")
+def shared_folder(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that all processes of these tests share."""
+    base = tmp_path_factory.getbasetemp()
+    return base.parent if hasattr(request.config, "workerinput") else base
+
+
 @pytest.fixture(scope="session", autouse=True)
-def apart_from_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+def apart_from_the_user(shared_folder: Path) -> Iterator[None]:
     """A cache for the tests alone, and one process with one thread; tests of these set their own.
 
-    The cases take the other core meanwhile: two threads would wait for each other in every loop.
+    Other tests take the other cores meanwhile: two threads would wait for each other in every loop.
     """
     with pytest.MonkeyPatch.context() as patch, threads.held_to_one_thread():
-        patch.setenv(cache.CACHE_VARIABLE, str(tmp_path_factory.mktemp("cache")))
+        patch.setenv(cache.CACHE_VARIABLE, str(shared_folder / "cache"))
         patch.setenv(threads.CORES_VARIABLE, "1")
         yield
 
 
+#: A folder of quick runs to take results from, where the same program has made them.
+QUICK_VARIABLE = "FE_DRIVETRAIN_QUICK_RUNS"
+
+
 @dataclass(frozen=True)
 class QuickRun:
-    """Results of the quick cases that the marks ``quick`` of all tests name, run in one go."""
+    """Results of quick cases, each run once for all tests."""
 
     folder: Path
-    problems: Mapping[str, Problem]
 
     def __call__(self, name: str) -> Results:
         """Results of a case; the test is skipped where a program is missing that it needs."""
-        problem = self.problems.get(name)
-        if problem is not None and problem.is_missing_tool:
-            pytest.skip(problem.message)
-        assert problem is None, problem
-        return read_results(self.folder.joinpath(*name.split("/")) / "results.json")
+        case = case_module.all_cases()[name]
+        with filelock.FileLock(self.folder / f"{name.replace('/', '-')}.lock"):
+            if not finished_cases([case], self.folder, quick=True):
+                self._run(case)
+        return read_results(result_folder(self.folder, case) / "results.json")
+
+    def _run(self, case: Case) -> None:
+        if case.alone:
+            problem = run_cases([case], self.folder, quick=True).get(case.name)
+            if problem is not None and problem.is_missing_tool:
+                pytest.skip(problem.message)
+            assert problem is None, problem
+            return
+        try:
+            run_case(case, result_folder(self.folder, case), quick=True)
+        except MissingToolError as error:
+            pytest.skip(str(error))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests of whole cases come last: these run beside all others meanwhile."""
+    """Tests of whole cases come last, each by itself; those of a file stay in one process."""
     items.sort(key=lambda item: item.get_closest_marker("quick") is not None)
-
-
-@pytest.fixture(scope="session", autouse=True)
-def quick_cases(
-    request: pytest.FixtureRequest,
-    tmp_path_factory: pytest.TempPathFactory,
-    apart_from_the_user: None,
-) -> Iterator[tuple[Path, subprocess.Popen[bytes]] | None]:
-    """Every case that a selected test wants, in the background, on all cores but one."""
-    wanted = {
-        name
-        for item in request.session.items
-        for mark in item.iter_markers("quick")
-        for name in mark.args
-    }
-    if not wanted:
-        yield None
-        return
-    folder = tmp_path_factory.mktemp("quick")
-    script = Path(__file__).with_name("quick_cases.py")
-    # one core is these tests' own: three processes on two would each wait for the others
-    cores = max(1, (os.cpu_count() or 1) - 1)
-    environment = os.environ | threads.thread_limits(cores) | {threads.CORES_VARIABLE: str(cores)}
-    with (
-        folder.with_suffix(".log").open("wb") as log,
-        subprocess.Popen(
-            [sys.executable, str(script), str(folder), *sorted(wanted)],
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=log,
-        ) as process,
-    ):
-        yield folder, process
-        process.terminate()
+    for item in items:
+        if item.get_closest_marker("quick") is None:
+            item.add_marker(pytest.mark.xdist_group(item.path.name))
 
 
 @pytest.fixture(scope="session")
-def quick_run(quick_cases: tuple[Path, subprocess.Popen[bytes]]) -> QuickRun:
-    """Results of those cases, once all are done."""
-    folder, process = quick_cases
-    assert process.wait() == 0, folder.with_suffix(".log").read_text()
-    problems = json.loads((folder / PROBLEMS).read_text())
-    return QuickRun(folder, {name: Problem(*problem) for name, problem in problems.items()})
+def quick_run(shared_folder: Path) -> QuickRun:
+    """Results of the cases that the mark ``quick`` of a test names."""
+    folder = Path(os.environ.get(QUICK_VARIABLE) or shared_folder / "quick")
+    folder.mkdir(exist_ok=True)
+    return QuickRun(folder)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -141,7 +141,7 @@ def _newton(
     w, base, target = start.copy(), np.empty(m), np.empty(m)
     _projected(B, load, target)
     size = _norm(target)
-    evaluations, steps, total = 0, 0, known
+    evaluations, steps, total, firm = 0, 0, known, 1e-3
     _expanded(B, w, u)
     if known < 0.0:
         total = evaluate(u, bearing, F, K, s, f)
@@ -155,8 +155,8 @@ def _newton(
         if norm <= allowed or steps == MAX_STEPS:
             return steps, evaluations, over_allowed(norm, allowed), total
         # Newton's direction; what no contact carries yet is as soft as a thousandth of all contacts
-        # and stiffens as the residual goes.
-        mu = scale * (1e-3 * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
+        # and stiffens as the residual goes; softer still where steps turn out too short.
+        mu = scale * (firm * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
         for i in range(m):
             for j in range(i + 1):
                 A[i, j] = mu * soft[i, j]
@@ -192,6 +192,10 @@ def _newton(
             )
             if step in (low, high):
                 break
+        if step > 1.0:
+            firm *= 0.1
+        elif step < 0.5:
+            firm = min(10.0 * firm, 1e-3)
         steps += 1
 
 

@@ -114,7 +114,7 @@ def _newton(
     b, c, db, dc = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     at_b, at_c = np.empty(n), np.empty(n)
     size = np.sqrt(_dot(load, load))
-    steps = 0
+    steps, firm = 0, 1e-3
     for j in range(n):
         b[j], c[j] = _dot(body.approach[j], q), _dot(body.lean[j], q)
     total = _sums(b, c, bearing, s)
@@ -126,8 +126,8 @@ def _newton(
         if norm <= allowed or steps == MAX_STEPS:
             return steps, evaluations, over_allowed(norm, allowed)
         # What no contact carries yet is as soft as a thousandth of all contacts, and stiffens as
-        # the residual goes.
-        mu = scale * (1e-3 * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
+        # the residual goes; softer still where steps turn out too short.
+        mu = scale * (firm * min(1.0, norm / max(size, 1e-300)) if damped else 1e-14)
         _tangent(body, s, A)
         for i in range(m):
             for k in range(i + 1):
@@ -164,6 +164,10 @@ def _newton(
             )
             if step in (low, high):
                 break
+        if step > 1.0:
+            firm *= 0.1
+        elif step < 0.5:
+            firm = min(10.0 * firm, 1e-3)
         for i in range(m):
             q[i] += step * d[i]
         for j in range(n):
