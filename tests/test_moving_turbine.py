@@ -37,6 +37,7 @@ from fe_drivetrain.hub_loads.moving_turbine import (
     turbine_histories,
     turbine_history,
 )
+from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.hub_loads.surrogate import Condition
 from fe_drivetrain.hub_loads.turbine import (
     RIGID,
@@ -369,6 +370,14 @@ def test_histories_that_were_kept_are_those_that_are_made(tmp_path: Path) -> Non
     for name in ("azimuth", "rotor_speed", "pitch", "generator_torque", "power", "wind_speed"):
         assert np.array_equal(getattr(again[1], name), getattr(alone, name))
     assert alone.history.loads.shape == (200, 6)
+    file = tmp_path / "made.csv"
+    alone.write(file)
+    read = read_recorded(file)
+    assert np.array_equal(read.history.loads, alone.history.loads)
+    assert read.rotor_speed is not None
+    assert np.array_equal(read.rotor_speed, alone.rotor_speed)
+    assert read.wind_speed is not None
+    assert np.array_equal(read.wind_speed, alone.wind_speed)
     turned = trapezoid(alone.rotor_speed, dx=0.1)
     assert alone.azimuth[-1] - alone.azimuth[0] == pytest.approx(turned, rel=1e-3)
 

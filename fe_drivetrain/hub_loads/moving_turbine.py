@@ -12,6 +12,7 @@ yaws, wind across and up, unsteady aerofoils, wake skew.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 
@@ -30,6 +31,7 @@ from fe_drivetrain.hub_loads.controller import (
     designed_controller,
     steady_operation,
 )
+from fe_drivetrain.hub_loads.csv_table import write_csv
 from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.hub_loads.surrogate import DURATION, RATE, Condition
@@ -116,6 +118,28 @@ class TurbineHistory:
     def recorded(self) -> Recorded:
         """The loads with speed and wind, as a file of measurements gives them."""
         return Recorded(self.history, self.rotor_speed, self.wind_speed)
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write a table that the command ``loads`` and `read_recorded` read.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A file that ends in .csv.
+
+        Raises
+        ------
+        InputError
+            It cannot be written.
+        """
+        beside = {
+            "rotor speed [rad/s]": self.rotor_speed,
+            "wind speed [m/s]": self.wind_speed,
+            "azimuth [rad]": self.azimuth,
+            "pitch [rad]": self.pitch,
+            "generator torque [N m]": self.generator_torque,
+        }
+        write_csv(self.history, path, beside)
 
 
 def even_inflow(
