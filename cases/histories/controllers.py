@@ -48,7 +48,7 @@ def run(run: Run, page: Page) -> None:
         check_controllers(page, turbine, controllers)
     seeds = range(1, 2 if run.quick else 7)
     winds = WINDS[1:2] if run.quick else WINDS
-    length = 60.0 if run.quick else 600.0
+    length = 30.0 if run.quick else 600.0
     grid = [Condition(v, "medium", 0.2, seed) for v in winds for seed in seeds]
     found: dict[str, list[Record]] = {}
     shown: dict[str, Floats] = {}
@@ -220,7 +220,7 @@ def check_controllers(page: Page, turbine: Turbine, controllers: dict[str, Contr
         _, beside = simulate(
             level,
             controller,
-            even_inflow(level, 14.0, np.zeros(4000), 10.0),
+            even_inflow(level, 14.0, np.zeros(1500), 10.0),
             RIGID,
             start=(0.97 * at.rotor_speed, at.pitch),
         )

@@ -45,7 +45,7 @@ def run(run: Run, page: Page) -> None:
             grid,
             turbine,
             controller,
-            duration=60.0 if run.quick else 600.0,
+            duration=30.0 if run.quick else 600.0,
             progress=lambda done: run.report(f"histories ({done} of {len(grid)})"),
         )
         for condition, history in zip(grid, made, strict=True):
@@ -62,7 +62,7 @@ def run(run: Run, page: Page) -> None:
     for name in LOADS:
         page.section(name.partition(" [")[0].capitalize())
         page.sweep(
-            f"Mean {name}, over six seeds",
+            f"Mean {name}, mean of seeds",
             means,
             "wind [m/s]",
             f"mean {name}",
@@ -74,7 +74,7 @@ def run(run: Run, page: Page) -> None:
             ),
         )
         page.sweep(
-            f"Largest {name}, over six seeds",
+            f"Largest {name}, mean of seeds",
             means,
             "wind [m/s]",
             f"largest {name}",
