@@ -1,4 +1,4 @@
-"""Element sizes that vary in space as they are told to, beside those of the parts."""
+"""Element sizes that vary in space as prescribed, beside those of the parts."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def _take_back_signals() -> None:
     """Undo what gmsh does behind Python's back.
 
     From then on a terminate signal ends the process at once, and so does writing to a pipe that
-    nobody reads any more.
+    is not read any more.
     """
     if threading.current_thread() is not threading.main_thread():
         return  # only there can it be undone

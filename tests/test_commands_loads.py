@@ -10,13 +10,16 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import loads_page
 from fe_drivetrain.commands.loads_digest import Options, digest
+from fe_drivetrain.commands.loads_reactions import scene_reactions
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded, read_recorded
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.scene.reading import library_scene
 
 HERTZ = 0.25  # of the rotor
 COLUMNS = "--channel", "wind speed=Vhub", "--channel", "rotor speed=N"
@@ -147,6 +150,72 @@ def test_another_set_is_compared_by_wind(invoke: Callable[..., Result], historie
     assert float(torque["these files"]) == pytest.approx(float(torque["the others"]))
 
 
+def test_reactions_of_a_scene_are_shown_and_compared(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out = histories.parent / "out"
+    others = histories.parent / "others"
+    others.mkdir()
+    for name in "cd":
+        write_history(others / f"{name}.csv", 70.1, 0.1, 8.0)
+    status, printed, err = invoke(
+        *("loads", str(histories), "--out", str(out), *COLUMNS, "--against", str(others)),
+        *("--scene", "main_bearing_spherical"),
+    )
+    assert status == 0, err
+    rows = {row["reaction"]: row for row in rows_of(out / "reactions.csv")}
+    # the bearing takes the whole thrust, and the torque goes on to the gearbox
+    assert float(rows["main_bearing, Fx [kN]"]["mean"]) == pytest.approx(200.0, rel=1e-6)
+    assert "main_bearing, Mx [kN m]" not in rows
+    assert float(rows["gearbox, Mx [kN m]"]["mean"]) == pytest.approx(900.0, rel=1e-3)
+    three = float(rows["main_bearing, Fz [kN]"]["3P"])
+    assert float(rows["gearbox, Fz [kN]"]["3P"]) == pytest.approx(three, rel=1e-3)  # one couple
+    compared = {row["quantity"] for row in rows_of(out / "beside.csv")}
+    assert {"My, 3P [kN m]", "main_bearing: Fz, DEL of m = 4 at 1 Hz [kN]"} <= compared
+    assert "main_bearing: loops of force, share of time [%]" in compared
+    assert "8 m/s:" in printed
+    status, _, err = invoke("loads", str(histories), "--scene", "bonded", "--level", "3")
+    assert status == 2
+    assert "choose 1, a beam, or 4" in err
+
+
+def test_any_other_channel_has_statistics_in_its_own_unit(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out, others = histories.parent / "out", histories.parent / "others"
+    others.mkdir()
+    for name in "cd":
+        write_history(others / f"{name}.csv", 70.1, 0.1, 8.0)
+    command = ("loads", str(histories), "--out", str(out), *COLUMNS, "--also", "vhub")
+    status, _, err = invoke(*command, "--also", "N", "--against", str(others))
+    assert status == 0, err
+    rows = {row["channel"]: row for row in rows_of(out / "other_channels.csv")}
+    assert float(rows["N [rpm]"]["mean"]) == pytest.approx(60.0 * HERTZ)
+    assert float(rows["N [rpm]"]["DEL, m = 3"]) == 0.0
+    wind = rows["Vhub [m/s]"]
+    assert float(wind["least"]) == pytest.approx(7.0, abs=0.01)
+    # 0.3 rad/s and a range of 2 m/s
+    assert float(wind["DEL, m = 3"]) == pytest.approx(2.0 * (0.3 / 2 / np.pi) ** (1 / 3), rel=0.05)
+    windows = rows_of(out / "other_windows.csv")
+    assert {row["file"] for row in windows} == {"a", "b"}
+    compared = {row["quantity"]: row for row in rows_of(out / "beside.csv")}
+    assert float(compared["N [rpm], mean"]["these files"]) == pytest.approx(60.0 * HERTZ)
+    status, _, err = invoke(*command, "--also", "Q")
+    assert status == 2
+    assert "there is no channel 'Q'" in err
+
+
+def test_reactions_balance_hub_loads_and_weights(rng: np.random.Generator) -> None:
+    found = scene_reactions(library_scene("main_bearing_bonded"), 1)
+    loads = 1e5 * rng.standard_normal((50, 6))
+    history = LoadHistory("random", np.arange(50.0), loads)
+    forces = sum(reaction[:, :3] for reaction in found.of(history).values()) - loads[:, :3]
+    weights = forces.mean(axis=0)
+    np.testing.assert_allclose(forces, np.broadcast_to(weights, (50, 3)), atol=1e-2)
+    assert weights[2] < -100e3
+    np.testing.assert_allclose(weights[:2], 0.0, atol=1e-2)
+
+
 def test_files_together_are_what_they_are_apart(rng: np.random.Generator) -> None:
     options = Options({}, 0.0, (3.0,), "half", 0.0, 1.5)
     walk = 1e5 * rng.standard_normal((2400, 6)).cumsum(axis=0)
@@ -177,10 +246,45 @@ def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Pat
         (["--skip", "100"], "skip less"),
         (["--site", "VII"], "choose I, II, III"),
         (["--slope", "50"], "must be from 1 to 20"),
+        (["--ultimate", "My=3 kN"], "as in 'My=25 MNm'"),
+        (["--ultimate", "My=2 kNm"], "give the load that breaks the part"),
+        (["--winds", "24:4"], "as in 4:24"),
+        (["--transient", "a.csv=3"], "give --site, too"),
+        (["--transient", "a.csv=often", "--site", "I"], "as in 'stops/*.outb=700'"),
     ):
         status, _, err = invoke("loads", str(histories), *arguments)
         assert status == 2, arguments
         assert said in err
+
+
+def test_a_lifetime_has_the_hours_of_its_winds_and_the_events_of_its_years(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    out = histories.parent / "out"
+    write_history(histories.parent / "stop.csv", 30.05, 0.05, 9.0)
+    more = ("--site", "9", "--shape", "2.2", "--years", "25", "--winds", "4:14", "--target", "2")
+    events = ("--transient", f"{histories.parent}/stop.csv=700", "--ultimate", "My=5 MN m")
+    command = ("loads", str(histories), "--out", str(out), *COLUMNS, "--frequency", "2")
+    status, printed, err = invoke(*command, *more, *events)
+    assert status == 0, err
+    assert "Capture matrix: 20 windows are missing at 11 of 11 wind speeds." in printed
+    hours = sum(float(row["hours"]) for row in rows_of(out / "site.csv"))
+    levels = rows_of(out / "lifetime_levels.csv")
+    of_torque = [r for r in levels if r["channel"] == "Mx" and r["of"] == "hours [h]"]
+    with_stops = hours + 25 * 700 * 30.05 / 3600
+    assert sum(float(r["amount"]) for r in of_torque) == pytest.approx(with_stops)
+    shares = rows_of(out / "lifetime_damage.csv")
+    own = [r for r in shares if (r["channel"], r["slope"]) == ("Mx", "4")]
+    assert {r["from"] for r in own} == {"8 m/s", "12 m/s", "stop"}
+    assert sum(float(r["share of damage [%]"]) for r in own) == pytest.approx(100.0)
+    figures = read_results(out / "results.json").figures
+    about_zero = figures["equivalent_loads_about_zero"]["My"]["4.0"]
+    as_counted = figures["equivalent_loads"]["My"]["4.0"]
+    # cycles of a range of 600 kN m about 100: Goodman's factor is 5000 / 4900
+    assert about_zero / as_counted == pytest.approx(50.0 / 49.0, rel=1e-3)
+    equivalent = rows_of(out / "equivalent_loads.csv")
+    my = next(r for r in equivalent if (r["file"], r["channel"], r["slope"]) == ("a", "My", "3"))
+    assert float(my["DEL at 2 Hz"]) == pytest.approx(600e3 * (0.75 / 2.0) ** (1 / 3), rel=0.02)
 
 
 def test_parquet_without_its_package_is_one_sentence(
@@ -211,12 +315,13 @@ def test_loads_under_other_names_are_read(tmp_path: Path) -> None:
         + "".join(f"{k},{k},2,3,4,5,{k * k}\n" for k in range(5))
     )
     names = dict(zip(("time", *FORCES), "tabcdef", strict=True))
-    found = read_recorded(file, names).history
+    mapped = ChannelMap(channels=names)
+    found = read_recorded(file, mapped).history
     assert found.loads[:, 0].tolist() == [0.0, 1e3, 2e3, 3e3, 4e3]
     assert found.loads[2, 1:].tolist() == [2.0, 3.0, 4.0, 5.0, 4.0]
     twice = tmp_path / "twice.csv"
     twice.write_text(file.read_text().replace("f [N m]", "f [N m],a [kN]").replace("\n", ",9\n"))
-    assert read_recorded(twice, names).history.loads[1, 0] == 1e3  # the first of that name
+    assert read_recorded(twice, mapped).history.loads[1, 0] == 1e3  # the first of that name
     file.write_text(file.read_text().replace("\n3,3", "\n3,three"))
     with pytest.raises(InputError, match="'three' to float64 at row 3, column 2"):
-        read_recorded(file, names)
+        read_recorded(file, mapped)

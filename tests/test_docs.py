@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from fe_drivetrain.geometry import Bearing, Flange, Housing, MeshSizes, Section, Shaft
+from fe_drivetrain.hub_loads.channel_map import ChannelMap, read_channel_map
 from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.scene.bearing_unit import BearingUnit
 from fe_drivetrain.scene.materials import Material
@@ -53,3 +54,18 @@ def test_the_library_example_of_the_readme_runs():
     assert done.returncode == 0, done.stderr
     equilibrium, superposition = (float(x) for x in done.stdout.splitlines()[-1].split())
     assert max(equilibrium, superposition) < 1e-8
+
+
+def test_the_example_of_load_histories_runs_and_the_mapping_is_valid(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "loads.md").read_text(encoding="utf-8")
+    code = re.search(r"```python\n(import numpy.*?)```", text, re.DOTALL).group(1)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    # a sine of 1 rad/s: 95.5 cycles of a range of 2 MN m in 600 s
+    size = 2e6 * (600.0 / (2.0 * 3.14159) / 600.0) ** 0.1
+    assert float(done.stdout.split()[0]) == pytest.approx(size, rel=0.01)
+    (tmp_path / "map.yaml").write_text(re.search(r"```yaml\n(.*?)```", text, re.DOTALL).group(1))
+    mapping = read_channel_map(tmp_path / "map.yaml")
+    assert mapping.rotating
+    for key in ChannelMap.model_fields:
+        assert f"`{key}`" in text or f"{key}:" in text

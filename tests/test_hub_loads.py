@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import struct
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from fe_drivetrain.hub_loads.files import (
 )
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.openfast import read_openfast, turn_to_fixed
+from fe_drivetrain.hub_loads.openfast_output import openfast_channels
 
 #: A folder with output files of OpenFAST, which are not distributed with the project.
 REAL_FOLDER = Path(os.environ.get("FE_DRIVETRAIN_OPENFAST", "no folder is given"))
@@ -330,6 +332,49 @@ def test_binary_and_text_files_agree_within_the_packing(tmp_path: Path) -> None:
     azimuth_step = 2.0 * np.pi / 65535.0
     tolerance = 2.0 * (1e3 * widest / 65535.0 + azimuth_step * np.abs(text.loads).max())
     np.testing.assert_allclose(binary.loads, text.loads, atol=tolerance)
+
+
+@pytest.mark.parametrize("identifier", [1, 2, 3, 4])
+def test_binary_files_of_each_kind_are_read_as_by_the_package(
+    tmp_path: Path, identifier: int
+) -> None:
+    from openfast_io.FAST_output_reader import load_binary_output
+
+    names, units = ["Time", "RotThrust", "-RotTorq", "Other"], ["(s)", "(kN)", "(kN-m)", "(m)"]
+    packed = np.random.default_rng(identifier).integers(-32768, 32767, (50, 3))
+    length = 12 if identifier == 4 else 10
+    parts = [struct.pack("<h", identifier)]
+    parts += [struct.pack("<h", length)] * (identifier == 4)
+    parts += [struct.pack("<ii", 3, 50), struct.pack("<dd", 4.0, 0.5)]
+    parts += [np.array([[2.0, 4.0, 8.0], [1.0, -2.0, 3.0]], "<f4").tobytes()] * (identifier != 3)
+    parts += [struct.pack("<i", 5), b"about"]
+    parts += [text.ljust(length).encode() for text in (*names, *units)]
+    parts += [np.arange(50, dtype="<i4").tobytes()] * (identifier == 1)
+    parts += [packed.astype("<f8" if identifier == 3 else "<i2").tobytes()]
+    file = tmp_path / "kind.outb"
+    file.write_bytes(b"".join(parts))
+    expected, info, _ = load_binary_output(str(file))
+    found = openfast_channels(file, {"time", "rottorq", "rotthrust"})
+    assert list(found) == ["time", "rotthrust", "rottorq", "other"]
+    assert [c.unit for c in found.values()] == info["attribute_units"]
+    np.testing.assert_allclose(found["time"].values, expected[:, 0])
+    np.testing.assert_allclose(found["rotthrust"].values, expected[:, 1])
+    np.testing.assert_allclose(found["rottorq"].values, -expected[:, 2])  # reversed by OutList
+    assert not found["other"].values.size
+
+
+def test_a_file_of_many_channels_takes_the_memory_of_those_that_are_used(tmp_path: Path) -> None:
+    columns = fixed_columns() | {f"X{k}": ("(m)", TIME) for k in range(300)}
+    long = {n: (unit, np.tile(values, 10)) for n, (unit, values) in columns.items()}
+    long["Time"] = ("(s)", 0.05 * np.arange(4000))
+    file = write_outb(tmp_path / "wide.outb", long)
+    read_openfast(file)
+    tracemalloc.start()
+    read_openfast(file)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    # a block of packed samples, and some copies of seven channels; all channels are 10 MB
+    assert peak < file.stat().st_size + 30 * 8 * 4000
 
 
 def test_truncated_binary_file_is_refused(tmp_path: Path) -> None:

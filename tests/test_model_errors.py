@@ -54,8 +54,10 @@ def test_a_model_may_be_good_enough_for_one_use_and_not_for_another() -> None:
         "cheap": {"mean": 0.01, "extreme": -0.2, "DEL, m = 3": 0.04, "DEL, m = 10": 0.06},
         "better": {"mean": 0.001, "extreme": 0.04, "DEL, m = 3": 0.01, "DEL, m = 10": 0.02},
     }
+    errors["cheap"]["load duration"] = 0.1
     assert good_enough_for(errors, 0.05) == {
         "means": "cheap",
+        "load durations": "better",
         "extremes": "better",
         "fatigue": "better",
     }

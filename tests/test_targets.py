@@ -2,8 +2,10 @@
 
 import pytest
 
-from fe_drivetrain.report.charts import bars
+from fe_drivetrain.compare.convergence import band_of
+from fe_drivetrain.report.charts import bars, trace
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import MeshSeries
 from fe_drivetrain.suite.targets import Target, split_unit
 
 
@@ -65,3 +67,42 @@ def test_bars_on_a_logarithmic_axis_end_at_the_least_that_is_shown() -> None:
     (of,) = found["data"]
     assert dict(zip(of["y"], of["x"], strict=True)) == {"a": 1e-6, "b": 1e-3}
     assert found["layout"]["xaxis"]["type"] == "log"
+
+
+def a_series() -> MeshSeries:
+    return MeshSeries([{"n": n, "sag [mm]": 1.0 - n**-2.0, "gap": n**-2.0} for n in (1, 2, 4)], "n")
+
+
+def test_a_target_of_zero_is_a_check_that_something_vanishes() -> None:
+    page = Page()
+    page.meets(1e-9, Target("gap", 0.0, 1e-8, "round-off", "theory"), of="ring")
+    verdict = page.verdicts[0]
+    assert (verdict.check, verdict.quantity, verdict.measure) == (
+        "vanishes",
+        "ring: gap",
+        "identity",
+    )
+    assert verdict.passed
+    assert not verdict.relative
+
+
+def test_the_band_is_of_all_meshes_or_the_change_from_the_one_before() -> None:
+    page, series = Page(), a_series()
+    sag = Target("sag [mm]", 1.0, 0.1, "mesh", "theory", order=2.0)
+    page.finest(series, sag, of="shaft")
+    page.settled(series, sag, of="shaft")
+    by_order, by_change = page.verdicts
+    assert by_order.quantity == by_change.quantity == "shaft: sag"
+    # a quarter of the last change is left, and 1.25 of that is the band (Roache 1994)
+    assert by_change.band == pytest.approx(3 / 16)
+    assert by_order.band == pytest.approx(1.25 * (3 / 16) / 3)
+
+
+def test_of_two_meshes_the_band_is_three_times_what_is_missing() -> None:
+    assert band_of([1.0, 0.5], [0.0, 0.75], order=2.0) == pytest.approx(3 * 0.25)
+
+
+def test_a_chart_without_points_is_a_sentence() -> None:
+    page = Page()
+    page.chart("Mass of all", [trace("none", [], [])], "x", "y")
+    assert page.sections[0].items[0].kind == "text"

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from conftest import coarse_scene
+from numpy.testing import assert_allclose
+from scipy import stats
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.scene.reading import change_scene
@@ -13,6 +15,7 @@ from fe_drivetrain.uncertainty.sampling import (
     sample,
     sensitivities,
     sobol_shares,
+    variance_shares,
     with_values,
 )
 
@@ -178,3 +181,21 @@ def test_a_sample_that_is_no_scene_names_what_is_wrong() -> None:
         InputError, match=r"within its uncertainty gives no valid scene: .*inner_di"
     ):
         sample(scene, torsion)
+
+
+def test_shares_of_any_function_are_those_of_ishigami() -> None:
+    """Ishigami and Homma 1990, a = 7, b = 0.1: shares in closed form (Saltelli et al. 2008)."""
+    a, b, pi = 7.0, 0.1, np.pi
+
+    def results(rows: np.ndarray) -> np.ndarray:
+        x, y, z = rows.T
+        return np.array([np.sin(x) + a * np.sin(y) ** 2 + b * z**4 * np.sin(x), 2.0 * x + y])
+
+    inputs = {name: stats.uniform(-pi, 2.0 * pi) for name in "xyz"}
+    rough, plane = variance_shares(results, inputs, 1024)
+    parts = np.array([0.5 * (1 + b * pi**4 / 5) ** 2, a**2 / 8, 0.0, 8 * b**2 * pi**8 / 225])
+    assert_allclose(rough.first, parts[:3] / parts.sum(), atol=0.05)
+    with_third = parts[:3] + parts[3] * np.array([1, 0, 1])
+    assert_allclose(rough.total, with_third / parts.sum(), atol=0.05)
+    assert_allclose(plane.first, [0.8, 0.2, 0.0], atol=0.02)
+    assert plane.keys == ("x", "y", "z")

@@ -14,7 +14,7 @@ from fe_drivetrain.bearing import (
 from fe_drivetrain.cases import case
 from fe_drivetrain.suite import Page, Record, Run
 
-#: Radial clearance [m], axial and radial force [N], and MASTA's displacements [um] and tilt [mrad].
+#: Radial clearance [m], axial and radial force [N], and MASTA's displacements [µm] and tilt [mrad].
 BALL = (
     (0.0, 0.0, 1e3, None, 15.1101, None),
     (0.0, 1e3, 0.0, 133.5381, None, None),
@@ -40,8 +40,8 @@ def run(run: Run, page: Page) -> None:
             found = equilibrium(Bearing("ball", (row,)), [axial, -radial, 0, 0, 0], tolerance=1e-12)
         u = found.displacements[0]
         ours = (1e6 * u[0], -1e6 * u[1], 1e3 * abs(u[4]))
-        names = ("axial [um]", "radial [um]", "tilt [mrad]")
-        what = f"F_a {axial / 1e3:g}, F_r {radial / 1e3:g} kN, clearance {1e6 * clearance:g} um"
+        names = ("axial [µm]", "radial [µm]", "tilt [mrad]")
+        what = f"F_a {axial / 1e3:g}, F_r {radial / 1e3:g} kN, clearance {1e6 * clearance:g} µm"
         for name, own, theirs in zip(names, ours, masta, strict=True):
             if theirs is None:
                 continue

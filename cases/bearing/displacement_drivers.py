@@ -129,7 +129,7 @@ def charts(page: Page, axial: Floats, loads: Floats) -> None:
             f"Axial displacement against {name}",
             [trace("load steps", values, um, points=True)],
             f"{name} [{unit}]",
-            "axial displacement [um]",
+            "axial displacement [µm]",
         )
     # 0 where the rotor's weight prevails (moment along -y), 180 deg where the rotor overturns
     direction = np.degrees(np.arctan2(loads[:, 4], -loads[:, 3]))
@@ -137,7 +137,7 @@ def charts(page: Page, axial: Floats, loads: Floats) -> None:
         "Axial displacement against the moment's direction: 0 is that of the rotor's weight",
         [trace("load steps", direction, um, points=True)],
         "direction of the moment [deg]",
-        "axial displacement [um]",
+        "axial displacement [µm]",
     )
 
 

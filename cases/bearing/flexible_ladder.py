@@ -155,7 +155,7 @@ def _row(kind: str, name: str, seconds: float, found: float, exact: float) -> Re
     return {
         "load": kind,
         "model": name,
-        "time per load case [us]": 1e6 * seconds,
+        "time per load case [µs]": 1e6 * seconds,
         "peak roller [kN]": found / 1e3,
         "error [%]": 100.0 * abs(found / exact - 1.0),
     }

@@ -64,7 +64,7 @@ def error_against_time(page: Page, rows: list[Record]) -> None:
         page.sweep(
             f"Peak roller, {kind}",
             [row for row in rows if row["load"] == kind],
-            "time per load case [us]",
+            "time per load case [µs]",
             "error [%]",
             by="model",
             log="xy",
@@ -97,7 +97,7 @@ def run(run: Run, page: Page) -> None:
                     {
                         "load": kind,
                         "model": name,
-                        "time per load case [us]": 1e6 * seconds,
+                        "time per load case [µs]": 1e6 * seconds,
                         "peak roller [kN]": found / 1e3,
                         "error [%]": 100.0 * abs(found / exact - 1.0),
                     }

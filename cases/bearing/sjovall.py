@@ -137,7 +137,7 @@ def run(run: Run, page: Page) -> None:
     page.sweep(
         "Peak roller of a planet bearing (16 rollers, 178 kN) over its clearance",
         swept,
-        "diametral clearance [um]",
+        "diametral clearance [µm]",
         "peak roller [kN]",
     )
 
@@ -147,7 +147,7 @@ def clearance(um: float) -> Record:
     bearing = catalogue_bearing("planet_nj2232", clearance=0.5e-6 * float(um))
     (zone,) = load_zones(bearing, equilibrium(bearing, [0, 0, -178e3, 0, 0]).displacements)
     return {
-        "diametral clearance [um]": float(um),
+        "diametral clearance [µm]": float(um),
         "peak roller [kN]": float(zone.peak[0]) / 1e3,
         "loaded rollers": int(zone.loaded[0]),
     }

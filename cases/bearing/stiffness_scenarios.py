@@ -131,9 +131,9 @@ def one_bearing(page: Page, name: str, bearing: Bearing, factors: Floats) -> Rec
     offsets = [abs(c.moments[0]) for c in curves]
     return {
         "bearing": name,
-        "axial, min [um]": 1e6 * axial.min(),
-        "axial, max [um]": 1e6 * axial.max(),
-        "radial, max [um]": 1e6 * across.max(),
+        "axial, min [µm]": 1e6 * axial.min(),
+        "axial, max [µm]": 1e6 * axial.max(),
+        "radial, max [µm]": 1e6 * across.max(),
         "tilt, max [mrad]": 1e3 * tilt.max(),
         "best fit [MN m/rad]": 1e-6 * K,
         "tilted the other way [MN m/rad]": 1e-6 * best_fit(other),

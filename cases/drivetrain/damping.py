@@ -92,7 +92,7 @@ def run(run: Run, page: Page) -> None:
         f"The shaft dampers of Table 4.2 damp the drivetrain's swing by {tabled:.1g} of critical "
         f"damping, not by the {DAMPING_RATIO:g} that the text asks for: Eq 4.5 was evaluated with "
         "J as the shaft's second moment of area [m^4] where it needs an inertia [kg m^2].",
-        f"That gives away the shafts: C_LSS = {lss['C [N m s/rad]']:g} N m s/rad is a J of "
+        f"The shafts follow from that: C_LSS = {lss['C [N m s/rad]']:g} N m s/rad is a J of "
         f"{lss['J [m^4]']:.3e} m^4, a solid shaft of {lss['diameter [m]']:.3f} m and, with G = "
         f"80 GPa, {lss['length G J / k [m]']:.2f} m length.",
         f"With inertias in Eq 4.5 two free masses are damped by {swinging:.4f}, the first mode of "
@@ -388,10 +388,10 @@ def show_dampers(page: Page, behind: list[Record], meshes: list[Record]) -> None
     hss = behind[-1]
     diameter, length = hss["diameter [m]"], hss["length G J / k [m]"]
     page.text(
-        f"Three shafts come out as shafts. The high-speed one would be {diameter:.2f} m thick and "
-        f"{length:,.0f} m long; with a damper of a hundredth, {hss['C [N m s/rad]'] / 100:g}, it "
-        f"would be {diameter / 10:.3f} m and {length / 1e4:.2f} m. In kg m^2 that of the low-speed "
-        "shaft would be a hundredth of the least gear's."
+        f"Three of them are plausible shafts. The high-speed one would be {diameter:.2f} m thick "
+        f"and {length:,.0f} m long; with a damper of a hundredth, {hss['C [N m s/rad]'] / 100:g}, "
+        f"it would be {diameter / 10:.3f} m and {length / 1e4:.2f} m. In kg m^2 that of the "
+        "low-speed shaft would be a hundredth of the least gear's."
     )
     page.table(
         "Mesh dampers [N m s/rad] about the planet's and gear's axis: as tabled, and "

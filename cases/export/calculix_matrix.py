@@ -54,16 +54,10 @@ def run(run: Run, page: Page) -> None:
                 "difference over what printing rounds": worst,
             }
         )
-        page.at_most(
-            f"{label}: displacements under {len(expected)} unit loads, largest difference over "
-            "what printing rounds",
-            worst,
-            1.0,
-            why="ccx prints seven digits; beside that only the round-off of the deck's fourteen "
-            "digits",
-            source=INVERSE,
-            measure="identity",
-        )
+        title = f"{label}: displacements under {len(expected)} unit loads, largest difference over "
+        why = f"{SEVEN}; beside that only the round-off of the deck's fourteen digits"
+        title += "what printing rounds"
+        page.at_most(title, worst, 1.0, why=why, source=INVERSE, measure="identity")
         last = len(expected) - 4
         title, value = f"{label}: uz of its last point under a unit force there [m/N]", (last, last)
         page.meets(found[value], Target(title, expected[value], 1e-6, SEVEN, INVERSE))

@@ -1,55 +1,18 @@
 """Condensed matrices as JSON, CSV, Matrix Market and HDF5, read by what others read them with."""
 
-import csv
-import json
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numpy as np
-from scipy.io import mmread
-
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.samples import matrices, samples
-from fe_drivetrain.common import Floats, MissingToolError, largest_difference
+from fe_drivetrain.common import MissingToolError, largest_difference
 from fe_drivetrain.suite import Page, Record, Run, column
+from fe_drivetrain.validation.matrix_readers import READERS
 
 WRITTEN = "the matrix before it was written"
 DIFFERENCE = "difference of a unit diagonal"
-
-
-def by_json(path: Path, kind: str) -> Floats:
-    """A matrix of a JSON file."""
-    return np.array(json.loads(path.read_text())[kind])
-
-
-def by_csv(path: Path, kind: str) -> Floats:
-    """A matrix of a CSV file: rows that begin with its kind and a degree of freedom."""
-    with path.open(newline="") as file:
-        return np.array([row[2:] for row in csv.reader(file) if row[0] == kind], dtype=float)
-
-
-def by_scipy(path: Path, kind: str) -> Floats:
-    """The matrix of a Matrix Market file."""
-    return np.asarray(mmread(path))
-
-
-def by_h5py(path: Path, kind: str) -> Floats:
-    """A matrix of an HDF5 file."""
-    with import_module("h5py").File(path) as file:
-        return np.asarray(file[kind])
-
-
-#: Format, library, matrices of the file, reader.
-READERS: tuple[tuple[str, str, tuple[str, ...], Callable[[Path, str], Floats]], ...] = (
-    ("json", "json of Python", ("stiffness", "mass"), by_json),
-    ("csv", "csv of Python", ("stiffness", "mass"), by_csv),
-    ("mtx", "scipy.io.mmread", ("stiffness",), by_scipy),
-    ("mtx-mass", "scipy.io.mmread", ("mass",), by_scipy),
-    ("hdf5", "h5py", ("stiffness", "mass"), by_h5py),
-)
 
 
 @case(
@@ -70,7 +33,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("write and read"), TemporaryDirectory() as name:
         for label, element in elements.items():
             written = matrices(element)
-            for format, library, kinds, reader in READERS:
+            for format, library, kinds, read in READERS:
                 if not written.keys() & set(kinds):
                     continue
                 path = Path(name) / f"{element.name}_{format}{export.FORMATS[format].suffix}"
@@ -82,7 +45,7 @@ def run(run: Run, page: Page) -> None:
                         "read by": library,
                         "matrix": kind,
                         "size [bytes]": path.stat().st_size,
-                        DIFFERENCE: largest_difference(reader(path, kind), written[kind]),
+                        DIFFERENCE: largest_difference(read(path, kind), written[kind]),
                     }
                     for kind in kinds
                     if kind in written

@@ -92,8 +92,8 @@ def run(run: Run, page: Page) -> None:
         source="WISDEM's drivetrain, G J / L of its uniform shaft",
     )
     for quantity, found, expected, unit in (
-        ("spring that WISDEM goes on with", used.spring, ours.spring, "N m/rad"),
-        ("damper that WISDEM goes on with", used.damper, ours.damper, "N m s/rad"),
+        ("spring that WISDEM continues with", used.spring, ours.spring, "N m/rad"),
+        ("damper that WISDEM continues with", used.damper, ours.damper, "N m s/rad"),
         ("spring_constant in windIO", stated["spring_constant"], ours.spring, "N m/rad"),
         ("damping_coefficient in windIO", stated["damping_coefficient"], ours.damper, "N m s/rad"),
     ):
@@ -223,7 +223,7 @@ def drivetrain(young: float, shear: float) -> Any:
 
 
 def torsion_of(problem: Any) -> Torsion:
-    """Spring and damper that WISDEM goes on with."""
+    """Spring and damper that WISDEM continues with."""
     return Torsion(
         float(problem.get_val("drivetrain_spring_constant", units="N*m/rad")[0]),
         float(problem.get_val("drivetrain_damping_coefficient", units="N*m*s/rad")[0]),

@@ -240,14 +240,25 @@ def show_ladder(run: Run, page: Page, ladder: Ladder, quantities: Sequence[Quant
             *(f"{model.title} [%]" for model in ladder.models[:-1]),
         ],
     )
-    found = "; ".join(
-        f"{q.name}: {band.sentence(q.unit)}" for q, band in zip(quantities, bands, strict=True)
+    page.table(
+        "The solid's series of meshes",
+        [
+            {
+                "quantity": quantity.name,
+                "unit": quantity.unit,
+                "finest mesh": band.finest,
+                "convergence": band.behaviour,
+                "order": _cell(band.order),
+                "extrapolated": band.extrapolated,
+                "band": band.uncertainty,
+            }
+            for quantity, band in zip(quantities, bands, strict=True)
+        ],
     )
     page.text(
         f"Band: three meshes, sizes times {COARSER[0]:g}, {COARSER[1]:g} and 1. Stress is "
         "singular at inner edges, energy converges there as h^1.09 at best (Williams 1952), and "
-        f"coarse meshes are not there yet: no better order than {LEAST_ORDER:g} is relied upon. "
-        f"{found}."
+        f"coarse meshes are not there yet: no better order than {LEAST_ORDER:g} is relied upon."
     )
 
 

@@ -192,7 +192,7 @@ def _check_beams(page: Page, component: CarrierComponent) -> None:
         pin_motions(single, frame_level(single)).wind_up,
         1.0 / closed,
         within=1e-3,
-        why="the load stands on the nodes of 8 pieces, by Simpson's rule",
+        why="the load acts on the nodes of 8 pieces, by Simpson's rule",
         source="twist of the hub, and cantilevers with shear under an even load, "
         "l / GJ + (l^3/20EI + l/3kGA) / (n r^2)",
     )

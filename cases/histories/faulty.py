@@ -11,6 +11,7 @@ from fe_drivetrain.histories import (
     RESIDUES,
     alias,
     damage_equivalent_load,
+    lone_samples,
     multiples,
     rainflow_cycles,
     spectrum,
@@ -23,6 +24,7 @@ SIX = 6.0 * HERTZ
 STEP = 0.01
 LINES = {3: 1.0, 6: 0.3}  # amplitudes at multiples
 KEPT = 0.01
+LITTLE = 0.02
 
 
 @case(
@@ -41,10 +43,11 @@ def run(run: Run, page: Page) -> None:
         refused(page)
     page.answer(
         "6P needs more than two samples a period; sampled more slowly it appears as a load that is "
-        "not there, or falls on 3P and changes that: 'loads' says where.",
+        "not there, or falls on 3P and changes that: the page of `loads` states where.",
         f"The rule for the residue changes an equivalent load of m = 10 by {change:.2g} % in ten "
-        "minutes of a load that drifts, so that every figure states it. A spike decides equivalent "
-        "loads of steep S-N curves; nothing takes it out.",
+        "minutes of a load that drifts, so that every figure states it, and 'loads' names the "
+        "share of half cycles. A spike decides equivalent loads of steep S-N curves: 'loads' names "
+        "its file, channel and time, and takes nothing out.",
     )
 
 
@@ -66,7 +69,7 @@ def slow(page: Page) -> None:
                 "samples per 6P": rate / SIX,
                 "line of 6P appears at [Hz]": six.appears_at,
                 "amplitude there over the true one": found.amplitude(at, near=0.0) / LINES[6],
-                "named as 6P": "yes" if six.amplitude is not None else "no: said on the page",
+                "named as 6P": "yes" if six.amplitude is not None else "no: stated on the page",
             }
         )
         if abs(at - 3.0 * HERTZ) < 1e-9:
@@ -75,7 +78,7 @@ def slow(page: Page) -> None:
                 found.amplitude(at, near=0.0),
                 LINES[3] - LINES[6],
                 within=0.02,
-                why="two lines of one frequency cannot be told apart; no other line leaks in",
+                why="two lines of one frequency cannot be distinguished; no other line leaks in",
                 source="sin(2 pi 1.2 n / 1.8) = -sin(2 pi 0.6 n / 1.8)",
             )
             continue
@@ -155,7 +158,34 @@ def short(run: Run, page: Page) -> float:
             why="counting halves as wholes at most doubles the damage",
             source="Miner's rule: 2^(1/m)",
         )
+    apart = {s: _apart([row[: s * 10] for row in load], float(s)) for s in (10, 30, 60, 120, 300)}
+    enough = [s for s, more in apart.items() if more <= LITTLE]
+    page.limit(
+        "equivalent load of m = 3 of a short history",
+        "length [s]",
+        low=float(min(enough, default=600)),
+        high=None,
+        criterion=f"the rule for the residue changes it by less than {LITTLE:.0%}",
+        beyond="half cycles of the end, whose other half is not known, are much of the damage; at "
+        "m = 10 at every length, since the largest range is always one of them",
+        program="every figure names the rule; 'loads' names the share of damage of half cycles, "
+        "and files shorter than ten minutes",
+        remedy="count longer histories, or several together; compare --residue closed",
+    )
     return 100.0 * float(by[600, "closed"] / by[600, "half"] - 1.0)
+
+
+def _apart(histories: list[Floats], seconds: float) -> float:
+    """By how much the rule for the residue changes an equivalent load of m = 3, relative."""
+    closed, half = (
+        damage_equivalent_load(
+            [rainflow_cycles(one, rule) for one in histories],  # type: ignore[arg-type]
+            seconds * len(histories),
+            3.0,
+        )
+        for rule in ("closed", "half")
+    )
+    return closed / half - 1.0
 
 
 def spikes(page: Page) -> None:
@@ -166,10 +196,21 @@ def spikes(page: Page) -> None:
     for size in (1.0, 2.0, 5.0, 10.0):
         spoilt = load.copy()
         spoilt[6000] += size * load.std()
+        places = lone_samples(spoilt).tolist()
         for slope, before in clean.items():
             found = damage_equivalent_load([rainflow_cycles(spoilt)], 600.0, slope)
             row = {"spike over standard deviation": size, "slope": f"m = {slope:g}"}
-            rows.append({**row, "DEL over the clean one": found / before})
+            row |= {
+                "DEL over the clean one": found / before,
+                "named by 'loads'": "yes" if places else "no",
+            }
+            rows.append(row)
+    page.holds(
+        "a spike of ten standard deviations is found where it is, and none in the clean load",
+        places == [6000] and not len(lone_samples(load)),
+        why="a load lies near the middle of its neighbours, a spike does not",
+        source="where it was put",
+    )
     page.section("Spikes")
     page.sweep(
         "One spike in 12 000 samples",
@@ -186,8 +227,9 @@ def spikes(page: Page) -> None:
         high=max((r["spike over standard deviation"] for r in safe), default=1.0),
         criterion=f"changed by less than {KEPT:.0%}",
         beyond="one range decides the damage of a steep S-N curve",
-        program="shows the largest range beside the equivalent loads, and removes nothing",
-        remedy="look at the largest range, and correct the sample",
+        program="names file, channel and time of samples that stand alone, shows the largest range "
+        "beside the equivalent loads, and removes nothing",
+        remedy="look at the sample, and correct it",
     )
 
 

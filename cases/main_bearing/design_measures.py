@@ -69,3 +69,14 @@ def section(run: Run, page: Page, hub: HubLoads, found: Comparison) -> None:
         f"{'; '.join(words)} (fatigue: damage-equivalent loads of slopes "
         f"{', '.join(f'{m:g}' for m in SLOPES)})."
     )
+    steepest = f"DEL, m = {SLOPES[-1]:g}"
+    page.text(
+        "What an error of the mean says of damage: "
+        + "; ".join(
+            f"{label}: {100 * abs(own['mean']):.2g} % in the mean, "
+            f"{100 * abs(damage_ratio(own[steepest], SLOPES[-1]) - 1.0):.2g} % in damage at "
+            f"m = {SLOPES[-1]:g}"
+            for label, own in list(on_bonded.items())[1:]
+        )
+        + "."
+    )

@@ -138,7 +138,8 @@ def run(run: Run, page: Page) -> None:
         ],
     )
     page.table(
-        "Cost, each level on its share of the cores; of a kept solution that of when it was solved",
+        "Cost, each level on its share of the cores; a solution from the cache has the time of its "
+        "first run",
         [
             [s.response.diagnostics.n_unknowns, s.response.diagnostics.seconds]
             for s in solutions.values()

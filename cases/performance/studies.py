@@ -173,7 +173,7 @@ def shaft_levels(quick: bool) -> list[Level]:
 
 
 def solves_of(level: Level, tolerances: Sequence[float]) -> list[Solve]:
-    """What is worth a try: flat elements stop multigrid, which then costs its time in vain."""
+    """What is worth a try: flat elements stop multigrid, which then costs time for nothing."""
     if level.grading.steps > 1:
         tolerances = ()
     elif level.grading.steps:

@@ -148,7 +148,7 @@ def run(run: Run, page: Page) -> None:
     error = 100 * (beam(AT, FILLETED) / with_radius - 1)
     show_steps(page, found)
     page.answer(
-        f"A fillet takes much of that away: at L = {AT:g} d the beam without one errs in bending "
+        f"A fillet reduces that: at L = {AT:g} d the beam without it has an error in bending "
         f"by {error[0, OF['bending']]:+.1f} % where the step is sharp and by "
         f"{error[-1, OF['bending']]:+.1f} % where the radius is the step's height."
     )
@@ -256,9 +256,9 @@ def show_steps(page: Page, found: Map) -> None:
     page.section("How ends are held")
     page.text(
         "Solid shafts, half of the length before the step and half behind it. The ends are rigid "
-        "in the finite elements, and what they take away (see the case of uniform shafts) is taken "
-        "out again, so that the error is the step's alone; in one point that was checked against "
-        "tractions that need no such correction. In torsion rigid ends disturb nothing."
+        "in the finite elements, and the length they remove (see the case of uniform shafts) is "
+        "taken out again, so that the error is the step's alone; in one point that was checked "
+        "against tractions that need no such correction. In torsion rigid ends disturb nothing."
     )
     page.section("Sharp steps")
     along = "length of both halves over small diameter"

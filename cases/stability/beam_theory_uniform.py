@@ -39,7 +39,7 @@ OF = {BENT: shafts.DEFLECTION, TURNED: shafts.ROTATION, PULLED: shafts.AXIAL}
 
 @dataclass(frozen=True)
 class RigidEnd:
-    """What a rigid end takes away from a shaft, in units of its diameter of 1 m.
+    """The length by which a rigid end shortens a shaft, in units of its diameter of 1 m.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Map:
     shear : (m, n) array
         Deflection that Euler and Bernoulli's beam leaves out [%].
     error, corrected : dict of (m, n) arrays
-        Of Timoshenko's beam, without and with what the ends take away [%].
+        Of Timoshenko's beam, without and with the length by which the ends shorten it [%].
     ends : list of RigidEnd
         By bore.
     """
@@ -101,7 +101,7 @@ def flexibility(length: float, bore: float, finer: bool = False) -> Floats:
 
 
 def rigid_end(measured: Sequence[Floats], bore: float) -> RigidEnd:
-    """What a rigid end takes away, from the flexibilities of two lengths."""
+    """The length by which a rigid end shortens a shaft, from the flexibilities of two lengths."""
     tube = Tube(1.0, bore, 1.0, shafts.STEEL)
     excess = [
         found - shafts.by_beam(shafts.uniform(length, bore))
@@ -251,9 +251,9 @@ def show(page: Page, found: Map) -> None:
         f"{found.least(shear[solid], 5.0):.2g} D; Timoshenko's beam is exact there. Between rigid "
         f"ends Timoshenko's deflection is within 1 % from {first or np.nan:.2g} D and within 5 % "
         f"from {found.least(error[BENT][solid], 5.0) or np.nan:.2g} D.",
-        f"A rigid end takes away a fixed length: of a solid shaft {end.moment:.3f} D of each end "
-        f"in bending and {end.tension:.3f} D in tension. With that the beam is within 1 % for all "
-        f"bores from L = {max(safe_corrected, key=lambda v: v or np.inf):.2g} D.",
+        f"A rigid end shortens the shaft by a fixed length: a solid one by {end.moment:.3f} D of "
+        f"each end in bending and {end.tension:.3f} D in tension. With that the beam is within 1 % "
+        f"for all bores from L = {max(safe_corrected, key=lambda v: v or np.inf):.2g} D.",
     )
     for level in (1.0, 5.0):
         page.limit(
@@ -339,7 +339,7 @@ def show(page: Page, found: Map) -> None:
             for i, bore in enumerate(bores)
         ],
     )
-    page.section("The remedy: what a rigid end takes away")
+    page.section("The remedy: the length by which a rigid end shortens a shaft")
     usable = lengths >= SHORTEST
     page.table(
         "Each rigid end adds to the beam's flexibility, at its own face: rotation by a moment "

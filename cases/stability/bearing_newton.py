@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
         source="clearance",
     )
     worst = max(rows, key=lambda row: row["plain Newton fails [%]"])
-    tight = [row for row in rows if row["clearance [um]"] > 0.0]
+    tight = [row for row in rows if row["clearance [µm]"] > 0.0]
     failing = [row[SHARE] for row in tight if row["plain Newton fails [%]"] > 0.0]
     page.limit(
         "plain Newton's method on the rollers, in place of a damped one",
@@ -110,7 +110,7 @@ def run(run: Run, page: Page) -> None:
             rows,
             "load over nominal",
             y,
-            by="clearance [um]",
+            by="clearance [µm]",
             log="x",
             table=y.startswith("plain"),
         )
@@ -118,7 +118,7 @@ def run(run: Run, page: Page) -> None:
     page.sweep(
         "Radial stiffness of the unloaded bearing over its preload",
         preload,
-        "preload [um]",
+        "preload [µm]",
         "radial stiffness [N/m]",
         log="xy",
     )
@@ -144,7 +144,7 @@ def damping(um: float, factor: float, n: int) -> Record:
     typical = float(np.median(np.linalg.norm(loads[:, :3], axis=1)))
     deflection = (typical / (sum(bearing.counts) * law.stiffness)) ** (1.0 / law.exponent)
     return {
-        "clearance [um]": um,
+        "clearance [µm]": um,
         "load over nominal": factor,
         SHARE: um * UM / deflection,
         "plain Newton fails [%]": 100.0 * float(1.0 - plain.converged.mean()),
@@ -159,7 +159,7 @@ def small_preload(um: float) -> Record:
     bearing = catalogue_bearing("bearing_s", clearance=-float(um) * UM)
     found = equilibrium(bearing, np.concatenate([random_loads(10), np.zeros((1, 5))]), warm=False)
     return {
-        "preload [um]": float(um),
+        "preload [µm]": float(um),
         "radial stiffness [N/m]": float(forces(bearing, np.zeros(5))[1][0, 2, 2]),
         "not converged": int((~found.converged).sum()),
         "steps, worst": int(found.iterations.max()),

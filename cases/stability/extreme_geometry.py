@@ -220,7 +220,7 @@ def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
     ]
     page.table("Every value", rows)
     page.data(parameter, rows)
-    return f"{parameter} {short(low)} to {short(high)}"
+    return f"{parameter}: {short(low)} to {short(high)}"
 
 
 def curve(name: str, meshed: Outcomes) -> Any:

@@ -225,6 +225,6 @@ def show(page: Page, killed: list[Record], in_place: list[Record], found: Any) -
         "operation of the file system when all is written (where the system has no such operation, "
         "in two, and the next run puts back what a kill between them took away). While it runs it "
         "holds a lock on the hidden folder, which the system releases when the process ends, "
-        "however it ends: a hidden folder that nobody holds was left by a kill, and the next run "
+        "however it ends: a hidden folder without a lock was left by a kill, and the next run "
         "into the same place removes it. Files are written the same way."
     )

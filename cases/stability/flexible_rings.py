@@ -99,7 +99,7 @@ def run(run: Run, page: Page) -> None:
         f"Damped Newton converges in all cases, from {1e3 * walls[0]:.0f} mm of wall to "
         f"{1e3 * walls[-1]:.0f} mm. Plain Newton fails in up to "
         f"{worst['plain Newton fails [%]']:.0f} % of them, at a clearance of "
-        f"{worst['clearance [um]']:.0f} um, a wall of {worst['wall [mm]']:.0f} mm and "
+        f"{worst['clearance [µm]']:.0f} µm, a wall of {worst['wall [mm]']:.0f} mm and "
         f"{worst['load over nominal']:g} of nominal loads.",
         f"Shapes that give {share:g} of what a contact does may be left out, and harmonics beyond "
         f"{waves:.0f}, for {100 * ENOUGH:.0f} % of the peak roller.",
@@ -111,7 +111,7 @@ def run(run: Run, page: Page) -> None:
         [row for row in rows if row["load over nominal"] == 1.0],
         "wall [mm]",
         "peak over that of rigid rings, median [-]",
-        by="clearance [um]",
+        by="clearance [µm]",
         log="x",
         table=False,
     )
@@ -135,7 +135,7 @@ def damping(wall: float, clearance: float, factor: float, n: int) -> Record:
     rigid = equilibrium(races.bearing, loads).rollers.max(axis=1)
     return {
         "wall [mm]": 1e3 * wall,
-        "clearance [um]": 1e6 * clearance,
+        "clearance [µm]": 1e6 * clearance,
         "load over nominal": factor,
         "plain Newton fails [%]": 100.0 * float(1.0 - plain.converged.mean()),
         "not converged": int((~damped.converged).sum()),

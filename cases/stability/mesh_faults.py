@@ -148,7 +148,7 @@ def doubled_nodes(run: Run, page: Page) -> None:
     page.section("Doubled nodes")
     page.chart(
         "Bending stiffness lost where nodes are doubled from the top of a section downwards: a "
-        "crack that nobody meant",
+        "crack that was not intended",
         traces,
         "share of the section's height with doubled nodes",
         "stiffness lost, relative",

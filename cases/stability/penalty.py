@@ -192,7 +192,7 @@ def sweep(run: Run, page: Page, kind: str) -> Record:
 
 
 def check_protection(run: Run, page: Page) -> None:
-    """What the program does with a penalty that somebody gives it all the same."""
+    """What the program does with a penalty that a user gives in spite of that."""
     with run.step("what the program does"):
         body = bar("averaged", 2)
         exact = work(*eliminated(body), "superlu")

@@ -104,7 +104,7 @@ def judged(run: Run, seed: int, with_solid: bool) -> list[Record]:
                 BAND: band,
                 RATIO: band / error,
                 LEFT: left,
-                # what the reference may be short of counts against the band
+                # the reference's own uncertainty counts against the band
                 HOLDS: error + left <= band,
             }
         )
@@ -146,7 +146,7 @@ def run(run: Run, page: Page) -> None:
         alone = QUICK_INDEPENDENT if run.quick else INDEPENDENT
         others = [run.timed("NGSolve", independent, seed) for seed in alone]
     except MissingToolError as error:
-        others, lacks = [], f"{error}; without it no shaft is compared with it."
+        others, missing = [], f"{error}; without it no shaft is compared with it."
     if others:
         page.at_least(
             "level 2: share of bands that hold against NGSolve",
@@ -165,7 +165,7 @@ def run(run: Run, page: Page) -> None:
         *(
             [f"Against NGSolve {sum(column(others, HOLDS))} of {len(others)} bands hold."]
             if others
-            else [lacks]
+            else [missing]
         ),
         *(["A quick run is a sample: too few to judge 95 % by."] if run.quick else []),
     )
@@ -222,7 +222,7 @@ def check_width(page: Page, rows: list[Record]) -> None:
     """What is true of each band of a meridian, however few are looked at."""
     widest = SAFETY / (1.0 - (ORDER / (ORDER + 1)) ** 2)
     page.at_most(
-        "level 2: largest band over error, less what the reference may be short of",
+        "level 2: largest band over error, the reference's own uncertainty taken off",
         max(row[BAND] / (row[ERROR] + row[LEFT]) for row in rows),
         widest,
         why="elements of one order more on the same mesh err no more, and not below zero, so that "

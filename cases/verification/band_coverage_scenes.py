@@ -118,7 +118,7 @@ def judged(run: Run, seed: int, scene: Scene) -> list[Record]:
                 "recovered, relative": band.recovered,
                 RATIO: band.half_width / error,
                 LEFT: missing,
-                # what the reference may be short of counts against the band
+                # the reference's own uncertainty counts against the band
                 HOLDS: error + missing <= band.half_width,
                 "series": band.words,
             }

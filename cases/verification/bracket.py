@@ -1,16 +1,10 @@
 """Bracket with a fillet under an end force, against a plane solution by scikit-fem."""
 
-import numpy as np
-
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.mesh import brick
-from fe_drivetrain.operator import principal
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation import loaded_blocks as blocks
 from fe_drivetrain.validation.bracket_plane import Bracket, plane_answer
-from fe_drivetrain.validation.ring_solids import node_at, plane_strain_hold
+from fe_drivetrain.validation.bracket_solid import solid_answer
 
 FILLET, HEIGHT, ARM, LEG = 0.05, 0.1, 0.3, 0.2  # m
 BRACKET = Bracket(FILLET, HEIGHT, ARM, LEG)
@@ -24,15 +18,7 @@ THROUGH = "hexahedra through the height"
 STIFFNESS = "stiffness P^2 / (2 U) per width [GN/m/m]"
 PEAK = "greatest principal stress of the fillet [MPa]"
 BASE = "stress of the base's inner fibre [MPa]"
-
-
 PLANE = "the same bracket in plane strain by scikit-fem: quartic triangles, own assembly"
-
-
-def traction(x: Floats, normal: Floats) -> Floats:
-    """A parabola of shear on the end of the arm."""
-    zero = np.zeros(len(x))
-    return np.column_stack([zero, zero, BRACKET.end_shear(x[:, 2], FORCE)])
 
 
 def stiffness(energy: float) -> float:
@@ -42,28 +28,12 @@ def stiffness(energy: float) -> float:
 
 def solve(n: int) -> Record:
     """One mesh."""
-    width = HEIGHT / n
-    along = BRACKET.edges(n)
-    divisions = n, len(along) - 1, 1
-
-    def shape(unit: Floats) -> Floats:
-        return np.column_stack([width * unit[:, 2], BRACKET.place(unit[:, 0], unit[:, 1])])
-
-    # thinner elements at the inside, whose stress is what is looked for
-    through = blocks.graded(divisions, 1.5, "x0")[0]
-    block = brick(divisions, 27, shape, (through, along, None))
-    inside = node_at(block.points, [0.0, -FILLET, -LEG])
-    base = blocks.supports(block, (inside, "y"), y1="z")
-    F = blocks.face_loads(block, y0=traction)
-    found = blocks.solve_block(block, IRON, F, plane_strain_hold(block), base)
-    edge = blocks.edge_nodes(block, "x0", "z0", along=1)
-    corner = (block.points[edge, 1] < 1e-9) & (block.points[edge, 2] > -1e-9)
-    greatest = principal(found.stress[edge[corner]])[:, 2].max()
+    found = solid_answer(BRACKET, IRON, FORCE, n)
     return {
         THROUGH: n,
-        STIFFNESS: stiffness(found.energy / width),
-        PEAK: float(greatest) / 1e6,
-        BASE: float(found.stress[inside, 2]) / 1e6,
+        STIFFNESS: stiffness(found.energy),
+        PEAK: found.peak / 1e6,
+        BASE: found.base / 1e6,
     }
 
 

@@ -57,44 +57,33 @@ def run(run: Run, page: Page) -> None:
             share = max(1.0 - energy / EXACT["cantilever"], 1e-12)
             rows.append({"element": name, THROUGH: n, ENERGY: energy, MISSED: share})
 
+    contained = "the field is in the elements' own space: round-off"
     for (nodes, name), row in zip(NAMES.items(), displaced, strict=True):
         for field, source in SOURCES.items():
             if field == "shear" or nodes in SECOND_ORDER:
-                page.vanishes(
-                    f"{field}, {name}: strain energy, relative to the exact one",
-                    row[f"{field}, energy over the exact one"] - 1.0,
-                    within=1e-9,
-                    why="the field is in the elements' own space: round-off",
-                    source=source,
-                )
+                title = f"{field}, {name}: strain energy, relative to the exact one"
+                error = row[f"{field}, energy over the exact one"] - 1.0
+                page.meets(error, Target(title, 0.0, 1e-9, contained, source))
+    lost = "one lost order of the strains would show as 2 less; coarse meshes of linear elements "
+    lost += "lock, and are barely in their asymptotic range"
+    quadratic = "the stress is quadratic, of strains that are linear in an element (1/8)^2 is "
+    quadratic += "missed, and in energy the square of that, 2e-4, times a small factor"
     for nodes, name in NAMES.items():
         series = MeshSeries([row for row in rows if row["element"] == name], THROUGH)
-        order = 4.0 if nodes in SECOND_ORDER else 2.0
-        page.equals(
-            f"cantilever, {name}: order of the strain energy",
-            observed_order(1.0 / np.array(DIVISIONS[nodes]), column(series.rows, ENERGY)),
-            order,
-            within=0.3,
-            relative=False,
-            why="one lost order of the strains would show as 2 less; coarse meshes of linear "
-            "elements lock, and are barely in their asymptotic range",
-            source="twice the order of the strains",
-            measure="order",
-        )
+        order, of = (4.0 if nodes in SECOND_ORDER else 2.0), f"cantilever, {name}"
+        observed = observed_order(1.0 / np.array(DIVISIONS[nodes]), column(series.rows, ENERGY))
+        title, source = "order of the strain energy", "twice the order of the strains"
+        page.meets(observed, Target(title, order, 0.3, lost, source, "", False, "order"), of=of)
         if nodes in SECOND_ORDER:
-            why = "the stress is quadratic, of strains that are linear in an element (1/8)^2 is "
-            why += "missed, and in energy the square of that, 2e-4, times a small factor"
-            title = f"cantilever, {name}: strain energy per width"
-            exact = EXACT["cantilever"]
-            page.finest(series, Target(ENERGY, exact, 1e-4, why, FLEXURE, title, order=order))
-    page.vanishes(
-        "cantilever: meshes whose energy is above the exact one",
-        sum(energy > EXACT["cantilever"] * (1.0 + 1e-9) for energy in column(rows, ENERGY)),
-        within=0.0,
-        why="the bound is strict for elements that conform and loads that are integrated exactly: "
-        "a single mesh above it has a fault in one of them",
-        source="minimum of the potential energy: under given forces, an element mesh is too stiff",
-    )
+            exact, title = EXACT["cantilever"], "strain energy per width"
+            target = Target(ENERGY, exact, 1e-4, quadratic, FLEXURE, title, order=order)
+            page.finest(series, target, of=of)
+    above = sum(energy > EXACT["cantilever"] * (1.0 + 1e-9) for energy in column(rows, ENERGY))
+    title = "cantilever: meshes whose energy is above the exact one"
+    strict = "the bound is strict for elements that conform and loads that are integrated exactly: "
+    strict += "a single mesh above it has a fault in one of them"
+    least = "minimum of the potential energy: under given forces, an element mesh is too stiff"
+    page.meets(above, Target(title, 0.0, 0.0, strict, least))
     missed = {name: column(series, MISSED) for name, series in grouped(rows, "element")}
     page.answer(
         f"The cantilever stores {EXACT['cantilever']:.2f} J a metre of width; eight hexahedra of "

@@ -1,5 +1,7 @@
 """Thick curved bar, as of a hook, in bending and under an end force, against exact solutions."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -22,30 +24,20 @@ TURNED = "bending: rotation of the ends [mrad]"
 INSIDE, OUTSIDE = "bending: hoop stress inside [MPa]", "bending: hoop stress outside [MPa]"
 PULLED = "force: hoop stress inside, t = 90 deg [MPa]"
 ENERGIES = [f"{load}: strain energy per width [J/m]" for load in ("bending", "force")]
-
-
-def bent_hoop(r: Floats) -> Floats:
-    """Hoop stress under end moments [MPa]."""
-    return BAR.bending(r, MOMENT)[1] / 1e6
-
-
-def pulled_hoop(r: Floats) -> Floats:
-    """Hoop stress under an end force, at t = 90 degrees [MPa]."""
-    return BAR.end_force(r, np.array(QUARTER), FORCE)[1] / 1e6
-
-
-#: Hoop stresses that are judged: along the radius [MPa], and where.
-HOOP = {INSIDE: (bent_hoop, INNER), OUTSIDE: (bent_hoop, OUTER), PULLED: (pulled_hoop, INNER)}
-
+#: Hoop stresses that are judged: along the radius [MPa], and where; a force at t = 90 degrees.
+HOOP: dict[str, tuple[Callable[[Floats], Floats], float]] = {
+    INSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, INNER),
+    OUTSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, OUTER),
+    PULLED: (lambda r: BAR.end_force(r, np.array(QUARTER), FORCE)[1] / 1e6, INNER),
+}
 ROTATION = abs(BAR.bending_rotation(MOMENT, PLANE) * QUARTER)  # rad
-#: The closed forms, in the order of the page.
+STRESSES = {key: float(along(np.array(r))) for key, (along, r) in HOOP.items()}
+#: The closed forms.
 EXACT = {
     TURNED: 1e3 * ROTATION,
     ENERGIES[0]: 0.5 * MOMENT * ROTATION,
-    INSIDE: float(bent_hoop(np.array(INNER))),
-    OUTSIDE: float(bent_hoop(np.array(OUTER))),
     ENERGIES[1]: BAR.end_force_energy(FORCE, QUARTER, PLANE),
-    PULLED: float(pulled_hoop(np.array(INNER))),
+    **STRESSES,
 }
 
 

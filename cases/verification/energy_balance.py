@@ -7,12 +7,14 @@ from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.common import GRAVITY, Floats
 from fe_drivetrain.report import bars
 from fe_drivetrain.response import LOADS
-from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.suite import Page, Run, Target
 
 #: A typical mean load: hub forces [N] and moments [N m] (Fx 200 kN, Fz -370 kN, My 660 kN m), then
 #: accelerations, and the weight of the gearbox.
 HUB = (200e3, 0.0, -370e3, 0.0, 660e3, 0.0)
 LABELS = [*LOADS, "working load"]
+STOPS = "the energy error at which the solver stops"
+CLAPEYRON = "Clapeyron: half the work of the loads is stored"
 
 
 @case("Energy in equals energy stored", source="exact: Clapeyron's theorem")
@@ -39,24 +41,12 @@ def run(run: Run, page: Page) -> None:
         imbalance = float((np.abs(total.diagonal() - own) / own).max())
         working = np.array([*HUB, 0.0, 0.0, -GRAVITY, model.scene.gearbox.weight])
         done, kept = (0.5 * working @ energy @ working for energy in (work, total))
-        page.vanishes(
-            f"{kind}: work less energy stored, largest of ten unit loads, relative",
-            imbalance,
-            within=1e-9,
-            why="the energy error at which the solver stops",
-            source="Clapeyron: half the work of the loads is stored",
-            band=response.diagnostics.energy_error,
-        )
-        page.equals(
-            f"{kind}: energy stored under a working load, gravity and gearbox weight [J]",
-            float(kept),
-            float(done),
-            within=1e-9,
-            why="the energy error at which the solver stops",
-            source="Clapeyron: half the work of the loads is stored",
-            measure="energy",
-            band=response.diagnostics.energy_error * float(done),
-        )
+        error = response.diagnostics.energy_error
+        title = "work less energy stored, largest of ten unit loads, relative"
+        page.meets(imbalance, Target(title, 0.0, 1e-9, STOPS, CLAPEYRON), error, kind)
+        title = "energy stored under a working load, gravity and gearbox weight [J]"
+        stores = Target(title, float(done), 1e-9, STOPS, CLAPEYRON, measure="energy")
+        page.meets(float(kept), stores, error * float(done), kind)
         worst[kind] = max(imbalance, abs(float(kept / done) - 1.0))
 
         loads = np.vstack([np.eye(10), working])

@@ -14,7 +14,7 @@ PER_FILLET = (6, 11)
 QUICK = (4, 6)
 #: Of stress in elements of second order.
 ORDER = 2.0
-#: Degree of the polynomial that is laid through the stress along the arc.
+#: Degree of the polynomial that is fitted to the stress along the arc.
 DEGREE = 6
 
 
@@ -70,11 +70,8 @@ def run(run: Run, page: Page) -> None:
             trace(name, at, stress, points=True, marker={"size": 4}),
             trace("meridian", angle[::4], factor[::4]),
         ]
-        title, x = (
-            f"Stress along the fillet in {load}",
-            "angle on the arc, from the thinner shaft [deg]",
-        )
-        page.chart(title, curves, x, "local stress / nominal stress [-]")
+        x, y = "angle on the arc, from the thinner shaft [deg]", "local stress / nominal stress [-]"
+        page.chart(f"Stress along the fillet in {load}", curves, x, y)
     worst = max(abs(row["from the meridian [%]"]) for row in rows)
     page.answer(
         f"With {solids[-1].unknowns:,} unknowns curved tetrahedra find K_t of the meridian within "

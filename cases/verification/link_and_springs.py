@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
@@ -187,7 +187,7 @@ def run(run: Run, page: Page) -> None:
         ("low-speed shaft: diameter", DIAMETER, "m", "implied, see below"),
         ("low-speed shaft: length", L, "m", "implied, see below"),
         ("bending, torsion", "1.34e8, 7.19e7", "N m/rad", "Table 2"),
-        *steel_rows(STEEL),
+        steel=STEEL,
     )
     d = np.linspace(0.0, 0.9, 91)
     add_errors(

@@ -76,8 +76,8 @@ def run(run: Run, page: Page) -> None:
     page.section("Meshes that stay distorted")
     page.text(
         "A square of one element's thickness is cut into trapezoids whose parallel sides stay 3 : "
-        "1 however fine the mesh. There the 20-node element, which lacks some of the products of "
-        "quadratic terms, falls towards the order of linear elements, the 27-node element keeps "
-        "its own. Meshes of shafts and rings are not of that kind."
+        "1 however fine the mesh. There the 20-node element, which does not contain some of the "
+        "products of quadratic terms, falls towards the order of linear elements, the 27-node "
+        "element keeps its own. Meshes of shafts and rings are not of that kind."
     )
     add_convergence(page, "Errors on trapezoids", trapezoids)

@@ -66,12 +66,13 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     }
     title = "Stiffness, on the rotor's side"
     compare_stiffness(page, title, "part", by, "the published", stiffness)
-    frequencies = ("published", free), ("WISDEM's shafts in series", soft)
-    page.table(
-        "Free-free frequency of rotor and generator",
-        [*frequencies, ("published, generator held", fixed)],
-        ["stiffness", "frequency [Hz]"],
-    )
+    frequencies = {
+        "published": free,
+        "WISDEM's shafts in series": soft,
+        "published, generator held": fixed,
+    }
+    title = "Frequencies of rotor and generator"
+    page.table(title, list(frequencies.items()), ["stiffness", "frequency [Hz]"])
     diameters = np.linspace(0.4, 1.2, 60)
     by_diameter = G * np.array([polar_moment(d) for d in diameters])
     curves = [trace(f"{L:g} m", diameters, by_diameter / L) for L in (1.0, 2.28, 4.0)]

@@ -1,7 +1,5 @@
 """Ring under two diametrically opposite loads: exact series, curved beam and thin ring."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -17,6 +15,7 @@ from fe_drivetrain.validation.squeezed_rings import (
     STIFFNESS,
     UNDER,
     SqueezedRing,
+    shares,
 )
 
 RADIUS = 0.33  # m, of the wall's middle
@@ -58,17 +57,15 @@ def solve(ratio: float, level: int) -> Record:
     return {THROUGH: through, **shown(found)}
 
 
-def target(title: str, value: float, name: str, quick: bool) -> Target:
+def target(title: str, value: float, quick: bool) -> Target:
     """One quantity of a ring by the series."""
-    name = f"{name}: {title.split(' [')[0]}"
     if "[MPa]" in title:
         why = "recovered stress with eight elements through the wall (six in a quick run), where "
         why += "the load bends it over its own thickness"
-        return Target(title, value, 0.02 if quick else 0.01, why, SERIES, name)
+        return Target(title, value, 0.02 if quick else 0.01, why, SERIES)
     why = "elements of second order, h / 8 long at the load: their error is of the fourth power in "
-    stiffness = title == SHOWN[STIFFNESS][0]
-    measure: Measure = "stiffness" if stiffness else "deflection"
-    return Target(title, value, 1e-3, why + "energy", SERIES, name, measure=measure)
+    stiff: Measure = "stiffness" if title == SHOWN[STIFFNESS][0] else "deflection"
+    return Target(title, value, 1e-3, why + "energy", SERIES, measure=stiff)
 
 
 @case(
@@ -88,20 +85,20 @@ def run(run: Run, page: Page) -> None:
             rows = [solve(ratio, level) for level in ((1, 2, 3) if run.quick else (1, 2, 4))]
         found[ratio] = MeshSeries(rows, THROUGH)
         name = f"R/h = {ratio:g}"
-        targets = [target(*of, name, run.quick) for of in exact[ratio].items()]
-        page.targets(f"By mesh against the series, {name}", found[ratio], targets, "series")
+        targets = [target(*of, run.quick) for of in exact[ratio].items()]
+        page.targets(f"By mesh against the series, {name}", found[ratio], targets, "series", name)
     thinnest = ratios[-1]
-    closing = f"R/h = {thinnest:g}: change of the bore's diameter along the load"
     beam = "a beam leaves out radial stress and the spread of the load over half a wall, both of "
     beam += "the order of (h/R)^2 = 0.25 %; twice that"
     thin = "a thin ring leaves out shear besides, pi/4 1.2 E'/(12 G) / 0.1488 (h/R)^2 = 1.5 "
     thin += "(h/R)^2; with the rest of the curved beam 4 (h/R)^2 = 1 %"
-    for name, formula, share, why in (
+    for formula, closing, share, why in (
         ("curved beam with shear", ring(thinnest).curved_beam(), 2.0, beam),
         ("thin ring, 0.1488 W R^3 / (E' I)", ring(thinnest).thin(), 4.0, thin),
     ):
-        within, title = share / thinnest**2, f"{closing}, {name}"
-        page.finest(found[thinnest], Target(CLOSING, -1e6 * formula, within, why, BEAMS, title))
+        name = f"change of the bore's diameter along the load, {formula}"
+        of_formula = Target(CLOSING, -1e6 * closing, share / thinnest**2, why, BEAMS, name)
+        page.finest(found[thinnest], of_formula, of=f"R/h = {thinnest:g}")
     points = [ring(ratio).share(of.rows[-1][CLOSING] / 1e6) for ratio, of in found.items()]
     of_series = [ring(ratio).share(of[CLOSING] / 1e6) for ratio, of in exact.items()]
     page.answer(
@@ -109,17 +106,8 @@ def run(run: Run, page: Page) -> None:
         f"(exact series {of_series[-1]:.5f}, thin ring 0.14878); one with R/h = {ratios[0]:g} by "
         f"{points[0]:.4f} (exact {of_series[0]:.4f}): there the thin ring is of no use."
     )
-    many = [ring(float(ratio)) for ratio in np.geomspace(1.5, 30.0, 25)]
-    theories: dict[str, Callable[[SqueezedRing], float]] = {
-        "exact series": lambda of: of.series()[ALONG],
-        "curved beam with shear": lambda of: -of.curved_beam(),
-        "thin ring": lambda of: -of.thin(),
-    }
     with run.step("series"):
-        lines = [
-            trace(name, [of.ratio for of in many], [of.share(change(of)) for of in many])
-            for name, change in theories.items()
-        ]
+        lines = [trace(*line) for line in shares(ring, np.geomspace(1.5, 30.0, 25))]
     title = "Change of the bore's diameter along the load over W R^3 / (E' I)"
     curves = [*lines, trace("finite elements", ratios, points, points=True)]
     x, y = "mean radius over wall thickness", "diameter change E' I / (W R^3)"

@@ -73,11 +73,11 @@ def run(run: Run, page: Page) -> None:
         rows = [run.timed(f"n = {n}", solve, n, level) for level in (1, 2, 4)]
         last[n] = rows[-1]
         targets = [
-            Target(key, value, within, why, MICHELL, f"n = {n}: {key.partition(' [')[0]}")
+            Target(key, value, *((5e-3, stress) if "stress" in key else (1e-4, moved)), MICHELL)
             for key, value in thick[n].items()
-            for within, why in [(5e-3, stress) if "stress" in key else (1e-4, moved)]
         ]
-        page.targets(f"By mesh, n = {n}", MeshSeries(rows, THROUGH), targets, "exact")
+        series, wave = MeshSeries(rows, THROUGH), f"n = {n}"
+        page.targets(f"By mesh, {wave}", series, targets, "exact", wave)
     thin = inextensible_ring(np.array(list(thick)), INNER, OUTER, PRESSURE, PLANE)
     ratio = np.array([of[RADIAL] for of in thick.values()]) / (1e6 * thin)
     oval, michell = last[2], thick[2]
@@ -88,7 +88,7 @@ def run(run: Run, page: Page) -> None:
         f"n = 2; at n = 8 it is {100 * (ratio[6] - 1):.0f} %."
     )
     page.text(
-        "Plane strain. The pressure stands on the outside, positive at t = 0; the bore is free. "
+        "Plane strain. The pressure acts on the outside, positive at t = 0; the bore is free. "
         "One half wave is meshed, between planes of symmetry."
     )
     bearing = "bore and d1 of SKF 331555B (Stirling 2023, chapter 4) as the ring's wall"

@@ -2,19 +2,21 @@
 
 import numpy as np
 
-from fe_drivetrain.beam import Beam, BeamSection, Support, solve
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inputs
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, Target, column
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, parabola_shortfall
+from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, parabola_shortfall, sag
+from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, sag_over_beam
 
 STEEL = MATERIALS["steel"]
 GRAVITY = -9.80665  # m/s^2
 OUTER, RATIO = 0.4, 6.0  # diameter [m], overhang over it
 TUBE = Tube(OUTER, 0.0, RATIO * OUTER, STEEL)
 LENGTH = TUBE.length
+SHAFT = SupportedShaft(TUBE, (0.0, LENGTH), ((np.inf, np.inf), (0.0, 0.0)))
+WEIGHT = Load(1, gravity=GRAVITY)
 Q = STEEL.density * TUBE.area * GRAVITY  # N/m
 ROTATION = -Q * LENGTH**3 / (6 * TUBE.EI)  # rad
 #: Lengths over diameter of the chart.
@@ -22,43 +24,23 @@ RATIOS = (1.5, 2.0, 3.0, 4.0)
 
 OVERHANG = "overhang over diameter"
 FOUND, EVEN = "solid", "beam, evenly held"
-SAG, TURNED, MASS = "sag [m]", "rotation [rad]", "mass [kg]"
-HUTCHINSON = "q L^4 / 8EI + q L^2 / 2k'GA, k' of evenly loaded sections (Hutchinson 2001, as "
-HUTCHINSON += "quoted by Stephen 2001; derived again)"
-
-
-def sag(load: float, rigidity: float, shear: float, length: float) -> float:
-    """Of a cantilever's tip under a load per length, with shear [m]."""
-    return load * length**4 / (8 * rigidity) + load * length**2 / (2 * shear)
+COWPER = "q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966"
+RECIPROCAL = "q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending"
+SAG, TURNED, MASS, TURN = "sag [m]", "rotation [rad]", "mass [kg]", "elements round a turn"
 
 
 def solid(refinement: int) -> Record:
     """Sag, rotation and mass of one mesh, its root held by its mean motion."""
-    shaft = solid_shafts.straight((0.0, LENGTH), OUTER)
-    mesh = solid_shafts.solid(shaft, refinement, size=1.5 * OUTER)
-    C = solid_shafts.sectional_compliance(mesh, STEEL, (0.0, LENGTH))
-    by_weight = GRAVITY * C.weight[1]
-    return {
-        "refinement": refinement,
-        "per turn": mesh.per_turn,
-        SAG: float(by_weight[0]),
-        TURNED: float(by_weight[1]),
-        MASS: float(C.weight_resultant[0]),
-    }
+    turn, C = SHAFT.compliance(refinement, 1.5 * OUTER)
+    down, turned = GRAVITY * C.weight[1]
+    mass = float(C.weight_resultant[0])
+    return {TURN: turn, SAG: float(down), TURNED: float(turned), MASS: mass}
 
 
 def beyond_the_beam(ratio: float) -> Record:
     """Sag beyond Timoshenko's beam with Cowper's coefficient [%], at another length."""
-    short = Tube(OUTER, 0.0, ratio * OUTER, STEEL)
-    mesh = solid_shafts.solid(solid_shafts.straight((0.0, short.length), OUTER), 2, size=OUTER)
-    C = solid_shafts.sectional_compliance(mesh, STEEL, (0.0, short.length))
-    # with the mesh's own mass and I, so that what is left is not the section's error
-    load = float(C.weight_resultant[0]) / short.length
-    rigidity = STEEL.youngs_modulus * solid_shafts.meshed_moment(mesh) / short.length / 2
-    cowper = sag(load, rigidity, short.kGA, short.length)
-    even = sag(load, rigidity, evenly_loaded_shear(short), short.length)
-    excess = {FOUND: float(C.weight[1, 0]) / cowper, EVEN: even / cowper}
-    return {OVERHANG: ratio} | {name: 100 * (of - 1) for name, of in excess.items()}
+    excess = sag_over_beam(Tube(OUTER, 0.0, ratio * OUTER, STEEL))
+    return {OVERHANG: ratio, FOUND: 100 * (excess[0] - 1), EVEN: 100 * (excess[1] - 1)}
 
 
 @case(
@@ -68,16 +50,12 @@ def beyond_the_beam(ratio: float) -> Record:
 def run(run: Run, page: Page) -> None:
     """Gravity on the solid, its root held by its mean motion."""
     closed, even = (sag(Q, TUBE.EI, k, LENGTH) for k in (TUBE.kGA, evenly_loaded_shear(TUBE)))
-    beam = Beam([BeamSection(LENGTH, OUTER)], [Support("root", 0.0, [np.inf] * 6)], material=STEEL)
-    with run.step("frame"):
-        frame = solve(beam, LENGTH, np.zeros(6), LENGTH, (0.0, 0.0, GRAVITY)).displacements
+    frame = run.timed("frame", SHAFT.frame, WEIGHT).motions[1]
     meshes = [run.timed("mesh and solve", solid, r) for r in ((1, 2) if run.quick else (1, 2, 3))]
     ratios = RATIOS[:2] if run.quick else RATIOS
     sweep = [run.timed("other lengths", beyond_the_beam, ratio) for ratio in ratios]
 
-    best, refinements = meshes[-1], column(meshes, "refinement")
-    band = {key: solid_shafts.mesh_band(refinements, column(meshes, key)) for key in best}
-    turn = best["per turn"]
+    turn, series = meshes[-1][TURN], MeshSeries(meshes, TURN)
     section = 2 * 2 * parabola_shortfall(turn)
     local = abs(Q) * LENGTH * solid_shafts.local_compliance(TUBE) / abs(closed)
     arcs = f"{turn} parabolic arcs round a turn: weight over I is wrong by twice the radius's "
@@ -85,33 +63,28 @@ def run(run: Run, page: Page) -> None:
     evenly = f"{arcs}; and the root's reaction enters evenly, {solid_shafts.LOCAL:.0%} of what one "
     evenly += "diameter shears"
     area = f"{turn} parabolic arcs round a turn: twice the area's shortfall"
-    exact = "the frame's sections are exact: round-off"
-    cowper = "q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966"
-    reciprocal = "q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending"
-    weight, tip = STEEL.density * TUBE.area * LENGTH, "of the tip"
-    of_solid, turned = best[SAG], best[TURNED]
-    sags = Target(f"sag {tip}, solid [m]", even, section + local, evenly, HUTCHINSON)
-    turns = Target(f"rotation {tip}, solid [rad]", ROTATION, section, arcs, reciprocal)
-    turns_beam = Target(f"rotation {tip}, frame [rad]", ROTATION, 1e-10, exact, "q L^3 / 6EI")
-    page.meets(float(frame[2]), Target(f"sag {tip}, frame [m]", closed, 1e-10, exact, cowper))
-    page.meets(of_solid, sags, band[SAG])
-    page.meets(turned, turns, band[TURNED])
-    page.meets(float(frame[4]), turns_beam)
-    page.meets(best[MASS], Target(MASS, weight, section, area, "density times volume"), band[MASS])
-    over_cowper, over_even = of_solid / closed - 1, of_solid / even - 1
+    weight, density = STEEL.density * TUBE.area * LENGTH, "density times volume"
+    cowper, found = (closed, COWPER), (even, section + local, evenly, EVENLY)
+    turned, exact = (ROTATION, "q L^3 / 6EI"), (ROTATION, section, arcs, RECIPROCAL)
+    of_solid = column(meshes, SAG)
+    sagging = check_motion(page, "sag of the tip", "m", cowper, frame[0], of_solid, found)
+    rotations, title = column(meshes, TURNED), "rotation of the tip"
+    turning = check_motion(page, title, "rad", turned, frame[1], rotations, exact)
+    page.finest(series, Target(MASS, weight, section, area, density, order=4.0))
+    over_cowper, over_even = of_solid[-1] / closed - 1, of_solid[-1] / even - 1
     page.answer(
-        f"An overhang of {RATIO:g} diameters sags {-1e3 * of_solid:.4f} mm; by Timoshenko's beam "
-        f"{-1e3 * closed:.4f} mm with Cowper's shear coefficient ({100 * over_cowper:+.3f} %), "
-        f"{-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
+        f"An overhang of {RATIO:g} diameters sags {-1e3 * of_solid[-1]:.4f} mm; by Timoshenko's "
+        f"beam {-1e3 * closed:.4f} mm with Cowper's shear coefficient ({100 * over_cowper:+.3f} "
+        f"%), {-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
     )
     page.section("Sag")
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-        ("overhang", LENGTH, "m", "chosen"),
+        ("overhang", LENGTH, "m"),
         ("gravity", GRAVITY, "m/s^2", "standard"),
         ("density", STEEL.density, "kg/m^3", "steel, assumed"),
-        *steel_rows(STEEL),
+        steel=STEEL,
     )
     title = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
     title += "section; beside it the beam with that of an evenly held root"
@@ -119,11 +92,7 @@ def run(run: Run, page: Page) -> None:
     page.sweep(title, sweep, OVERHANG, keys, axis="difference [%]", table=False)
     page.table(
         "Tip",
-        [
-            (SAG, closed, even, float(frame[2]), of_solid, band[SAG]),
-            (TURNED, ROTATION, ROTATION, float(frame[4]), turned, band[TURNED]),
-        ],
-        ["quantity", "beam with shear", EVEN, "frame", FOUND, "band of the solid"],
+        [{"quantity": SAG, EVEN: even} | sagging, {"quantity": TURNED, EVEN: ROTATION} | turning],
     )
     page.text(
         "A shaft that carries its own weight is also stressed across, since each slice hangs on "

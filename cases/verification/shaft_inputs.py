@@ -1,18 +1,80 @@
-"""Tables of inputs, shared by the cases of shafts."""
+"""Tables of inputs, and a check, shared by the cases of shafts."""
+
+from collections.abc import Sequence
 
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page
+from fe_drivetrain.suite import Page, Record, Target
+from fe_drivetrain.validation.solid_shafts import mesh_band
+
+#: Name, value, unit, and where it comes from: "chosen" where it is left out.
+Input = tuple[str, float | str, str] | tuple[str, float | str, str, str]
 
 
-def show_inputs(page: Page, *rows: tuple[str, float | str, str, str]) -> None:
-    """Add the table of a case's inputs: name, value, unit, source."""
-    page.table("Inputs", rows, ["input", "value", "unit", "source"])
+def show_inputs(page: Page, *rows: Input, steel: Material | None = None) -> None:
+    """Add the table of a case's inputs; with a steel, its elasticity below them."""
+    table = [row if len(row) == 4 else (*row, "chosen") for row in rows]
+    if steel is not None:
+        table += [
+            ("E", steel.youngs_modulus / 1e9, "GPa", "steel, assumed"),
+            ("nu", steel.poisson_ratio, "-", "steel, assumed"),
+            ("G = E / (2 (1 + nu))", steel.shear_modulus / 1e9, "GPa", "of these"),
+        ]
+    page.table("Inputs", table, ["input", "value", "unit", "source"])
 
 
-def steel_rows(material: Material) -> list[tuple[str, float | str, str, str]]:
-    """E, nu and what follows, for `show_inputs`."""
-    return [
-        ("E", material.youngs_modulus / 1e9, "GPa", "steel, assumed"),
-        ("nu", material.poisson_ratio, "-", "steel, assumed"),
-        ("G = E / (2 (1 + nu))", material.shear_modulus / 1e9, "GPa", "of these"),
-    ]
+def show_uniform(
+    page: Page, outer: float, bore: float, length: Input, *more: Input, steel: Material
+) -> None:
+    """The inputs of a uniform shaft, solid and bored; diameters in m."""
+    show_inputs(
+        page,
+        ("outer diameter", outer, "m", "Stirling 2023, Table 3.1, in size"),
+        ("bore of the bored shaft", bore, "m"),
+        length,
+        *more,
+        steel=steel,
+    )
+
+
+def check_motion(
+    page: Page,
+    title: str,
+    unit: str,
+    closed: tuple[float, str],
+    by_frame: float,
+    by_mesh: Sequence[float],
+    evenly: tuple[float, float, str, str],
+) -> Record:
+    """The frame against a closed form with shear, ever finer solids against a beam held evenly.
+
+    Parameters
+    ----------
+    page : Page
+        Where it is checked.
+    title, unit : str
+        What moves.
+    closed : tuple of float, str
+        The closed form, and where it comes from.
+    by_frame : float
+        The frame of the library.
+    by_mesh : sequence of float
+        Of the solids, meshes 1, 2, ... of a family.
+    evenly : tuple of float, float, str, str
+        Of the solid: the beam, by what share it may differ, why, and where the beam comes from.
+
+    Returns
+    -------
+    row : dict
+        Of a table: closed form, frame, solid, its band.
+    """
+    exact = "the frame's sections are exact: round-off"
+    framed = Target(f"{title}, frame [{unit}]", closed[0], 1e-10, exact, closed[1])
+    band = mesh_band(range(1, len(by_mesh) + 1), by_mesh)
+    page.meets(by_frame, framed)
+    page.meets(by_mesh[-1], Target(f"{title}, solid [{unit}]", *evenly), band)
+    return {
+        "closed form": closed[0],
+        "frame": by_frame,
+        "solid": float(by_mesh[-1]),
+        "band of the solid": band,
+    }

@@ -1,107 +1,42 @@
 """Shaft on two simple supports: closed forms, frame and solid."""
 
-from typing import NamedTuple
-
 import numpy as np
 
-from fe_drivetrain.beam import Beam, BeamSection, BeamSolution, Support, solve
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
-from fe_drivetrain.common import Floats
+from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inputs
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import (
-    Spring,
-    Tube,
-    evenly_loaded_shear,
-    macaulay,
-    parabola_shortfall,
-)
+from fe_drivetrain.validation.shaft_theory import Tube
+from fe_drivetrain.validation.solid_shafts import Supported, local_compliance, mesh_band
+from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
 
-STEEL = MATERIALS["steel"]
-OUTER, LENGTH = 0.4, 2.4
+STEEL, OUTER, LENGTH = MATERIALS["steel"], 0.4, 2.4
 TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
+STATIONS = (0.0, LENGTH / 4, LENGTH / 2, 3 * LENGTH / 4, LENGTH)
+MIDDLE, END = 2, 4
+PINNED, FREE = (np.inf, 0.0), (0.0, 0.0)
+SHAFT = SupportedShaft(TUBE, STATIONS, (PINNED, FREE, FREE, FREE, PINNED))
 FORCE, MOMENT, GRAVITY = 1e6, 1e6, -9.80665  # N, N m, m/s^2
 WEIGHT = STEEL.density * TUBE.area * GRAVITY * LENGTH  # N
-STATIONS = [0.0, LENGTH / 4, LENGTH / 2, 3 * LENGTH / 4, LENGTH]
-MIDDLE, END = 2, 4
-RIGID = np.inf
-BEAM = Beam(
-    [BeamSection(LENGTH, OUTER)],
-    [
-        Support("upwind", 0.0, (RIGID, RIGID, RIGID, RIGID, 0, 0)),
-        Support("downwind", LENGTH, (0, RIGID, RIGID, 0, 0, 0)),
-    ],
-    material=STEEL,
-)
-FRAME, EVEN, SOLID = "frame", "beam, evenly loaded", "solid"
-BRACKETS = "Macaulay's brackets with shear of evenly loaded sections (Hutchinson 2001, as "
-BRACKETS += "quoted by Stephen 2001; derived again)"
-
-
-class Load(NamedTuple):
-    """A load.
-
-    Attributes
-    ----------
-    station : int
-        Where force and moment act.
-    force, moment : float
-        Along z [N] and about y [N m].
-    gravity : float
-        Along z [m/s^2].
-    closed : float
-        Deflection at mid span in closed form, with shear [m].
-    local : float
-        The force of load and supports that enters evenly, and moves mid span [N].
-    """
-
-    station: int
-    force: float
-    moment: float
-    gravity: float
-    closed: float
-    local: float
-
-    def macaulay(self, kGA: float, at: float | Floats) -> Floats:
-        """Deflection [m] of the beam by Macaulay's brackets."""
-        ends = [Spring(0.0, RIGID), Spring(LENGTH, RIGID)]
-        load = [(STATIONS[self.station], self.force, -self.moment)]
-        weight = STEEL.density * TUBE.area * self.gravity
-        return macaulay(LENGTH, TUBE.EI, kGA, ends, load, at, weight).deflection
-
-    def frame(self) -> BeamSolution:
-        """The library's frame."""
-        load = np.array([0.0, 0.0, self.force, 0.0, self.moment, 0.0])
-        return solve(BEAM, STATIONS[self.station], load, STATIONS, (0.0, 0.0, self.gravity))
-
-    def solid(self, C: solid_shafts.Compliance) -> solid_shafts.Supported:
-        """A solid of that compliance."""
-        stiffness, at = np.zeros((2, len(STATIONS), 2))
-        stiffness[[0, -1], 0] = RIGID
-        at[self.station] = self.force, self.moment
-        return solid_shafts.on_springs(C, stiffness, at, self.gravity)
-
-
 BENT, SHEARED = LENGTH**3 / TUBE.EI, LENGTH / TUBE.kGA  # m/N
-#: A moment's reactions move both ends by the same amount, and the weight's are half of it each.
+#: Of each load the closed form with shear at mid span [m], and the force of load and supports that
+#: enters evenly, and moves mid span [N]. A moment's reactions move both ends by the same amount,
+#: and the weight's are half of it each.
 LOADS = {
-    "force at mid span": Load(
-        MIDDLE, FORCE, 0.0, 0.0, FORCE * (BENT / 48 + SHEARED / 4), 1.5 * FORCE
+    "force at mid span": (
+        Load(MIDDLE, force=FORCE),
+        FORCE * (BENT / 48 + SHEARED / 4),
+        1.5 * FORCE,
     ),
-    "moment at the end": Load(END, 0.0, MOMENT, 0.0, MOMENT / LENGTH * BENT / 16, MOMENT / LENGTH),
-    "own weight": Load(
-        MIDDLE, 0.0, 0.0, GRAVITY, WEIGHT * (5 * BENT / 384 + SHEARED / 8), abs(WEIGHT) / 2
+    "moment at the end": (Load(END, moment=MOMENT), MOMENT / LENGTH * BENT / 16, MOMENT / LENGTH),
+    "own weight": (
+        Load(MIDDLE, gravity=GRAVITY),
+        WEIGHT * (5 * BENT / 384 + SHEARED / 8),
+        abs(WEIGHT) / 2,
     ),
 }
-
-
-def meshed(refinement: int) -> tuple[int, solid_shafts.Compliance]:
-    """Elements round a turn of a mesh, and how its sections move."""
-    mesh = solid_shafts.solid(solid_shafts.straight(STATIONS, OUTER), refinement)
-    return mesh.per_turn, solid_shafts.sectional_compliance(mesh, STEEL, STATIONS)
+EVEN, FRAME = "beam, evenly loaded", "Timoshenko frame of the library"
 
 
 @case(
@@ -112,13 +47,17 @@ def meshed(refinement: int) -> tuple[int, solid_shafts.Compliance]:
 def run(run: Run, page: Page) -> None:
     """A force at mid span, a moment at an end, and the shaft's weight."""
     refinements = (1, 2) if run.quick else (1, 2, 3)
-    meshes = [run.timed("mesh and solve", meshed, refinement) for refinement in refinements]
-    turn, finest = meshes[-1]
-    rows = []
-    for name, load in LOADS.items():
-        solids = [load.solid(C) for _, C in meshes]
-        rows.append(check(page, name, load, solids, refinements, turn))
-    differences = {row["load"]: row[SOLID] / row[FRAME] - 1 for row in rows}
+    meshes = [run.timed("mesh and solve", SHAFT.compliance, r) for r in refinements]
+    rows, traces = [], []
+    fine = np.linspace(0.0, LENGTH, 81)
+    for name, (load, _, _) in LOADS.items():
+        solids = [SHAFT.solid(C, load) for _, C in meshes]
+        rows.append(check(page, name, solids, meshes[-1][0]))
+        curve, found = SHAFT.beam(load, fine).motions[:, 0], solids[-1].motions[:, 0]
+        size = np.abs(curve).max()
+        traces.append(trace(f"{name}, beam", fine, curve / size))
+        traces.append(trace(f"{name}, solid", STATIONS, found / size, True))
+    differences = {row["load"]: row["solid"] / row["frame"] - 1 for row in rows}
     page.answer(
         "The frame meets the closed forms with shear to round-off. The solid, held and loaded "
         "through the mean motions of its sections, differs from it by "
@@ -129,20 +68,13 @@ def run(run: Run, page: Page) -> None:
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-        ("span", LENGTH, "m", "chosen"),
-        ("force at mid span", FORCE / 1e6, "MN", "chosen"),
-        ("moment at the downwind end", MOMENT / 1e6, "MN m", "chosen"),
+        ("span", LENGTH, "m"),
+        ("force at mid span", FORCE / 1e6, "MN"),
+        ("moment at the downwind end", MOMENT / 1e6, "MN m"),
         ("gravity", GRAVITY, "m/s^2", "standard"),
         ("density", STEEL.density, "kg/m^3", "steel, assumed"),
-        *steel_rows(STEEL),
+        steel=STEEL,
     )
-    fine = np.linspace(0.0, LENGTH, 81)
-    traces = []
-    for name, load in LOADS.items():
-        curve, found = load.macaulay(TUBE.kGA, fine), load.solid(finest).motions[:, 0]
-        size = np.abs(curve).max()
-        traces.append(trace(f"{name}, beam", fine, curve / size))
-        traces.append(trace(f"{name}, solid", STATIONS, found / size, True))
     title = "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
     page.chart(f"{title}sections", traces, "x [m]", "deflection over the largest")
     page.table("Deflection at mid span [m]", rows)
@@ -157,42 +89,22 @@ def run(run: Run, page: Page) -> None:
         page.data(name, difference)
 
 
-def check(
-    page: Page,
-    name: str,
-    load: Load,
-    solids: list[solid_shafts.Supported],
-    refinements: tuple[int, ...],
-    turn: int,
-) -> Record:
+def check(page: Page, name: str, solids: list[Supported], turn: int) -> Record:
     """Deflection of frame and solid, and the reaction, under one load."""
-    section, frame = 2 * 4 * parabola_shortfall(turn), load.frame()
-    slack = load.local * solid_shafts.local_compliance(TUBE)
-    of_frame = float(frame.displacements[MIDDLE, 2])
-    even = float(load.macaulay(evenly_loaded_shear(TUBE), LENGTH / 2)[0])
-    by_mesh = [float(s.motions[MIDDLE, 0]) for s in solids]
-    reactions = [float(s.reactions[-1, 0]) for s in solids]
-    band = solid_shafts.mesh_band(refinements, by_mesh)
-    title, within = f"{name}: deflection at mid span", section + slack / abs(load.closed)
-    exact, sheared = "the frame's sections are exact: round-off", "closed form with shear"
-    evenly = f"{turn} parabolic arcs round a turn; and loads that enter evenly over a section, "
-    evenly += f"{solid_shafts.LOCAL:.0%} of what one diameter shears"
-    page.meets(of_frame, Target(f"{title}, frame [m]", load.closed, 1e-10, exact, sheared))
-    page.meets(by_mesh[-1], Target(f"{title}, solid [m]", even, within, evenly, BRACKETS), band)
+    load, closed, local = LOADS[name]
+    frame, even = SHAFT.frame(load), float(SHAFT.evenly(load).motions[MIDDLE, 0])
+    of_frame, by_mesh = float(frame.motions[MIDDLE, 0]), [s.motions[MIDDLE, 0] for s in solids]
+    section, evenly = within_evenly(turn)
+    within = section + local * local_compliance(TUBE) / abs(closed)
+    title = f"{name}: deflection at mid span"
+    beams = (closed, "closed form with shear"), of_frame, by_mesh, (even, within, evenly, EVENLY)
+    row = check_motion(page, title, "m", *beams)
     title, why = f"{name}: reaction of the downwind support, solid [N]", "statically determinate: "
-    by_frame, timoshenko = -float(frame.reaction("downwind")[2]), "Timoshenko frame of the library"
+    reactions = [float(s.reactions[END, 0]) for s in solids]
+    by_frame = float(frame.reactions[END, 0])
+    target = Target(title, by_frame, 1e-7, f"{why}round-off of the solver", FRAME)
     if load.gravity:  # the mesh enters the reaction by its weight only
-        why += "the meshed section's weight"
-        weight = Target(title, by_frame, section, why, timoshenko)
-        page.meets(reactions[-1], weight, solid_shafts.mesh_band(refinements, reactions))
-    else:
-        why += "round-off of the solver"
-        page.meets(reactions[-1], Target(title, by_frame, 1e-7, why, timoshenko))
-    return {
-        "load": name,
-        "closed form": load.closed,
-        FRAME: of_frame,
-        EVEN: even,
-        SOLID: by_mesh[-1],
-        "band of the solid": band,
-    }
+        target = target._replace(within=section, why=f"{why}the meshed section's weight")
+    band = mesh_band(range(1, len(solids) + 1), reactions) if load.gravity else None
+    page.meets(reactions[-1], target, band)
+    return {"load": name, EVEN: even} | row

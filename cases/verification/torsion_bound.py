@@ -18,3 +18,15 @@ def check_plane_sections(page: Page, quantity: str, bounds: Bounds, stiffness: f
         "is least, so that stiffness is no smaller than the bound",
         measure="identity",
     )
+
+
+def check_width(page: Page, quantity: str, bounds: Bounds) -> None:
+    """The bounds are close enough to show what a step adds."""
+    page.at_most(
+        quantity,
+        2 * bounds.half_width / bounds.middle,
+        1e-3,
+        why="a tenth of what the step adds",
+        source="exact stiffness lies between them",
+        measure="identity",
+    )

@@ -3,41 +3,45 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs, steel_rows
+from fe_drivetrain.cases.verification.shaft_inputs import show_uniform
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped
-from fe_drivetrain.validation import end_loaded, solid_shafts
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import shaft_theory as theory
+from fe_drivetrain.validation.end_loaded import skin_nodes
+from fe_drivetrain.validation.exact_shafts import twisted
+from fe_drivetrain.validation.solid_shafts import meshed_moment
 
 STEEL = MATERIALS["steel"]
-OUTER, BORES, LENGTH = 0.4, {"solid": 0.0, "bored": 0.28}, 0.8  # m
+OUTER, BORE, LENGTH = 0.4, 0.28, 0.8  # m
+TUBES = {
+    name: theory.Tube(OUTER, b, LENGTH, STEEL) for name, b in (("solid", 0.0), ("bored", BORE))
+}
 ANGLE = 1e-3  # rad, between the ends
 
 SHAFT, TURN = "shaft", "elements round a turn"
 STIFFNESS, MESHED = "torsional stiffness [N m/rad]", "G J / L of the mesh [N m/rad]"
-ENERGY, EXACT = "by energy [N m/rad]", "G J / L [N m/rad]"
+EXACT, BY_ENERGY = "G J / L [N m/rad]", "by energy [N m/rad]"
+ENERGY = "torque over angle against twice the energy over its square"
 STRESS = "shear stress on the surface at mid length, mean round the turn [Pa]"
 
 
-def twisted(name: str, refinement: int) -> Record:
+def solve(name: str, refinement: int) -> Record:
     """The ends turned by an exact rotation, on one mesh."""
-    shaft = solid_shafts.straight((0.0, LENGTH), OUTER, BORES[name])
-    mesh = solid_shafts.solid(shaft, refinement, size=LENGTH)
-    solution, by_torque, by_energy = solid_shafts.twist(mesh, STEEL, ANGLE)
-    s = end_loaded.EndLoaded(mesh, STEEL, solution).stress
-    skin = end_loaded.skin_nodes(mesh, LENGTH / 2)
-    exact = theory.Tube(OUTER, BORES[name], LENGTH, STEEL).GJ / LENGTH
+    tube = TUBES[name]
+    shaft, by_torque, by_energy = twisted(tube, ANGLE, refinement)
+    mesh, s = shaft.mesh, shaft.found.stress[skin_nodes(shaft.mesh, LENGTH / 2)]
     return {
         SHAFT: name,
         TURN: mesh.per_turn,
         "unknowns": mesh.n_unknowns,
         STIFFNESS: by_torque,
-        MESHED: STEEL.shear_modulus * solid_shafts.meshed_moment(mesh) / LENGTH**2,
-        EXACT: exact,
-        "error": float(abs(by_torque / exact - 1.0)),
-        ENERGY: by_energy,
-        STRESS: float(np.hypot(s[skin, 3], s[skin, 5]).mean()),
+        MESHED: STEEL.shear_modulus * meshed_moment(mesh) / LENGTH**2,
+        EXACT: tube.GJ / LENGTH,
+        "error": float(abs(by_torque / (tube.GJ / LENGTH) - 1.0)),
+        BY_ENERGY: by_energy,
+        ENERGY: by_torque / by_energy - 1.0,
+        STRESS: float(np.hypot(s[:, 3], s[:, 5]).mean()),
     }
 
 
@@ -47,33 +51,27 @@ def twisted(name: str, refinement: int) -> Record:
 )
 def run(run: Run, page: Page) -> None:
     """Turn the ends by an exact rotation, on three meshes each."""
+    refinements = (1, 2, 3) if run.quick else (2, 3, 4)
+    finest, many = [], range(4, 33)
+    missed = [4 * theory.parabola_shortfall(n) for n in many]
+    curves = [trace("shortfall of parabolic arcs", many, missed)]
     rows: list[Record] = []
-    for name in BORES:
-        refinements = (1, 2, 3) if run.quick else (2, 3, 4)
-        series = [run.timed(f"{name}: mesh and solve", twisted, name, r) for r in refinements]
-        check(page, series)
-        rows += series
-    by_shaft = grouped(rows, SHAFT)
-    error = max(series[-1]["error"] for _, series in by_shaft)
+    for name in TUBES:
+        meshes = [run.timed(f"{name}: mesh and solve", solve, name, r) for r in refinements]
+        check(page, name, MeshSeries(meshes, TURN))
+        errors = column(meshes, "error")
+        points = trace(f"{name}, finite elements", column(meshes, TURN), errors, True)
+        curves.append(points | {"marker": {"size": 9}})
+        finest.append(errors[-1])
+        rows += meshes
     page.answer(
-        f"G J / L is met to {error:.1g} (relative) with {rows[-1][TURN]} elements of 27 nodes "
-        "round a turn, solid and bored; what is left is that they describe the circle by "
+        f"G J / L is met to {max(finest):.1g} (relative) with {rows[-1][TURN]} elements of 27 "
+        "nodes round a turn, solid and bored; what is left is that they describe the circle by "
         "parabolas, and follows the formula for that."
     )
     page.section("Torsional stiffness")
-    show_inputs(
-        page,
-        ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-        ("bore of the bored shaft", BORES["bored"], "m", "chosen"),
-        ("length", LENGTH, "m", "chosen: the answer does not depend on it"),
-        *steel_rows(STEEL),
-    )
-    many = range(4, 33)
-    missed = [4 * theory.parabola_shortfall(n) for n in many]
-    curves = [trace("shortfall of parabolic arcs", many, missed)]
-    for name, of in by_shaft:
-        points = trace(f"{name}, finite elements", column(of, TURN), column(of, "error"), True)
-        curves.append(points | {"marker": {"size": 9}})
+    length = "length", LENGTH, "m", "chosen: the answer does not depend on it"
+    show_uniform(page, OUTER, BORE, length, steel=STEEL)
     title = "Relative error of the stiffness; the line is no fit, but four times the mean "
     title += "shortfall of the radius of as many parabolic arcs"
     page.chart(title, curves, TURN, "relative error", "xy")
@@ -84,39 +82,27 @@ def run(run: Run, page: Page) -> None:
         "drawn out along x hold it exactly, however curved their section, so the only error left "
         "is the section's."
     )
-    page.data("relative_error", error)
+    page.data("relative_error", max(finest))
 
 
-def check(page: Page, series: list[Record]) -> None:
+def check(page: Page, name: str, series: MeshSeries) -> None:
     """Stiffness, energy, order and stress of one shaft."""
-    before, best = series[-2:]
-    name, turn, slope = best[SHAFT], best[TURN], theory.parabola_slope(best[TURN])
+    before, best = series.rows[-2:]
+    turn = best[TURN]
     within, arcs = theory.within_arcs(turn, "J", 4)
-    title, closed = f"{name}: torsional stiffness", "closed form G J / L"
-    target = Target(STIFFNESS, best[EXACT], within, arcs, closed, title, order=4.0)
-    page.finest(MeshSeries(series, TURN), target)
-    why = "the exact displacement is one of the element's; the meshed surface leans against the "
-    why += f"circle by at most {slope:.2g} rad, and what that warps is of second order"
+    target = Target(STIFFNESS, best[EXACT], within, arcs, "closed form G J / L", order=4.0)
+    page.finest(series, target, of=name)
+    section, leans = theory.within_lean(turn)
+    title = "torsional stiffness of the meshed section [N m/rad]"
     meshed, source = best[MESHED], "G / L^2 times the integral of y^2 + z^2 over the mesh"
-    section = Target(f"{title} of the meshed section [N m/rad]", meshed, slope**2, why, source)
-    page.meets(best[STIFFNESS], section, abs(best[STIFFNESS] - best[ENERGY]) + 1e-9 * meshed)
-    page.vanishes(
-        f"{name}: torque over angle against twice the energy over its square",
-        best[STIFFNESS] / best[ENERGY] - 1.0,
-        within=1e-8,
-        why="round-off of the solver",
-        source="exact: work done equals energy stored",
-    )
-    page.equals(
-        f"{name}: order of convergence of the stiffness",
-        float(np.log(before["error"] / best["error"]) / np.log(turn / before[TURN])),
-        4.0,
-        within=0.2,
-        relative=False,
-        why="the next term of the shortfall's series is a few per cent of the first",
-        source="the shortfall of parabolic arcs is of fourth order",
-        measure="order",
-    )
+    band = abs(best[STIFFNESS] - best[BY_ENERGY]) + 1e-9 * meshed
+    page.meets(best[STIFFNESS], Target(title, meshed, section, leans, source), band, name)
+    balance, exact = "round-off of the solver", "exact: work done equals energy stored"
+    page.meets(best[ENERGY], Target(ENERGY, 0.0, 1e-8, balance, exact), of=name)
+    order = float(np.log(before["error"] / best["error"]) / np.log(turn / before[TURN]))
+    why = "the next term of the shortfall's series is a few per cent of the first"
+    fourth, title = "the shortfall of parabolic arcs is of fourth order", "order of convergence of "
+    title += "the stiffness"
+    page.meets(order, Target(title, 4.0, 0.2, why, fourth, "", False, "order"), of=name)
     stress, within = STEEL.shear_modulus * ANGLE * OUTER / 2 / LENGTH, theory.recovery_error(turn)
-    skin = Target(f"{name}: {STRESS}", stress, within, theory.RECOVERED, "G theta R / L")
-    page.meets(best[STRESS], skin, abs(best[STRESS] - before[STRESS]))
+    page.settled(series, Target(STRESS, stress, within, theory.RECOVERED, "G theta R / L"), of=name)

@@ -75,7 +75,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Stresses and motions")
     page.targets("By mesh", MeshSeries(rows, ROUND), targets)
     page.text(
-        "The bar goes on two diameters behind its root and is clamped there, so that the clamp's "
+        "The bar continues two diameters behind its root and is clamped there, so that the clamp's "
         "singular rim does not reach the root; displacements are against the root section's mean "
         "motion. Stresses of the root are taken from the elements' own strains."
     )

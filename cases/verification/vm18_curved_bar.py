@@ -32,7 +32,7 @@ MANUAL = "Ansys Mechanical APDL verification manual, VM18, target as in PyMAPDL'
 
 
 def bent(points: Floats) -> Floats:
-    """The straight bar along x laid on the circle, z out of its plane."""
+    """The straight bar along x mapped onto the circle, z out of its plane."""
     t, r = points[:, 0] / RADIUS, RADIUS + points[:, 1]
     return np.column_stack([r * np.sin(t), r * np.cos(t), points[:, 2]])
 
@@ -82,7 +82,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Deflection and stresses")
     page.targets("By mesh", MeshSeries(rows, ROUND), targets)
     page.text(
-        "The bar goes on two diameters behind its root and is clamped there, so that the clamp's "
+        "The bar continues two diameters behind its root and is clamped there, so that the clamp's "
         "singular rim does not reach the root; the deflection is against the root section's mean "
         "motion. Stresses of the root are taken from the elements' own strains."
     )

@@ -51,14 +51,13 @@ def solve(level: tuple[int, int, int], turns: bool, free: bool) -> Record:
     return {COUNT: sum(level), **along_the_middle(found, SECTOR, PLACES)}
 
 
-def target(key: str, value: float, source: str, prefix: str) -> Target:
+def target(key: str, value: float, source: str) -> Target:
     """One quantity; the manual's figures have five digits."""
-    name = prefix + key.split(" [")[0]
     if key == OPENED:
-        return Target(key, value, 1e-4, "rounding of the manual's fifth digit", source, name)
+        return Target(key, value, 1e-4, "rounding of the manual's fifth digit", source)
     why = "recovered stress at the bore misses s'' h^2 / 12 = 0.03 % with 16 elements from there "
     why += "to r = 5.43 in; the manual's figures are rounded at the fifth digit"
-    return Target(key, value, 2e-3, why, source, name)
+    return Target(key, value, 2e-3, why, source)
 
 
 @case(
@@ -69,13 +68,14 @@ def target(key: str, value: float, source: str, prefix: str) -> Target:
 def run(run: Run, page: Page) -> None:
     """Solve a sector of the cylinder, and of a thin disc."""
     last = []
-    for title, prefix, turns, free, references, source in (
-        ("Long cylinder under pressure", "pressure: ", False, False, PRESSED, MANUAL),
-        ("Thin disc in rotation", "thin disc, rotation: ", True, True, DISC, MANUAL),
-        ("Long cylinder in rotation", "long cylinder, rotation: ", True, False, CYLINDER, CLOSED),
+    for title, name, turns, free, references, source in (
+        ("Long cylinder under pressure", "pressure", False, False, PRESSED, MANUAL),
+        ("Thin disc in rotation", "thin disc, rotation", True, True, DISC, MANUAL),
+        ("Long cylinder in rotation", "long cylinder, rotation", True, False, CYLINDER, CLOSED),
     ):
         series = MeshSeries([run.timed(title, solve, n, turns, free) for n in LEVELS], COUNT)
-        page.targets(title, series, [target(*of, source, prefix) for of in references.items()])
+        targets = [target(*of, source) for of in references.items()]
+        page.targets(title, series, targets, of=name)
         last.append(series.rows[-1])
     pressed, thin, long = last
     page.answer(

@@ -101,7 +101,7 @@ class Beam:
     Raises
     ------
     InputError
-        If there is no section, a support is off the beam or a name is taken twice.
+        If there is no section, a support is not on the beam or a name is taken twice.
     """
 
     sections: Sequence[Section]

@@ -185,7 +185,7 @@ def unit_load_response(
     Raises
     ------
     InputError
-        If a station is off the beam, the supports leave the beam free to move (the motion is
+        If a station is not on the beam, the supports leave the beam free to move (the motion is
         named), or two rigid supports share a load in a way that statics cannot tell.
     """
     loaded = stations_on(beam, "load station", load_stations)

@@ -4,6 +4,7 @@ from .answers import ball_contacts as ball_contacts
 from .answers import by_row as by_row
 from .answers import end_loads as end_loads
 from .answers import lamina_loads as lamina_loads
+from .answers import laminae_of_contacts as laminae_of_contacts
 from .answers import load_zones as load_zones
 from .answers import pressures as pressures
 from .answers import secant_stiffness as secant_stiffness

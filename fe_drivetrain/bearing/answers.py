@@ -112,6 +112,28 @@ def lamina_loads(row: RollerRow, displacements: ArrayLike) -> Floats:
     return row.law.load(approaches(row, displacements)) / n_laminae
 
 
+def laminae_of_contacts(row: RollerRow, approach: ArrayLike, lean: ArrayLike) -> Floats:
+    """Load of each lamina where every roller has its own deflection, as on rings that give way.
+
+    Parameters
+    ----------
+    row : RollerRow
+        With one lamina or more.
+    approach, lean : array_like
+        (n, rollers) of the races at the roller's middle [m], and along the roller [rad], as
+        `fe_drivetrain.rings.AssemblyEquilibrium.deflections` has them.
+
+    Returns
+    -------
+    loads : Floats
+        (n, rollers, laminae) [N].
+    """
+    middle, t = np.asarray(approach, dtype=float), np.asarray(lean, dtype=float)
+    along = 0.0 * row.places if row.aligning else row.places
+    whole = middle[..., None] + t[..., None] * along - row.clearance - row.free
+    return row.law.load(whole) / max(row.laminae, 1)
+
+
 def approaches(row: RollerRow, displacements: ArrayLike) -> Floats:
     """Approach of the races at each lamina, negative where they are apart.
 

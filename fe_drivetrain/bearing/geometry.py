@@ -79,7 +79,7 @@ class RollerRow:
             )
         if not (isfinite(self.crown) and 0.0 <= self.crown <= 0.01 * self.diameter):
             raise InputError(
-                f"crown of {1e6 * self.crown:g} um on rollers of {1e3 * self.diameter:g} mm: give "
+                f"crown of {1e6 * self.crown:g} µm on rollers of {1e3 * self.diameter:g} mm: give "
                 "0 to 1 % of their diameter (0.00035 to 0.00045 of it in ISO/TS 16281)"
             )
         if self.crown and not self.laminae:
@@ -156,8 +156,8 @@ class BallRow:
                 )
         if not self.clearance < 0.5 * self.groove_distance:
             raise InputError(
-                f"clearance of {1e6 * self.clearance:g} um: it must be less than half the distance "
-                f"of the groove centres, {5e5 * self.groove_distance:g} um"
+                f"clearance of {1e6 * self.clearance:g} µm: it must be less than half the distance "
+                f"of the groove centres, {5e5 * self.groove_distance:g} µm"
             )
 
     @property
@@ -258,7 +258,7 @@ def _check_row(row: Row, what: str, n: int) -> None:
         raise InputError("place and first angle of a row must be finite numbers [m, rad]")
     if not (isfinite(row.clearance) and abs(row.clearance) <= 0.01 * row.diameter):
         raise InputError(
-            f"clearance of {1e6 * row.clearance:g} um along the contact of {what}s of "
+            f"clearance of {1e6 * row.clearance:g} µm along the contact of {what}s of "
             f"{1e3 * row.diameter:g} mm: beyond 1 % of their diameter there is no bearing left; "
             "give a smaller clearance, or preload where it is negative"
         )

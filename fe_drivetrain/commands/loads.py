@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -14,9 +14,6 @@ from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
-
-if TYPE_CHECKING:
-    from fe_drivetrain.histories.sites import Site
 
 _KEPT = "files that are done are kept: run again with --resume"
 
@@ -42,6 +39,24 @@ def loads_command(
             "or wind speed, as in --channel 'wind speed=Vhub'. May be repeated.",
         ),
     ] = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            "--mapping",
+            metavar="YAML",
+            help="Names, units, frame and origin of channels, for files of other programs "
+            "(docs/loads.md); --channel goes before it.",
+        ),
+    ] = None,
+    also: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--also",
+            metavar="COLUMN",
+            help="Another channel of the files, as BldPitch1: statistics, equivalent loads and "
+            "multiples of it, too. May be repeated.",
+        ),
+    ] = None,
     rotor_speed: Annotated[
         float | None,
         typer.Option(
@@ -62,8 +77,23 @@ def loads_command(
         typer.Option(
             "--slope",
             metavar="M",
-            help="Exponent of an S-N curve, for damage-equivalent loads at 1 Hz. May be repeated. "
+            help="Exponent of an S-N curve, for damage-equivalent loads. May be repeated. "
             "Default: 3, 4 and 10.",
+        ),
+    ] = None,
+    frequency: Annotated[
+        float,
+        typer.Option(
+            "--frequency", metavar="HZ", min=1e-6, help="Of damage-equivalent loads, in Hz."
+        ),
+    ] = 1.0,
+    ultimate: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--ultimate",
+            metavar="NAME=LOAD",
+            help="Load that breaks the part, with its unit, as in 'My=25 MNm': shows cycles about "
+            "zero mean by Goodman's line, too. May be repeated.",
         ),
     ] = None,
     residue: Annotated[
@@ -90,13 +120,43 @@ def loads_command(
             "--target", metavar="COUNT", min=1, help="Windows that each wind speed should have."
         ),
     ] = 6,
+    winds: Annotated[
+        str | None,
+        typer.Option(
+            "--winds",
+            metavar="LOW:HIGH",
+            help="Mean wind speeds that the capture matrix should have, as in 4:24, in m/s. "
+            "Default: those of the files.",
+        ),
+    ] = None,
     site: Annotated[
         str | None,
         typer.Option(
             "--site",
             metavar="CLASS",
-            help="Weight winds over 20 years: a class of IEC 61400-1 (I, II, III), or the mean "
-            "wind speed of a Rayleigh distribution in m/s.",
+            help="Weight winds over a lifetime: a class of IEC 61400-1 (I, II, III), or the mean "
+            "wind speed in m/s.",
+        ),
+    ] = None,
+    shape: Annotated[
+        float,
+        typer.Option(
+            "--shape",
+            metavar="K",
+            min=0.5,
+            help="Weibull's exponent of the site's winds; 2 is Rayleigh's distribution.",
+        ),
+    ] = 2.0,
+    years: Annotated[
+        float, typer.Option("--years", metavar="YEARS", min=0.01, help="Of the lifetime.")
+    ] = 20.0,
+    transient: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--transient",
+            metavar="FILES=COUNT",
+            help="Events of the lifetime and how many a year, as in 'stops/*.outb=700'; a file is "
+            "one event. May be repeated.",
         ),
     ] = None,
     against: Annotated[
@@ -108,6 +168,22 @@ def loads_command(
             "May be repeated.",
         ),
     ] = None,
+    scene: Annotated[
+        str | None,
+        typer.Option(
+            "--scene",
+            metavar="SCENE",
+            help="A scene whose bearing reactions to these loads are shown and compared, too.",
+        ),
+    ] = None,
+    level: Annotated[
+        str,
+        typer.Option(
+            "--level",
+            metavar="LEVEL",
+            help="Of the scene: 1, a beam on rigid housings, or 4, the assembly of solids.",
+        ),
+    ] = "1",
     parquet: Annotated[
         bool, typer.Option("--parquet", help="Write each table as Parquet, too (needs pyarrow).")
     ] = False,
@@ -134,10 +210,21 @@ def loads_command(
         hold_threads()
         from fe_drivetrain.commands.loads_digest import Options
         from fe_drivetrain.commands.loads_page import loaded
+        from fe_drivetrain.commands.loads_reactions import scene_reactions
         from fe_drivetrain.commands.loads_tables import parquet_writer
+        from fe_drivetrain.commands.loads_words import (
+            parse_channels,
+            parse_share,
+            parse_site,
+            parse_transients,
+            parse_ultimate,
+            parse_winds,
+        )
+        from fe_drivetrain.commands.scenes import named_scene
         from fe_drivetrain.histories.cycles import RESIDUES
         from fe_drivetrain.histories.damage import SLOPES, check_slope
-        from fe_drivetrain.hub_loads.recorded import recorded_files
+        from fe_drivetrain.hub_loads.channel_map import read_channel_map
+        from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.result_folders import run_case
 
@@ -150,10 +237,23 @@ def loads_command(
             skip,
             tuple(slope or SLOPES),
             residue,  # type: ignore[arg-type]
-            _share(gate),
-            None if rotor_speed is None else rotor_speed * 3.141592653589793 / 30.0,
+            parse_share(gate),
+            None if rotor_speed is None else rotor_speed * pi / 30.0,
+            parse_ultimate(ultimate or ()),
+            frequency,
+            OWN_NAMES if mapping is None else read_channel_map(mapping),
+            tuple(also or ()),
         )
-        place = None if site is None else _site(site)
+        wanted = parse_winds(winds, target)
+        place = None if site is None else parse_site(site, shape, years)
+        if transient and place is None:
+            raise InputError("--transient counts events of a lifetime: give --site, too")
+        events = parse_transients(transient or ())
+        if level not in ("1", "4"):
+            raise InputError(f"--level {level}: choose 1, a beam, or 4, the assembly of solids")
+        reactions = None
+        if scene is not None:
+            reactions = scene_reactions(named_scene(scene, {}), int(level))
         writer = parquet_writer() if parquet else None
         found = recorded_files(files)
         others = recorded_files(against or [])
@@ -163,7 +263,7 @@ def loads_command(
             f"Load histories of {count} file{'s' * (count > 1)}",
             "the user's files",
             lambda run, page: loaded(
-                run, page, found, options, target, place, others, resume, writer
+                run, page, found, options, wanted, place, events, others, resume, writer, reactions
             ),
         )
         with show_steps() as report:
@@ -172,49 +272,3 @@ def loads_command(
         return PASSED if results.passed else FAILED
 
     raise typer.Exit(guarded(work, _KEPT))
-
-
-def parse_channels(texts: Iterable[str]) -> dict[str, str]:
-    """Names and columns of ``--channel NAME=COLUMN``.
-
-    Parameters
-    ----------
-    texts : iterable of str
-        One for each option.
-
-    Raises
-    ------
-    InputError
-        One has no equals sign, or no such name.
-    """
-    from fe_drivetrain.hub_loads.recorded import NAMES
-
-    found = {}
-    for text in texts:
-        name, equals, column = (part.strip() for part in text.partition("="))
-        if not equals or not column or name not in NAMES:
-            raise InputError(f"--channel {text}: write NAME=COLUMN, NAME one of {', '.join(NAMES)}")
-        found[name] = column
-    return found
-
-
-def _site(text: str) -> Site:
-    """The site of a class, or of a mean wind speed."""
-    from fe_drivetrain.histories.sites import Site, site_of_class
-
-    try:
-        mean = float(text)
-    except ValueError:
-        return site_of_class(text)
-    return Site(mean)
-
-
-def _share(text: str) -> float:
-    """A share of 0 to 1, as in 1% or 0.01."""
-    try:
-        value = float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
-    except ValueError:
-        value = -1.0
-    if not 0.0 <= value < 1.0:
-        raise InputError(f"--gate {text}: give a share from 0 to below 1, as in 1% or 0.01")
-    return value

@@ -15,11 +15,13 @@ from fe_drivetrain.commands.loads_digest import (
     Digest,
     Options,
 )
+from fe_drivetrain.commands.loads_reactions import ALONE, OTHER, parts
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sets import CHANCE, Difference, differences
-from fe_drivetrain.histories.spectra import MULTIPLES
+from fe_drivetrain.histories.spectra import MULTIPLES, SEGMENT
 from fe_drivetrain.histories.windows import COLUMNS
+from fe_drivetrain.report.charts import trace
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 
@@ -64,6 +66,31 @@ def features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:
     return result
 
 
+def all_features(found: Digest, slopes: Sequence[float]) -> dict[str, float]:
+    """Quantities of one history, and of each reaction to it that a digest has.
+
+    Parameters
+    ----------
+    found : dict
+        Of `digest_with_reactions`.
+    slopes : sequence of float
+        With which it was made.
+    """
+    result: dict[str, float] = {}
+    for name, part in parts(found).items():
+        own = features(part, slopes)
+        if name.startswith(OTHER):  # one channel, in its own unit
+            start, shown = f"{ALONE}, ", name.removeprefix(OTHER)
+            for key, value in own.items():
+                if key.startswith(start):
+                    what = key.removeprefix(start).removesuffix(" [kN]")
+                    result[f"{shown}, {what}"] = 1e3 * value
+            continue
+        before = f"{name}: " if name else ""
+        result |= {f"{before}{key}": v for key, v in own.items()}
+    return result
+
+
 def mean_wind(found: Digest) -> float:
     """Mean wind speed of one history [m/s]; NaN where it is not known."""
     weights = found["window seconds"]
@@ -101,13 +128,16 @@ def beside(
     rows: list[Record] = []
     alone: list[str] = []
     for wind in sorted(_winds(one) | _winds(other), key=str):
-        sets = [[features(d, options.slopes) for d in s if _wind(d) == wind] for s in (one, other)]
+        sets = [
+            [all_features(d, options.slopes) for d in s if _wind(d) == wind] for s in (one, other)
+        ]
         if not sets[0] or not sets[1] or len(sets[0]) + len(sets[1]) < 3:
             alone.append(str(wind))
             continue
         found = differences(sets[0], sets[1])
         rows += [_row(wind, difference, names) for difference in found]
         _shown(page, wind, found, (len(sets[0]), len(sets[1])), names)
+        _spectra(page, wind, [[d for d in own if _wind(d) == wind] for own in (one, other)], names)
     if not rows:
         raise InputError(
             f"--against: no mean wind speed, to {WIND_BIN:g} m/s, has histories of both sets and "
@@ -138,6 +168,34 @@ def _shown(
         [_row(wind, d, names) for d in beyond[:40]],
         ["quantity", names[0], names[1], "ratio", "scatter of seeds", "allowed difference"],
     )
+
+
+def _spectra(
+    page: Page, wind: str, sets: Sequence[Sequence[Digest]], names: tuple[str, str]
+) -> None:
+    """Mean spectra of both sets, of the moments across the shaft and of what bearings carry."""
+    if not all("spectra" in found for own in sets for found in own):
+        return
+    for name in parts(sets[0][0]):
+        if name.startswith(OTHER):
+            continue
+        for load in ("My",) if not name else ("Fz", "My"):
+            traces = []
+            for label, own in zip(names, sets, strict=True):
+                densities = [parts(d)[name]["spectra"][LOADS.index(load)] for d in own]
+                lines = min(map(len, densities))
+                mean = np.mean([one[:lines] for one in densities], axis=0) / 1e6
+                traces.append(trace(label, np.arange(1, lines) / SEGMENT, mean[1:]))
+            if max(max(t["y"]) for t in traces) > 0.0:
+                unit = "kN" if load.startswith("F") else "kN m"
+                page.chart(
+                    f"{wind}: power spectral density of {name + ', ' if name else ''}{load}, mean "
+                    f"of each set, segments of {SEGMENT:g} s",
+                    traces,
+                    "frequency [Hz]",
+                    f"density [({unit})²/Hz]",
+                    "xy",
+                )
 
 
 def _row(wind: str, found: Difference, names: tuple[str, str]) -> Record:

@@ -19,9 +19,11 @@ def counts(page: Page, found: Together, options: Options, rule: str) -> dict[str
     return {**_cycles(page, found, options, rule), **_levels(page, found)}
 
 
-def equivalent(damage: Floats, seconds: float, slopes: Floats) -> Floats:
-    """Damage-equivalent loads (c, s) of sums of n r^m over so many seconds, at 1 Hz."""
-    return np.asarray((damage / (FREQUENCY * seconds)) ** (1.0 / slopes))
+def equivalent(
+    damage: Floats, seconds: float, slopes: Floats, frequency: float = FREQUENCY
+) -> Floats:
+    """Damage-equivalent loads (c, s) of sums of n r^m over so many seconds, at a frequency [Hz]."""
+    return np.asarray((damage / (frequency * seconds)) ** (1.0 / slopes))
 
 
 def _cycles(page: Page, found: Together, options: Options, rule: str) -> dict[str, list[Record]]:
@@ -29,9 +31,10 @@ def _cycles(page: Page, found: Together, options: Options, rule: str) -> dict[st
     slopes = np.array(options.slopes, dtype=float)
     assert found.damage is not None
     assert found.cycles is not None
-    overall = equivalent(found.damage, found.seconds, slopes)
+    hertz = options.frequency
+    overall = equivalent(found.damage, found.seconds, slopes, hertz)
     page.table(
-        f"Damage-equivalent loads: range of a sine of {FREQUENCY:g} Hz that does the same damage; "
+        f"Damage-equivalent loads: range of a sine of {hertz:g} Hz that does the same damage; "
         f"{rule}",
         [
             {
@@ -53,6 +56,7 @@ def _cycles(page: Page, found: Together, options: Options, rule: str) -> dict[st
             for n, row in zip(LOADS, overall.tolist(), strict=True)
         },
     )
+    _about_zero(page, found, options, rule)
     for chosen, unit in ((("Fx", "Fy", "Fz"), "kN"), (("Mx", "My", "Mz"), "kN m")):
         traces = []
         for name in chosen:
@@ -101,7 +105,13 @@ def _cycles(page: Page, found: Together, options: Options, rule: str) -> dict[st
             )
     seconds = [row["step [s]"] * row["samples"] for row in found.files]
     equivalents = [
-        {"file": file, "channel": name, "unit": unit, "slope": float(m), "DEL at 1 Hz": value}
+        {
+            "file": file,
+            "channel": name,
+            "unit": unit,
+            "slope": float(m),
+            f"DEL at {hertz:g} Hz": value,
+        }
         for file, damage, time in zip(
             ("all", *found.names),
             (found.damage, *found.damages),
@@ -109,11 +119,40 @@ def _cycles(page: Page, found: Together, options: Options, rule: str) -> dict[st
             strict=True,
         )
         for name, unit, row in zip(
-            LOADS, UNITS, equivalent(damage, time, slopes).tolist(), strict=False
+            LOADS, UNITS, equivalent(damage, time, slopes, hertz).tolist(), strict=False
         )
         for m, value in zip(slopes, row, strict=True)
     ]
     return {"equivalent_loads": equivalents, "ranges": ranges, "range_mean": matrix}
+
+
+def _about_zero(page: Page, found: Together, options: Options, rule: str) -> None:
+    """Equivalent loads of cycles about zero mean, where an ultimate load is given."""
+    if not options.ultimate:
+        return
+    slopes = np.array(options.slopes, dtype=float)
+    loads = equivalent(found.about_zero, found.seconds, slopes, options.frequency)
+    page.table(
+        "The same of cycles about zero mean, their ranges changed by Goodman's straight line to "
+        f"the ultimate load; {rule}",
+        [
+            {
+                "channel": f"{name} [{'kN' if unit == 'N' else 'kN m'}]",
+                "ultimate load": options.ultimate[name] / 1e3,
+                **{f"m = {m:g}": v / 1e3 for m, v in zip(options.slopes, row, strict=True)},
+            }
+            for name, unit, row in zip(LOADS, UNITS, loads.tolist(), strict=False)
+            if name in options.ultimate
+        ],
+    )
+    page.data(
+        "equivalent_loads_about_zero",
+        {
+            name: dict(zip(map(str, options.slopes), row, strict=True))
+            for name, row in zip(LOADS, loads.tolist(), strict=True)
+            if name in options.ultimate
+        },
+    )
 
 
 def _levels(page: Page, found: Together) -> dict[str, list[Record]]:

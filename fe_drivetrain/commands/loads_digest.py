@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.classes import Classes, in_classes
 from fe_drivetrain.histories.cycles import Residue, gated, rainflow_cycles
+from fe_drivetrain.histories.damage import FREQUENCY, goodman
+from fe_drivetrain.histories.faults import lone_samples
 from fe_drivetrain.histories.levels import torque_reversals
+from fe_drivetrain.histories.polar import direction
 from fe_drivetrain.histories.spectra import (
     MULTIPLES,
     SEGMENT,
@@ -24,10 +28,11 @@ from fe_drivetrain.histories.spectra import (
     spectrum,
 )
 from fe_drivetrain.histories.windows import window_statistics
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.loops import find_loops, loop_statistics, time_on_loops
-from fe_drivetrain.hub_loads.recorded import Recorded
+from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
 
-VERSION = 1
+VERSION = 3
 """Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 LOADS = (*FORCES, "radial force", "bending moment")
@@ -45,6 +50,9 @@ SPEED_STEP = 0.05
 PLANES = (("force", 1), ("moment", 4))
 """Names, and where the component along y stands among the six."""
 
+SECTORS = 36
+"""Of directions across the shaft; the first is about 0 deg, which is right."""
+
 POWER = 10.0 / 3.0
 """Exponent of the life of roller bearings (ISO 281)."""
 
@@ -56,7 +64,7 @@ class Options:
     Attributes
     ----------
     columns : Mapping[str, str]
-        What a channel is, and how files call it.
+        What a channel is, and how files call it, before what the mapping says.
     skip : float
         Left out at the beginning of each file [s].
     slopes : Sequence[float]
@@ -68,6 +76,15 @@ class Options:
         its file.
     rotor_speed : float or None
         [rad/s], for files that have none.
+    ultimate : Mapping[str, float]
+        Loads that break the part, by channel [N, N m]: cycles of these are counted about zero mean,
+        too, by Goodman's line.
+    frequency : float
+        Of damage-equivalent loads [Hz]; what is kept of a file does not depend on it.
+    mapping : ChannelMap
+        How files call their channels, and their frame and origin.
+    also : Sequence[str]
+        Further channels, as files call them, of which there are statistics and cycles, too.
     """
 
     columns: Mapping[str, str]
@@ -76,6 +93,15 @@ class Options:
     residue: Residue
     gate: float
     rotor_speed: float | None
+    ultimate: Mapping[str, float] = field(default_factory=dict)
+    frequency: float = FREQUENCY
+    mapping: ChannelMap = OWN_NAMES
+    also: Sequence[str] = ()
+
+    @property
+    def names(self) -> ChannelMap:
+        """The mapping, with the columns."""
+        return self.mapping.with_columns(self.columns)
 
     def content(self, file: Path) -> dict[str, Any]:
         """All that the digest of a file depends on."""
@@ -85,14 +111,17 @@ class Options:
             "file": str(file.resolve()),
             "size": status.st_size,
             "written": status.st_mtime_ns,
-            "columns": dict(self.columns),
+            "mapping": self.names.content(),
             "slopes": [float(m) for m in self.slopes],
+            "ultimate": dict(self.ultimate),
+            "also": list(self.also),
             **{name: getattr(self, name) for name in ("skip", "residue", "gate", "rotor_speed")},
         }
 
 
-Digest = dict[str, Floats]
-"""Arrays by name, as `digest` makes them; classes of NAME stand under three names."""
+Digest = dict[str, NDArray[Any]]
+"""Arrays by name, as `digest` makes them; classes of NAME stand under three names, and which
+channels were read is text."""
 
 
 def digest(found: Recorded, options: Options) -> Digest:
@@ -120,6 +149,7 @@ def digest(found: Recorded, options: Options) -> Digest:
     beside = [nothing if c is None else c for c in (speed, found.wind_speed)]
     windows = window_statistics(history.time, np.column_stack([loads, *beside]))
     result: Digest = {
+        "read": np.array(str(history.attributes.get("channels", "as in the file"))),
         "time": np.array([history.time[0], history.time[-1], step, count], dtype=float),
         "window start": windows.start,
         "window seconds": windows.seconds,
@@ -128,6 +158,10 @@ def digest(found: Recorded, options: Options) -> Digest:
     seconds = np.full(count, step)
     turns = None if speed is None else np.abs(speed) * step / (2.0 * np.pi)
     _count_cycles(result, loads, options)
+    alone = [lone_samples(column) for column in history.loads.T]
+    result["lone samples"] = np.array(
+        [[len(k), history.time[k[0]] if len(k) else np.nan] for k in alone]
+    )
     _spectra(result, loads, speed, step)
     for c, name in enumerate(LOADS):
         _put(result, f"time at {name}", in_classes(loads[:, c], weights=seconds))
@@ -147,6 +181,8 @@ def digest(found: Recorded, options: Options) -> Digest:
     for name, y in PLANES:
         pair = loads[:, y], loads[:, y + 1]
         _put(result, f"plane of {name}", in_classes(-pair[0], pair[1], weights=seconds))
+        sector = (direction(*pair) * (SECTORS / (2.0 * np.pi)) + 0.5).astype(int) % SECTORS
+        result[f"directions of {name}"] = step * np.bincount(sector, minlength=SECTORS)
         loops = find_loops(history.time, *pair)
         passing = None if speed is None else 3.0 * float(np.abs(speed).mean()) / (2.0 * np.pi)
         numbers = loop_statistics(loops, count * step, passing or None)
@@ -182,6 +218,8 @@ def _all_loads(loads: Floats) -> Floats:
 def _count_cycles(result: Digest, loads: Floats, options: Options) -> None:
     """Sums of n r^m for each slope, exact; cycles in classes of range, and of range and mean."""
     sums = np.zeros((len(LOADS), len(options.slopes)))
+    about_zero = np.full_like(sums, np.nan)
+    halves = np.zeros_like(sums)
     numbers = np.zeros((len(LOADS), 3))
     for c, name in enumerate(LOADS):
         cycles = rainflow_cycles(loads[:, c], options.residue)
@@ -189,12 +227,18 @@ def _count_cycles(result: Digest, loads: Floats, options: Options) -> None:
         if options.gate:
             cycles = gated(cycles, options.gate * largest)
         sums[c] = [float(cycles.counts @ cycles.ranges**m) for m in options.slopes]
+        half = cycles.counts < 1.0
+        halves[c] = [float(cycles.counts[half] @ cycles.ranges[half] ** m) for m in options.slopes]
         numbers[c] = largest, cycles.counts.sum(), cycles.left_out
+        if name in options.ultimate:
+            same = goodman(cycles, options.ultimate[name])
+            about_zero[c] = [float(same.counts @ same.ranges**m) for m in options.slopes]
         _put(result, f"ranges of {name}", in_classes(cycles.ranges, weights=cycles.counts))
         if name in ("Mx", "My"):
             both = in_classes(cycles.ranges, cycles.means, weights=cycles.counts, least=24)
             _put(result, f"ranges and means of {name}", both)
     result["damage"], result["cycles"] = sums, numbers
+    result["damage about zero"], result["damage of halves"] = about_zero, halves
 
 
 def _spectra(result: Digest, loads: Floats, speed: Floats | None, step: float) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
@@ -10,11 +11,21 @@ import numpy as np
 
 from fe_drivetrain.commands.loads_against import beside
 from fe_drivetrain.commands.loads_counts import counts
-from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options, digest
-from fe_drivetrain.commands.loads_lifetime import lifetime
+from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options
+from fe_drivetrain.commands.loads_faults import faults
+from fe_drivetrain.commands.loads_lifetime import Event, lifetime
+from fe_drivetrain.commands.loads_reactions import (
+    OTHER,
+    SceneReactions,
+    digest_with_reactions,
+    others_section,
+    parts,
+    reactions_section,
+)
 from fe_drivetrain.commands.loads_shape import shape
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.commands.loads_together import Together, windows_table
+from fe_drivetrain.commands.loads_together import WIND_BIN, Together, windows_table
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.processes import Processes
@@ -28,14 +39,38 @@ from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
 
-WIND_BIN, TURBULENCE_BIN = 1.0, 0.02
-"""Widths of the capture matrix [m/s, share]: columns about whole numbers of m/s."""
+TURBULENCE_BIN = 0.02
+"""Height of the capture matrix's rows; its columns are `WIND_BIN` wide, about whole m/s."""
+
+FRAME = "x downwind along the shaft, z up, y = z cross x; it does not turn with the rotor"
+ORIGIN = (
+    "about the hub, the apex of the rotor; those of a table are taken to be so, unless the key "
+    "moments_at of a mapping says another point"
+)
 
 _SHOWN = 20
+_MOST_BINS = 60
 _MANY = 8  # files for which it pays to start processes
 _AT_ONCE = 64  # files whose digests, a few hundred kilobytes each, are in memory together
 _SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN\u00a0m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}
 UNIT_OF = dict(zip(CHANNELS, UNITS, strict=True))
+
+
+@dataclass(frozen=True)
+class Target:
+    """What the capture matrix should hold.
+
+    Attributes
+    ----------
+    windows : int
+        At each mean wind speed.
+    low, high : float or None
+        Least and largest mean wind speed that it should have [m/s]; those of the files where None.
+    """
+
+    windows: int
+    low: float | None = None
+    high: float | None = None
 
 
 def loaded(
@@ -43,11 +78,13 @@ def loaded(
     page: Page,
     files: Sequence[Path],
     options: Options,
-    target: int,
+    target: Target,
     site: Site | None = None,
+    transients: Sequence[tuple[float, Sequence[Path]]] = (),
     against: Sequence[Path] = (),
     resume: bool = False,
     parquet: ModuleType | None = None,
+    reactions: SceneReactions | None = None,
 ) -> None:
     """Read files one by one, add up what they hold, and show it.
 
@@ -61,16 +98,20 @@ def loaded(
         Histories, of any length and step.
     options : Options
         How they are counted.
-    target : int
-        Windows that each mean wind speed should have.
+    target : Target
+        What the capture matrix should hold.
     site : Site, optional
         Whose winds a lifetime has.
+    transients : sequence of (float, sequence of Path)
+        Events of its lifetime: how many a year, and histories of one each.
     against : sequence of Path
         Another set of histories, to be compared.
     resume : bool
         Take digests that an earlier run kept.
     parquet : module, optional
         Writer of Parquet.
+    reactions : SceneReactions, optional
+        Of a scene, which are shown and compared, too.
 
     Raises
     ------
@@ -78,11 +119,13 @@ def loaded(
         A file cannot be read, or holds no loads.
     """
     page.seed = None
-    found = Together()
+    every = {name: Together() for name in ("", *(reactions.names if reactions else ()))}
+    found = every[""]
     own: list[Digest] = []
     with run.step("files"):
-        for file, one in _digests(run, files, options, resume, "files"):
-            found.add(_name(file, files), one)
+        for file, one in _digests(run, files, options, resume, "files", reactions):
+            for name, part in parts(one).items():
+                every.setdefault(name, Together()).add(_name(file, files), part)
             if against:
                 own.append(one)
     _require_loads(found)
@@ -97,22 +140,36 @@ def loaded(
         f"{found.seconds:,.6g} s; {rule}."
     )
     tables: dict[str, list[Record]] = {"files": found.files}
+    faults(page, found, options)
+    _channels(page, found)
     _statistics(page, found)
     tables["windows"] = windows_table(found, UNIT_OF)
     tables["wind_and_turbulence"] = _by_turbulence(found)
     tables["capture_matrix"] = _capture(page, found, target)
     tables |= shape(page, found)
     tables |= counts(page, found, options, rule)
+    if reactions is not None:
+        of_scene = {name: every[name] for name in reactions.names}
+        tables |= reactions_section(page, of_scene, options, reactions.model, rule)
+    others = {name: one for name, one in every.items() if name.startswith(OTHER)}
+    tables |= others_section(page, others, options, rule)
     if site is not None:
-        tables |= lifetime(page, found, options, site)
+        with run.step("transients"):
+            events = [
+                Event(a_year, [d for _, d in _digests(run, of, options, resume, "transients")], of)
+                for a_year, of in transients
+            ]
+        tables |= lifetime(page, found, options, site, events)
     if against:
         with run.step("the others"):
-            others = [d for _, d in _digests(run, against, options, resume, "the others")]
-        tables["beside"] = beside(page, own, others, options)
+            made = _digests(run, against, options, resume, "the others", reactions)
+            tables["beside"] = beside(page, own, [d for _, d in made], options)
     _checks(page, found)
     facts = {
-        "frame": "x downwind along the shaft, z up, y = z cross x; does not turn with the rotor",
-        "units": "N, N m, s, Hz, rad/s, m/s; moments about the hub, as in the files",
+        "frame": FRAME,
+        "origin": ORIGIN,
+        "units": "N, N m, s, Hz, rad/s, m/s",
+        "channels": " | ".join(found.read),
         "cycles": rule,
     }
     write_tables(run.folder, tables, facts, parquet)
@@ -133,19 +190,32 @@ def loaded(
 
 
 def _digests(
-    run: Run, files: Sequence[Path], options: Options, resume: bool, step: str
+    run: Run,
+    files: Sequence[Path],
+    options: Options,
+    resume: bool,
+    step: str,
+    reactions: SceneReactions | None = None,
 ) -> Iterator[tuple[Path, Digest]]:
     """File by file, several at a time where there are cores; each kept as soon as it is done."""
     for start in range(0, len(files), _AT_ONCE):
         batch = files[start : start + _AT_ONCE]
         with Processes(len(batch) if len(batch) >= _MANY else 1, run.report) as processes:
-            jobs = [processes.start(kept_digest, file, options, resume) for file in batch]
+            jobs = [
+                processes.start(kept_digest, file, options, resume, reactions) for file in batch
+            ]
             for number, (file, job) in enumerate(zip(batch, jobs, strict=True), start + 1):
                 run.report(f"{step} ({number} of {len(files)})")
                 yield file, job.result()
 
 
-def kept_digest(_report: Progress, file: Path, options: Options, resume: bool) -> Digest:
+def kept_digest(
+    _report: Progress,
+    file: Path,
+    options: Options,
+    resume: bool,
+    reactions: SceneReactions | None = None,
+) -> Digest:
     """The digest of a file, or that of an earlier run where it is kept and asked for.
 
     Parameters
@@ -158,14 +228,32 @@ def kept_digest(_report: Progress, file: Path, options: Options, resume: bool) -
         How it is counted.
     resume : bool
         Take what is kept.
+    reactions : SceneReactions, optional
+        Of a scene.
     """
     cache, content = user_cache(), options.content(file)
+    if reactions is not None:
+        content |= {"reactions": reactions.content()}
     kept: Digest | None = cache.load("load-digests", content) if resume else None
     if kept is not None:
         return kept
-    found = digest(read_recorded(file, options.columns, options.skip), options)
+    recorded = read_recorded(file, options.names, options.skip, options.also)
+    found = digest_with_reactions(recorded, options, reactions)
     cache.keep("load-digests", content, found)
     return found
+
+
+def _channels(page: Page, found: Together) -> None:
+    """Frame and origin, and what was read."""
+    page.section("Frame and channels")
+    page.text(f"Frame: {FRAME}. Moments: {ORIGIN}.")
+    page.table(
+        "What the loads were read from",
+        [
+            {"channels": channels, "files": number}
+            for channels, number in list(found.read.items())[:_SHOWN]
+        ],
+    )
 
 
 def _require_loads(found: Together) -> None:
@@ -200,6 +288,7 @@ def _statistics(page: Page, found: Together) -> None:
             if row is not None:
                 by_wind.append({"wind [m/s]": speed, "windows": int(chosen.sum()), **row})
     page.table(f"By mean wind speed in {WIND_BIN:g} m/s", by_wind)
+    _shown_turbulence(page, found)
     place = CHANNELS.index("bending moment")
     values = found.values[:, place] / 1e3
     page.chart(
@@ -207,6 +296,25 @@ def _statistics(page: Page, found: Together) -> None:
         [trace(name, wind, values[:, k], points=True) for k, name in enumerate(COLUMNS[:3])],
         "mean wind speed [m/s]",
         "bending moment [kN m]",
+    )
+
+
+def _shown_turbulence(page: Page, found: Together) -> None:
+    """The bending moment by wind and turbulence; all channels are in a file."""
+    rows = [
+        {
+            "wind [m/s]": row["wind [m/s]"],
+            "turbulence [%]": 100.0 * float(row["turbulence [-]"]),
+            "windows": row["windows"],
+            **{f"{name} [kN m]": float(row[name]) / 1e3 for name in COLUMNS},
+        }
+        for row in _by_turbulence(found)
+        if row["channel"] == "bending moment"
+    ]
+    page.table(
+        f"Bending moment by mean wind speed and turbulence intensity in {100 * TURBULENCE_BIN:g} "
+        "%; every channel is in wind_and_turbulence.csv",
+        rows[:_MOST_BINS],
     )
 
 
@@ -245,7 +353,7 @@ def _row(name: str, values: Sequence[float]) -> Record | None:
     return {"channel": f"{name} [{unit}]", **dict(zip(COLUMNS, shown, strict=True))}
 
 
-def _capture(page: Page, found: Together, target: int) -> list[Record]:
+def _capture(page: Page, found: Together, target: Target) -> list[Record]:
     """Windows by wind speed and turbulence."""
     page.section("Capture matrix")
     wind = found.values[:, CHANNELS.index("wind speed")]
@@ -254,42 +362,61 @@ def _capture(page: Page, found: Together, target: int) -> list[Record]:
         page.text("No file has a wind speed, so that windows cannot be sorted by it.")
         return []
     mean, deviation = wind[known, 1], wind[known, 3]
-    low = WIND_BIN * np.floor(mean.min() / WIND_BIN + 0.5) - 0.5 * WIND_BIN
-    columns = np.arange(low, mean.max() + WIND_BIN, WIND_BIN)
+    least = min(float(mean.min()), np.inf if target.low is None else target.low)
+    highest = max(float(mean.max()), -np.inf if target.high is None else target.high)
+    low = WIND_BIN * np.floor(least / WIND_BIN + 0.5) - 0.5 * WIND_BIN
+    columns = np.arange(low, highest + WIND_BIN, WIND_BIN)
     most = float((deviation / mean).max())
     rows = TURBULENCE_BIN * np.arange(np.floor(most / TURBULENCE_BIN) + 2)
     matrix = capture_matrix(mean, deviation, columns, rows)
-    table = _matrix_rows(matrix)
     sums = matrix.counts.sum(axis=0)
-    totals = {"turbulence [%]": "all", **_by_column(matrix, sums.tolist())}
-    missing = np.maximum(target - sums, 0)
-    wanted = {"turbulence [%]": f"missing of {target}", **_by_column(matrix, missing.tolist())}
-    page.table(
-        f"Windows by mean wind speed [m/s] and turbulence intensity; {target} of each wind speed "
-        "are asked for (IEC 61400-1 asks for six ten-minute series; --target takes another number)",
-        [*table, totals, wanted],
+    middles = 0.5 * (columns[1:] + columns[:-1])
+    asked = np.where(
+        (middles >= (target.low or -np.inf)) & (middles <= (target.high or np.inf)),
+        target.windows,
+        0,
     )
+    missing = np.maximum(asked - sums, 0)
+    table = _matrix_rows(matrix, middles, missing)
+    page.table(
+        f"Windows by mean wind speed and turbulence intensity; {target.windows} of each wind speed "
+        "are asked for (IEC 61400-1 asks for six ten-minute series; --target takes another number, "
+        "--winds the range of wind speeds)",
+        table,
+    )
+    if missing.any():
+        page.answer(
+            f"Capture matrix: {int(missing.sum())} windows are missing at "
+            f"{int(np.count_nonzero(missing))} of {int(np.count_nonzero(asked))} wind speeds."
+        )
+    else:
+        page.answer(f"Capture matrix: every wind speed has {target.windows} windows or more.")
     if (~known).any():
         page.text(f"{int((~known).sum())} windows have no wind speed.")
     page.data(
-        "capture", {"wind": matrix.wind, "turbulence": matrix.turbulence, "counts": matrix.counts}
+        "capture",
+        {
+            "wind": matrix.wind,
+            "turbulence": matrix.turbulence,
+            "counts": matrix.counts,
+            "missing": missing,
+        },
     )
     return table
 
 
-def _matrix_rows(matrix: CaptureMatrix) -> list[Record]:
+def _matrix_rows(matrix: CaptureMatrix, middles: Floats, missing: Ints) -> list[Record]:
+    """A row for each wind speed, without turbulence that no window has."""
+    filled = np.flatnonzero(matrix.counts.any(axis=1)).tolist()
+    limits = 100.0 * matrix.turbulence
     rows: list[Record] = []
-    for r, counted in enumerate(matrix.counts.tolist()):
-        if not any(counted):
-            continue
-        low, high = 100 * matrix.turbulence[r : r + 2]
-        rows.append({"turbulence [%]": f"{low:g} to {high:g}", **_by_column(matrix, counted)})
+    for c, middle in enumerate(middles.tolist()):
+        row: Record = {"wind [m/s]": middle}
+        for r in filled:
+            row[f"{limits[r]:g} to {limits[r + 1]:g} %"] = int(matrix.counts[r, c])
+        row |= {"all": int(matrix.counts[:, c].sum()), "missing": int(missing[c])}
+        rows.append(row)
     return rows
-
-
-def _by_column(matrix: CaptureMatrix, values: Sequence[int]) -> Mapping[str, int]:
-    middles = 0.5 * (matrix.wind[1:] + matrix.wind[:-1])
-    return {f"{middle:g} m/s": value for middle, value in zip(middles, values, strict=True)}
 
 
 def _checks(page: Page, found: Together) -> None:

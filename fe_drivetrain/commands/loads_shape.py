@@ -6,7 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.commands.loads_digest import CHANNELS, HIGHEST, LOADS, SPEED_STEP, UNITS
+from fe_drivetrain.commands.loads_digest import (
+    CHANNELS,
+    HIGHEST,
+    LOADS,
+    SECTORS,
+    SPEED_STEP,
+    UNITS,
+)
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW
@@ -42,7 +49,7 @@ def heatmap(
         "x": rounded(x),
         "y": rounded(y),
         "z": cells,
-        "colorbar": {"title": {"text": colour}},
+        "colorbar": {"title": {"text": colour, "side": "right"}, "thickness": 12},
     }
     axes: dict[str, Any] = {"xaxis": {"title": {"text": right}}, "yaxis": {"title": {"text": up}}}
     for axis, more in layout.items():
@@ -74,8 +81,57 @@ def _planes(page: Page, found: Together) -> None:
         if near:
             cross = {"symbol": "cross-thin-open", "color": "#1f2933", "size": 12}
             origin = trace("origin", [0.0], [0.0], points=True, marker=cross, showlegend=False)
-            chart.figure["data"].append(origin)
+            chart.figure["data"] += [*_rings(across, above), origin]
         page.add(chart)
+    for name in found.directions:
+        page.add(_rose(name, found.directions[name]))
+
+
+def _rings(across: Floats, above: Floats) -> list[Any]:
+    """Circles of equal size about the origin."""
+    reach = max(float(np.abs(edges).max()) for edges in (across, above))
+    power = 10.0 ** np.floor(np.log10(reach / 2.0))
+    step = power * max(k for k in (1.0, 2.0, 5.0) if k * power <= reach / 2.0)
+    angle = np.linspace(0.0, 2.0 * np.pi, 73)
+    rings = []
+    for size in np.arange(step, reach, step).tolist():
+        x, y = size * np.cos(angle), size * np.sin(angle)
+        seen = (x >= across[0]) & (x <= across[-1]) & (y >= above[0]) & (y <= above[-1])
+        rings.append(
+            trace(
+                f"{size:g}",
+                np.where(seen, x, np.nan),
+                np.where(seen, y, np.nan),
+                line={"dash": "dot", "width": 1, "color": "#9aa5b1"},
+                showlegend=False,
+                hoverinfo="name",
+            )
+        )
+    return rings
+
+
+def _rose(name: str, seconds: Floats) -> Chart:
+    """Share of time by direction, as a polar chart."""
+    width = 360.0 / SECTORS
+    data = {
+        "type": "barpolar",
+        "theta": [width * k for k in range(SECTORS)],
+        "width": [width] * SECTORS,
+        "r": rounded(100.0 * seconds / seconds.sum()),
+    }
+    layout = {
+        "polar": {
+            "angularaxis": {"tickmode": "array", "tickvals": [0, 90, 180, 270], "ticksuffix": "°"},
+            "radialaxis": {"title": {"text": "% of time"}, "angle": 45, "tickangle": 45},
+        },
+        "height": 380,
+    }
+    return Chart(
+        caption=f"Direction of the {name} across the shaft, looking downwind: share of time in "
+        f"sectors of {width:g} deg; 0 deg is right, 90 deg up"
+        + ("; the axis of the moment" if name == "moment" else ""),
+        figure={"data": [data], "layout": layout},
+    )
 
 
 def _spectra(page: Page, found: Together) -> dict[str, list[Record]]:
@@ -106,6 +162,9 @@ def _spectra(page: Page, found: Together) -> dict[str, list[Record]]:
                     [max(low, 1e-9 * high), high],
                     line={"dash": "dot", "width": 1, "color": "#9aa5b1"},
                     showlegend=False,
+                    mode="lines+text",
+                    text=["", f"{n}P"],
+                    textposition="top center",
                     hovertext=f"{n}P at {n * hertz:.3g} Hz",
                 )
                 for n in MULTIPLES
@@ -209,6 +268,10 @@ def _campbell(page: Page, found: Together) -> None:
             n * speed / (2.0 * np.pi),
             line={"dash": "dot", "color": "white"},
             showlegend=False,
+            mode="lines+text",
+            text=[*[""] * (len(speed) - 1), f"{n}P"],
+            textposition="top left",
+            textfont={"color": "white"},
         )
         for n in MULTIPLES
     ]

@@ -7,11 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fe_drivetrain.commands.loads_digest import CHANNELS, Digest, classes_of
+from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, Digest, classes_of
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.classes import Classes, added
 from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.suite.records import Record
+
+WIND_BIN = 1.0
+"""Histories whose mean winds round to the same multiple are of one condition [m/s]."""
 
 
 @dataclass
@@ -28,12 +31,27 @@ class Together:
         Of all.
     damage : ndarray or None
         (loads, slopes) sums of n r^m.
+    about_zero : ndarray
+        (loads, slopes) the same of cycles about zero mean by Goodman's line; NaN where no ultimate
+        load is given.
+    halves : ndarray
+        (loads, slopes) the part of half cycles in the sums.
+    lone : list of tuple
+        File, channel, number of lone samples and time of the first [s].
+    constant : dict
+        Channels that do not move, and in how many files.
     cycles : ndarray or None
         (loads, 3) largest range, number of cycles, and how many were left out.
     torque : ndarray
         Reversals, negative seconds, and sums for equivalent torques, over time and turns.
     classes : dict
         Distributions by name.
+    at_wind : dict
+        Distributions of time and turns over levels, by rounded mean wind speed and name.
+    directions : dict
+        Plane: seconds in each sector.
+    read : dict
+        Which channels were read, and in how many files.
     windows : list of Record
         Each window of each file, its statistics (channels, 4) under "values".
     files : list of Record
@@ -54,9 +72,16 @@ class Together:
     seconds: float = 0.0
     samples: int = 0
     damage: Floats | None = None
+    about_zero: Floats = field(default_factory=lambda: np.zeros((1, 1)))
+    halves: Floats = field(default_factory=lambda: np.zeros((1, 1)))
+    lone: list[tuple[str, str, int, float]] = field(default_factory=list)
+    constant: dict[str, int] = field(default_factory=dict)
     cycles: Floats | None = None
     torque: Floats = field(default_factory=lambda: np.zeros(5))
     classes: dict[str, Classes] = field(default_factory=dict)
+    at_wind: dict[tuple[float, str], Classes] = field(default_factory=dict)
+    directions: dict[str, Floats] = field(default_factory=dict)
+    read: dict[str, int] = field(default_factory=dict)
     windows: list[Record] = field(default_factory=list)
     files: list[Record] = field(default_factory=list)
     damages: list[Floats] = field(default_factory=list)
@@ -78,6 +103,15 @@ class Together:
         damage, cycles = found["damage"], found["cycles"]
         self.damages.append(damage)
         self.damage = damage if self.damage is None else self.damage + damage
+        self.about_zero = self.about_zero + found["damage about zero"]
+        self.halves = self.halves + found["damage of halves"]
+        for c, (number, first) in enumerate(found["lone samples"].tolist()):
+            if number:
+                self.lone.append((name, LOADS[c], int(number), first))
+            if not found["cycles"][c, 0]:
+                self.constant[LOADS[c]] = self.constant.get(LOADS[c], 0) + 1
+        channels = str(found["read"])
+        self.read[channels] = self.read.get(channels, 0) + 1
         if self.cycles is None:
             self.cycles = cycles.copy()
         else:
@@ -85,14 +119,10 @@ class Together:
                 [np.maximum(self.cycles[:, 0], cycles[:, 0]), self.cycles[:, 1:] + cycles[:, 1:]]
             )
         self.torque = self.torque + found["torque"]
-        for key in found:
-            if key.endswith(": amount"):
-                own = key.removesuffix(": amount")
-                one = classes_of(found, own)
-                before = self.classes.get(own)
-                self.classes[own] = one if before is None else added([before, one])
-        self._add_windows(name, found)
         means = found["window values"][:, :, 1].T @ found["window seconds"] / seconds
+        wind = float(means[CHANNELS.index("wind speed")])
+        self._add_classes(found, wind)
+        self._add_windows(name, found)
         self.files.append(
             {
                 "file": name,
@@ -106,10 +136,25 @@ class Together:
         )
         self._add_spectra(name, found, seconds, step)
         for plane in ("force", "moment"):
+            sectors = found[f"directions of {plane}"]
+            self.directions[plane] = self.directions.get(plane, np.zeros(len(sectors))) + sectors
             row = found[f"loops of {plane}"]
             known = np.array([row[0], row[1], seconds, row[2] * seconds])
             self.loops[plane] = self.loops.get(plane, np.zeros(4)) + known
             self.each_loop.setdefault(plane, []).append(found[f"each loop of {plane}"])
+
+    def _add_classes(self, found: Digest, wind: float) -> None:
+        for key in found:
+            if not key.endswith(": amount"):
+                continue
+            own = key.removesuffix(": amount")
+            one = classes_of(found, own)
+            before = self.classes.get(own)
+            self.classes[own] = one if before is None else added([before, one])
+            if own.startswith(("time at ", "turns at ")) and not np.isnan(wind):
+                place = rounded_wind(wind), own
+                others = self.at_wind.get(place)
+                self.at_wind[place] = one if others is None else added([others, one])
 
     def _add_windows(self, name: str, found: Digest) -> None:
         rows = zip(
@@ -172,6 +217,11 @@ class Together:
             result = np.full(table.shape[1:], np.nan)
             result[known] = np.nanmedian(table[:, known], axis=0)
         return result
+
+
+def rounded_wind(wind: float) -> float:
+    """Mean wind speed for which a file stands: histories of one round to one [m/s]."""
+    return float(WIND_BIN * np.round(wind / WIND_BIN))
 
 
 def windows_table(found: Together, units: Mapping[str, str]) -> list[Record]:

@@ -84,6 +84,15 @@ def study_command(
             help="What is left out at the beginning of each file of --loads.",
         ),
     ] = 0.0,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            "--mapping",
+            metavar="YAML",
+            help="Names, units, frame and origin of channels in --loads, for files of other "
+            "programs (docs/loads.md).",
+        ),
+    ] = None,
     slope: Annotated[
         list[float] | None,
         typer.Option(
@@ -124,12 +133,16 @@ def study_command(
         from fe_drivetrain.commands.study_loads import own_loads
         from fe_drivetrain.commands.study_page import studied
         from fe_drivetrain.histories.damage import SLOPES, check_slope
+        from fe_drivetrain.hub_loads.channel_map import read_channel_map
 
         for exponent in slope or ():
             check_slope(exponent)
+        if mapping is not None and loads is None:
+            raise InputError("--mapping says how files call their channels: give --loads, too")
+        names = None if mapping is None else read_channel_map(mapping)
 
         # before the work: a fault in a file is reported at once
-        own = None if loads is None else own_loads(loads, skip, found)
+        own = None if loads is None else own_loads(loads, skip, found, names)
         return _run_on_scene(
             "study",
             scene,
@@ -145,14 +158,15 @@ def study_command(
 def advise_command(
     scene: _Scene,
     quantity: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--quantity",
             metavar="NAME",
             help="The quantity that must be accurate: a reaction, as in main_bearing.My or "
-            "gearbox.Fz, or a stiffness, hub.stiffness.ux to hub.stiffness.rz.",
+            "gearbox.Fz, or a stiffness, hub.stiffness.ux to hub.stiffness.rz. Default: Fz of the "
+            "first bearing.",
         ),
-    ],
+    ] = None,
     tolerance: Tolerance = "1%",
     load: Loads = None,
     to_the_top: Annotated[
@@ -180,13 +194,14 @@ def advise_command(
         from fe_drivetrain.fidelity.adviser import Quantity
         from fe_drivetrain.response.model import scene_loads
 
-        asked = Quantity(quantity, parse_loads(load or (), scene_loads(found)))
+        name = quantity or f"{found.bearing_names[0]}.Fz"
+        asked = Quantity(name, parse_loads(load or (), scene_loads(found)))
         asked.check(found)
         share = parse_tolerance(tolerance)
         return _run_on_scene(
             "advise",
             scene,
-            f"{found.title}: the model level that {quantity} needs",
+            f"{found.title}: the model level that {name} needs",
             out,
             lambda run, page: advised(run, page, found, asked, share, to_the_top),
         )

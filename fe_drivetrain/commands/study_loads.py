@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -12,8 +13,10 @@ from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.time_weighted import sample_weights
 from fe_drivetrain.hub_loads.aero_rotor import assumptions
-from fe_drivetrain.hub_loads.files import read_hub_load_files, require_points
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.hub_loads.files import read_hub_load_files, read_hub_loads, require_points
 from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.recorded import read_mapped
 from fe_drivetrain.hub_loads.surrogate import hub_load_set, surrogate_grid
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.run import Run
@@ -86,7 +89,9 @@ class StudyLoads:
         return sample_weights([len(h) for h in histories], [h.step for h in histories])
 
 
-def own_loads(pattern: str, skip: float, scene: Scene) -> StudyLoads:
+def own_loads(
+    pattern: str, skip: float, scene: Scene, mapping: ChannelMap | None = None
+) -> StudyLoads:
     """Read the user's files.
 
     Parameters
@@ -97,6 +102,8 @@ def own_loads(pattern: str, skip: float, scene: Scene) -> StudyLoads:
         What is left out at the beginning of each file [s].
     scene : Scene
         Says which point of the shaft they are about.
+    mapping : ChannelMap, optional
+        How files of other programs call their channels, and their frame and origin.
 
     Raises
     ------
@@ -104,7 +111,9 @@ def own_loads(pattern: str, skip: float, scene: Scene) -> StudyLoads:
         A file cannot be read, or all loads are zero.
     """
     front, at = scene.shaft.front, scene.loads_at
-    histories = [history.moved(at, front) for history in read_hub_load_files(pattern, skip)]
+    read = read_hub_loads if mapping is None else partial(read_mapped, mapping)
+    found = read_hub_load_files(pattern, skip, read)
+    histories = [history.moved(at, front) for history in found]
     require_points(histories, list(scene.bands))
     moved = f" Their moments, about x = {at:g} m, are moved to the front face." * (at != front)
     if not any(history.loads.any() for history in histories):

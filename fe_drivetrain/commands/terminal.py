@@ -102,7 +102,7 @@ def write(stream: TextIO, text: str) -> None:
 
 
 def prepare_streams() -> None:
-    """Show warnings as one sentence, and characters that the terminal lacks as "?"."""
+    """Show warnings as one sentence, and characters that the terminal does not have as "?"."""
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:

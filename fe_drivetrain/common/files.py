@@ -1,7 +1,7 @@
 """Files and folders that appear whole or not at all, and what is left of those that never did.
 
 What is being written stands beside its target under a hidden name, and its writer holds a lock on
-it. The system lets go of the lock when the writer ends, however it ends: so what nobody holds was
+it. The system lets go of the lock when the writer ends, however it ends: so what is not locked was
 abandoned, by a kill or a power cut, and the next writer of the same thing removes it.
 """
 

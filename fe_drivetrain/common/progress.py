@@ -1,4 +1,4 @@
-"""How far a piece of work is, told to whoever shows it."""
+"""How far a piece of work is, reported to whatever shows it."""
 
 from typing import Protocol
 

@@ -2,10 +2,14 @@ from .body import LinearBody as LinearBody
 from .body import factors_of as factors_of
 from .body import in_housings as in_housings
 from .body import linear_body as linear_body
+from .load_paths import PINNED as PINNED
+from .load_paths import LoadPath as LoadPath
+from .load_paths import damage_of_hub_loads as damage_of_hub_loads
 from .newton import CoupledEquilibrium as CoupledEquilibrium
 from .newton import contact_stiffness as contact_stiffness
 from .newton import coupled_equilibrium as coupled_equilibrium
 from .of_scene import scene_body as scene_body
+from .on_races import body_on_races as body_on_races
 from .scenarios import SCENARIOS as SCENARIOS
 from .scenarios import TiltCurve as TiltCurve
 from .scenarios import best_fit as best_fit

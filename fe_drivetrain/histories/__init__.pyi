@@ -14,6 +14,7 @@ from .damage import SNCurve as SNCurve
 from .damage import damage_equivalent_load as damage_equivalent_load
 from .damage import goodman as goodman
 from .damage import miner_damage as miner_damage
+from .faults import lone_samples as lone_samples
 from .levels import Levels as Levels
 from .levels import Reversals as Reversals
 from .levels import equivalent_level as equivalent_level

@@ -1,17 +1,17 @@
 """Load cycles of a history by rainflow counting, exact and in bounded memory.
 
-Counting follows ASTM E1049-85 (2017), 5.4.4, as the package `rainflow` does it: no classes and no
-hysteresis filter, so that a cycle has the range and the mean that the samples have. (A faster
-package, `rfcnt`, decides by at most 1024 classes which cycles close, whatever its input: it is a
-peer in the tests, not the count.) What is left over at the end, the residue, counts by a rule that
-goes with every count.
+Counting follows ASTM E1049-85 (2017), 5.4.4: no classes and no hysteresis filter, so that a cycle
+has the range and the mean that the samples have. The loop is compiled here, since none of the
+packages counts so in bounded memory at the speed of a compiled loop: `rainflow` is exact, in plain
+Python; `rfcnt` decides by at most 1024 classes which cycles close, whatever its input; `pylife`
+leaves the residue out of its cycles. They are peers in the tests. What is left over at the end, the
+residue, counts by a rule that goes with every count.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 from typing import Literal
 
 import numpy as np
@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.histories.three_points import close_cycles, half_cycles
 
 Residue = Literal["half", "closed", "repeated"]
 
@@ -30,7 +31,7 @@ RESIDUES: dict[str, str] = {
 """What may be done with cycles that the end of a history leaves open."""
 
 BLOCK = 65536
-"""Cycles that a streamed count keeps in memory."""
+"""Turning points that a count takes at once, and cycles that it hands on at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +115,7 @@ def rainflow_cycles(signal: ArrayLike, residue: Residue = "half") -> Cycles:
 def streamed_cycles(chunks: Iterable[ArrayLike], residue: Residue = "half") -> Iterator[Cycles]:
     """Count the cycles of a history that comes in pieces; the same cycles as of the whole.
 
-    Memory is that of one piece, of `BLOCK` cycles and of the cycles that are still open.
+    Memory is that of one piece, of `BLOCK` turning points and of those that are still open.
 
     Parameters
     ----------
@@ -135,23 +136,23 @@ def streamed_cycles(chunks: Iterable[ArrayLike], residue: Residue = "half") -> I
     """
     if residue not in RESIDUES:
         raise InputError(f"residue '{residue}' is not a rule: choose one of {', '.join(RESIDUES)}")
-    rest: list[float] = []
-    last: list[float] = []
-    found = _extracted(_noting_last(_turning(chunks), last), rest)
-    while block := list(islice(found, BLOCK)):
-        table = np.array(block)
-        half = table[:, 2] < 1.0
-        if residue == "closed":
-            table[half, 2] = 1.0
-        elif residue == "repeated":
-            for mean in table[half, 1].tolist():  # each begins where the one before ended
-                rest.append(2.0 * mean - rest[-1])
+    still_open, behind = np.zeros(0), [np.zeros(0)]
+    for points in _in_blocks(_turning(chunks)):
+        table = np.empty((len(still_open) + len(points), 4))
+        stack = np.empty(len(table))
+        number, left = close_cycles(points, still_open, table, stack)
+        table, still_open = table[:number], stack[:left].copy()
+        if residue == "repeated":  # half cycles leave their first points behind
+            half = table[:, 2] < 1.0
+            behind.append(table[half, 3])
             table = table[~half]
-        if len(table):
-            yield Cycles(table[:, 0], table[:, 2], table[:, 1], residue)
-    if residue == "repeated" and len(rest) > 1:
-        # to the last digit, or a history that ends where it began would close with a cycle of one
-        yield _closed([*rest[:-1], *last])
+        yield from _blocks_of(table, residue)
+    if residue == "repeated":
+        rest = np.concatenate([*behind, still_open])
+        if len(rest) > 1:
+            yield _closed(rest)
+    elif len(still_open) > 1:
+        yield from _blocks_of(half_cycles(still_open), residue)
 
 
 def joined(parts: Sequence[Cycles], residue: Residue = "half") -> Cycles:
@@ -288,40 +289,29 @@ def _turning(chunks: Iterable[ArrayLike]) -> Iterator[Floats]:
         yield open_end[-1:]
 
 
-def _noting_last(points: Iterable[Floats], last: list[float]) -> Iterator[Floats]:
-    for part in points:
-        last[:] = part[-1:].tolist() or last
-        yield part
+def _in_blocks(parts: Iterable[Floats]) -> Iterator[Floats]:
+    """Turning points in blocks."""
+    for part in parts:
+        for start in range(0, len(part), BLOCK):
+            yield part[start : start + BLOCK]
 
 
-def _extracted(
-    points: Iterable[Floats], first: list[float]
-) -> Iterator[tuple[float, float, float]]:
-    """Range, mean and count of each cycle, by the package; `first` takes the first value."""
-    from rainflow import extract_cycles
-
-    values = (value for part in points for value in part.tolist())
-    head = list(islice(values, 3))
-    first.extend(head[:1])
-    if len(head) == 2:  # for which the package yields nothing
-        yield abs(head[1] - head[0]), 0.5 * (head[0] + head[1]), 0.5
-        return
-
-    def every() -> Iterator[float]:
-        yield from head
-        yield from values
-
-    for size, mean, count, _, _ in extract_cycles(every()):
-        yield size, mean, count
+def _blocks_of(table: Floats, residue: Residue) -> Iterator[Cycles]:
+    """Cycles of rows of range, mean and count, in blocks."""
+    for start in range(0, len(table), BLOCK):
+        part = table[start : start + BLOCK]
+        counts = np.ones(len(part)) if residue == "closed" else part[:, 2].copy()
+        yield Cycles(part[:, 0].copy(), counts, part[:, 1].copy(), residue)
 
 
-def _closed(rest: Sequence[float]) -> Cycles:
+def _closed(rest: Floats) -> Cycles:
     """Cycles of a residue that is followed by itself: from its largest value to itself."""
-    circle = np.array(rest)
-    start = int(np.argmax(circle))
-    turned = np.concatenate([circle[start:], circle[: start + 1]])
-    table = np.array(list(_extracted(_turning([turned]), [])))
-    half = table[:, 2] < 1.0
+    start = int(np.argmax(rest))
+    turned = np.concatenate([rest[start:], rest[: start + 1]])
+    found = joined(list(streamed_cycles([turned])))
+    half = found.counts < 1.0
     # from the largest value down and back: half cycles come in pairs of one range
-    table = np.concatenate([table[~half], table[half][::2]])
-    return Cycles(table[:, 0], np.ones(len(table)), table[:, 1], "repeated")
+    ranges, means = (
+        np.concatenate([values[~half], values[half][::2]]) for values in (found.ranges, found.means)
+    )
+    return Cycles(ranges, np.ones(len(ranges)), means, "repeated")

@@ -123,9 +123,10 @@ def good_enough_for(
     Returns
     -------
     dict
-        "means", "extremes", "fatigue": the model, None where none is.
+        "means", "load durations" (of bearings and gears), "extremes", "fatigue": the model, None
+        where none is.
     """
-    uses = {"means": (MEAN,), "extremes": (EXTREME,), "fatigue": ("DEL",)}
+    uses = {"means": MEAN, "load durations": DURATION, "extremes": EXTREME, "fatigue": "DEL"}
     return {
         use: next(
             (

@@ -1,5 +1,7 @@
 from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
+from .channel_map import ChannelMap as ChannelMap
+from .channel_map import read_channel_map as read_channel_map
 from .controller import Controller as Controller
 from .controller import Tuning as Tuning
 from .controller import designed_controller as designed_controller
@@ -43,3 +45,9 @@ from .turbine import Physics as Physics
 from .turbine import Turbine as Turbine
 from .turbine import natural_frequencies as natural_frequencies
 from .turbine import similar_turbine as similar_turbine
+from .wind_boxes import WindBox as WindBox
+from .wind_boxes import box_hub_loads as box_hub_loads
+from .wind_boxes import read_bts as read_bts
+from .wind_boxes import read_hawc2 as read_hawc2
+from .wind_boxes import write_bts as write_bts
+from .wind_boxes import write_hawc2 as write_hawc2

@@ -6,7 +6,8 @@ import csv
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -46,62 +47,14 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
         or the samples are unsound.
     """
     file = existing_file(path)
+    attributes: dict[str, Attribute] = {}
     try:
-        lines = file.read_text(encoding="utf-8-sig").splitlines()
+        with file.open(encoding="utf-8-sig") as stream:
+            channels, rows = _channels(file, stream, attributes)
     except UnicodeDecodeError as error:
         raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
-
-    attributes: dict[str, Attribute] = {}
-    rows: list[int] = []
-    kept: list[str] = []
-    for number, line in enumerate(lines, start=1):
-        if line.startswith("#"):
-            key, equals, value = line[1:].partition("=")
-            if equals:
-                attributes[key.strip()] = _number_or_text(value.strip())
-        elif line.strip():
-            rows.append(number)
-            kept.append(line)
-    try:
-        cells = list(csv.reader(kept))
     except csv.Error as error:
         raise InputError(f"hub loads '{file}': {error}; correct the table") from error
-    if not cells:
-        raise InputError(f"hub loads '{file}': empty; begin with the header '{_CSV_EXAMPLE}'")
-    header, rows, body = cells[0], rows[1:], cells[1:]
-    if len(header) == 1 and ";" in header[0]:
-        raise InputError(
-            f"hub loads '{file}': columns are separated by semicolons but must be by commas, and "
-            "decimals must have a point: export the table so"
-        )
-    places = _csv_places(file, header)
-    for number, row in zip(rows, body, strict=False):
-        # more cells than columns: decimal commas would shift every number into another column
-        if any(cell.strip() for cell in row[len(header) :]):
-            raise InputError(
-                f"hub loads '{file}': line {number} has {len(row)} values for {len(header)} "
-                "columns, as decimal commas make: write decimals with a point, and one value for "
-                "each column"
-            )
-    channels: dict[str, Channel] = {}
-    for name, (place, unit) in places.items():
-        values = np.empty(len(body))
-        for i, row in enumerate(body):
-            text = row[place].strip() if place < len(row) else ""
-            try:
-                values[i] = parse_number(text)
-            except ValueError as error:
-                if re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", text, re.IGNORECASE):
-                    raise InputError(
-                        f"hub loads '{file}': line {rows[i]}, column {name}: {shown(text)} has a "
-                        "decimal comma: write decimals with a point"
-                    ) from error
-                raise InputError(
-                    f"hub loads '{file}': line {rows[i]}, column {name}: {shown(text)} is not a "
-                    "number; "
-                    "correct it or remove the line and all after it"
-                ) from error
-        channels[name] = Channel(name, unit, values)
 
     source = str(file)
     time = in_si(source, channels["time"], TIME_UNITS)
@@ -121,6 +74,62 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     read = ", ".join(f"{name} [{channels[name].unit}]" for name in (*FORCES, *others))
     origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
     return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at)
+
+
+def _channels(
+    file: Path, stream: Iterable[str], attributes: dict[str, Attribute]
+) -> tuple[dict[str, Channel], Sequence[int]]:
+    """Columns that are read, and the line of each row; memory is that of their numbers."""
+    rows = array("q")
+
+    def kept() -> Iterator[str]:
+        for number, line in enumerate(stream, start=1):
+            if line.startswith("#"):
+                key, equals, value = line[1:].partition("=")
+                if equals:
+                    attributes[key.strip()] = _number_or_text(value.strip())
+            elif line.strip():
+                rows.append(number)
+                yield line
+
+    table = csv.reader(kept())
+    header = next(table, None)
+    if header is None:
+        raise InputError(f"hub loads '{file}': empty; begin with the header '{_CSV_EXAMPLE}'")
+    if len(header) == 1 and ";" in header[0]:
+        raise InputError(
+            f"hub loads '{file}': columns are separated by semicolons but must be by commas, and "
+            "decimals must have a point: export the table so"
+        )
+    places = _csv_places(file, header)
+    del rows[:]
+    columns = {name: array("d") for name in places}
+    for row in table:
+        # more cells than columns: decimal commas would shift every number into another column
+        if len(row) > len(header) and any(cell.strip() for cell in row[len(header) :]):
+            raise InputError(
+                f"hub loads '{file}': line {rows[-1]} has {len(row)} values for {len(header)} "
+                "columns, as decimal commas make: write decimals with a point, and one value for "
+                "each column"
+            )
+        for name, (place, _) in places.items():
+            text = row[place].strip() if place < len(row) else ""
+            try:
+                columns[name].append(parse_number(text))
+            except ValueError as error:
+                if re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", text, re.IGNORECASE):
+                    raise InputError(
+                        f"hub loads '{file}': line {rows[-1]}, column {name}: {shown(text)} has a "
+                        "decimal comma: write decimals with a point"
+                    ) from error
+                raise InputError(
+                    f"hub loads '{file}': line {rows[-1]}, column {name}: {shown(text)} is not a "
+                    "number; correct it or remove the line and all after it"
+                ) from error
+    channels = {
+        name: Channel(name, unit, np.array(columns[name])) for name, (_, unit) in places.items()
+    }
+    return channels, rows
 
 
 def write_csv(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import glob
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -55,7 +55,9 @@ def read_hub_loads(path: str | os.PathLike[str], skip: float = 0.0) -> LoadHisto
     return history
 
 
-def read_hub_load_files(pattern: str, skip: float = 0.0) -> list[LoadHistory]:
+def read_hub_load_files(
+    pattern: str, skip: float = 0.0, read: Callable[[Path, float], LoadHistory] = read_hub_loads
+) -> list[LoadHistory]:
     """Read all histories that a pattern finds, each with a name of its own.
 
     A history is named after its file; where files of several folders have one name, after its
@@ -67,6 +69,8 @@ def read_hub_load_files(pattern: str, skip: float = 0.0) -> list[LoadHistory]:
         See `hub_load_files`.
     skip : float
         As of `read_hub_loads`.
+    read : callable
+        Reads a file, given `skip`.
 
     Raises
     ------
@@ -74,7 +78,7 @@ def read_hub_load_files(pattern: str, skip: float = 0.0) -> list[LoadHistory]:
         No file is found, two are of one run, or one cannot be read.
     """
     files = hub_load_files(pattern)
-    histories = [read_hub_loads(file, skip) for file in files]
+    histories = [read(file, skip) for file in files]
     return [replace(h, name=n) for h, n in zip(histories, _names(files), strict=True)]
 
 

@@ -14,18 +14,13 @@ OpenFAST frames and signs, checked against the ElastoDyn sources and on a real o
 from __future__ import annotations
 
 import os
-import re
-import struct
 from collections.abc import Mapping, Sequence
-from itertools import islice
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.hub_loads.channels import (
     ANGLE_UNITS,
     FORCE_UNITS,
@@ -34,13 +29,25 @@ from fe_drivetrain.hub_loads.channels import (
     Channel,
     existing_file,
     in_si,
-    parse_number,
 )
 from fe_drivetrain.hub_loads.histories import LoadHistory, require_sound
+from fe_drivetrain.hub_loads.openfast_output import openfast_channels, reversed_name
 
 _AXIAL = ("LSShftFxa", "LSShftFxs", "LSSGagFxa", "LSSGagFxs", "RotThrust")
 _TORQUE = ("LSShftMxa", "LSShftMxs", "LSSGagMxa", "LSSGagMxs", "RotTorq", "LSShftTq")
 _AZIMUTH = ("LSSTipPxa", "LSSTipPxs", "LSSTipP", "Azimuth")
+_PAIRS = tuple(
+    f"{n}*{frame}" for n in ("LSShftF", "LSSGagF", "LSSTipM", "LSSGagM") for frame in "sa"
+)
+
+LOAD_CHANNELS = frozenset(
+    name.lower()
+    for name in (
+        *("Time", *_AXIAL, *_TORQUE, *_AZIMUTH),
+        *(pair.replace("*", axis) for pair in _PAIRS for axis in "yz"),
+    )
+)
+"""Names, in lower case, of all channels that `loads_from_channels` may use."""
 
 
 def read_openfast(
@@ -73,7 +80,7 @@ def read_openfast(
         unknown, or the samples are unsound.
     """
     file = existing_file(path)
-    channels = openfast_channels(file)
+    channels = openfast_channels(file, LOAD_CHANNELS)
     time, loads, read = loads_from_channels(str(file), channels, gage_distance, azimuth_blade1_up)
     return LoadHistory(
         file.stem, time, loads, {"source": f"OpenFAST, {file.name}", "channels": read}
@@ -195,7 +202,7 @@ def loads_from_channels(
     if azimuth is not None and azimuth_blade1_up:
         turned += f" less {azimuth_blade1_up:g} rad"
     carried = f", carried {gage_distance:g} m from the gage to the hub" if at_gage else ""
-    changed = any(_reversed(c.name) for c in (axial, torque, *shear[0], *bending[0]))
+    changed = any(reversed_name(c.name) for c in (axial, torque, *shear[0], *bending[0]))
     read = "; ".join(
         (
             f"Fx = {_as_read(axial)}",
@@ -212,14 +219,9 @@ def loads_from_channels(
 def _as_read(*channels: Channel) -> str:
     """Names and units of channels as the file has them, and whether their sign was changed."""
     return ", ".join(
-        f"{c.name} [{c.unit.strip('()')}]" + (", sign changed" if _reversed(c.name) else "")
+        f"{c.name} [{c.unit.strip('()')}]" + (", sign changed" if reversed_name(c.name) else "")
         for c in channels
     )
-
-
-def _reversed(name: str) -> re.Match[str] | None:
-    """Whether OutList reversed the sign of a channel: with a leading -, _, m or M."""
-    return re.fullmatch(r"[-_m]((?:LSS|Rot|Azimuth).*)", name, re.IGNORECASE)
 
 
 def turn_to_fixed(y: ArrayLike, z: ArrayLike, azimuth: ArrayLike) -> tuple[Floats, Floats]:
@@ -240,80 +242,3 @@ def turn_to_fixed(y: ArrayLike, z: ArrayLike, azimuth: ArrayLike) -> tuple[Float
     y, z = np.asarray(y, dtype=float), np.asarray(z, dtype=float)
     cos, sin = np.cos(azimuth), np.sin(azimuth)
     return y * cos - z * sin, y * sin + z * cos
-
-
-def openfast_channels(file: Path) -> dict[str, Channel]:
-    """Every channel of an OpenFAST output file, by its name in lower case.
-
-    Parameters
-    ----------
-    file : Path
-        Text (.out) or binary (.outb).
-
-    Raises
-    ------
-    InputError
-        The file cannot be read.
-    """
-    from openfast_io.FAST_output_reader import load_ascii_output, load_binary_output
-
-    try:
-        if file.suffix.lower() == ".outb":
-            # The reader trusts the counts that follow this identifier, so a file of another kind
-            # would make it ask for any amount of memory.
-            with file.open("rb") as stream:
-                identifier = int.from_bytes(stream.read(2), "little")
-                if identifier not in (1, 2, 3, 4):
-                    raise ValueError(f"format identifier {identifier}, not 1 to 4")
-                stream.seek(4 if identifier == 4 else 2)  # 4 states the length of names before
-                channels, samples = struct.unpack("<2i", stream.read(8))
-            least = channels * samples * (8 if identifier == 3 else 2)
-            if channels < 1 or samples < 1 or least > file.stat().st_size:
-                raise ValueError(f"it states {channels} channels of {samples} samples")
-            data, info, _ = load_binary_output(str(file))
-        else:
-            data, info = load_ascii_output(str(file))
-            with file.open("rb") as stream:
-                if any(re.search(rb"[_\x80-\xff]", line) for line in islice(stream, 8, None)):
-                    raise ValueError("a cell is not a number")
-    except Exception as error:  # the reader raises bare Exception, struct.error, ValueError, ...
-        where = _first_bad_cell(file) or f"it cannot be read as OpenFAST output ({error})"
-        raise InputError(f"hub loads '{file}': {where}; run OpenFAST again") from error
-    data = np.asarray(data, dtype=float)
-    if data.size == 0:
-        raise InputError(f"hub loads '{file}': it has no samples; run OpenFAST again")
-    names, units = info["attribute_names"], info["attribute_units"]
-    if data.ndim != 2 or not data.shape[1] == len(names) == len(units):
-        raise InputError(
-            f"hub loads '{file}': {len(names)} channel names, {len(units)} units and data of shape "
-            f"{data.shape} disagree; run OpenFAST again"
-        )
-    by_name: dict[str, Channel] = {}
-    for name, unit, values in zip(names, units, data.T, strict=True):
-        reversed_name = _reversed(name)
-        key = (reversed_name[1] if reversed_name else name).lower()
-        by_name.setdefault(key, Channel(name, unit, -values if reversed_name else values))
-    return by_name
-
-
-def _first_bad_cell(file: Path, header_lines: int = 8, name_line: int = 6) -> str | None:
-    """What is wrong with the first unreadable line of a text output file, or None."""
-    if file.suffix.lower() != ".out":
-        return None
-    try:
-        lines = file.read_text().splitlines()
-    except (OSError, UnicodeDecodeError):
-        return None
-    if len(lines) <= header_lines:
-        return f"it has {len(lines)} lines and no samples"
-    names = lines[name_line].split()
-    for number, line in enumerate(lines[header_lines:], start=header_lines + 1):
-        cells = line.split()
-        if len(cells) != len(names):
-            return f"line {number} has {len(cells)} values for {len(names)} channels"
-        for name, cell in zip(names, cells, strict=True):
-            try:
-                parse_number(cell)
-            except ValueError:
-                return f"line {number}, channel {name}: {shown(cell)} is not a number"
-    return None

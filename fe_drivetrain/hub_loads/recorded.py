@@ -4,24 +4,31 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.channel_map import (
+    LOAD_NAMES,
+    ChannelMap,
+    carried_to_hub,
+    to_shaft_frame,
+)
 from fe_drivetrain.hub_loads.channels import Channel, existing_file, in_si
 from fe_drivetrain.hub_loads.csv_table import read_csv
 from fe_drivetrain.hub_loads.files import SUFFIXES, hub_load_files
 from fe_drivetrain.hub_loads.histories import (
     MIN_SAMPLES,
-    Attribute,
     LoadHistory,
     require_sound,
+    require_variation,
 )
-from fe_drivetrain.hub_loads.openfast import loads_from_channels, openfast_channels
+from fe_drivetrain.hub_loads.openfast import LOAD_CHANNELS, loads_from_channels
+from fe_drivetrain.hub_loads.openfast_output import openfast_channels
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
@@ -32,19 +39,8 @@ KNOWN = {
 }
 """Channels beside the loads, and by which names files have them, the best first."""
 
-#: Names of OpenFAST, under which mapped loads are read; time, too.
-_STANDARD = {
-    "time": "time",
-    "Fx": "lsshftfxa",
-    "Fy": "lsshftfys",
-    "Fz": "lsshftfzs",
-    "Mx": "rottorq",
-    "My": "lsstipmys",
-    "Mz": "lsstipmzs",
-}
-
-NAMES = (*_STANDARD, *KNOWN)
-"""What a channel of a file can be named as."""
+OWN_NAMES = ChannelMap()
+"""Files whose channels have the names of OpenFAST, or of the tables that are written here."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,21 +55,35 @@ class Recorded:
         [rad/s].
     wind_speed : ndarray, (n,) or None
         [m/s].
+    others : Mapping[str, ndarray]
+        Further channels (n,), each in the file's unit, by name and unit as in "BldPitch1 [deg]".
     """
 
     history: LoadHistory
     rotor_speed: Floats | None = None
     wind_speed: Floats | None = None
+    others: Mapping[str, Floats] = field(default_factory=dict)
 
 
 def recorded_files(patterns: list[str]) -> list[Path]:
-    """Files that several patterns find, each once; see `hub_load_files`."""
+    """Files that several patterns find, each once.
+
+    Parameters
+    ----------
+    patterns : list of str
+        See `hub_load_files`.
+
+    Raises
+    ------
+    InputError
+        None is found, or a file that is named does not exist.
+    """
     found = [file for pattern in patterns for file in hub_load_files(pattern)]
-    return list(dict.fromkeys(found))
+    return [existing_file(file) for file in dict.fromkeys(found)]
 
 
 def read_recorded(
-    path: Path, columns: Mapping[str, str] | None = None, skip: float = 0.0
+    path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0, also: Sequence[str] = ()
 ) -> Recorded:
     """Read a history of any format, with rotor speed and wind speed where the file has them.
 
@@ -81,11 +91,12 @@ def read_recorded(
     ----------
     path : Path
         A .out or .outb of OpenFAST, or a .csv.
-    columns : mapping, optional
-        What a channel is (of `NAMES`), and how the file calls it, in upper or lower case; a load
-        that is mapped does not turn with the rotor and is in the shaft frame, at the hub.
+    mapping : ChannelMap
+        How the file calls its channels, and their frame and origin.
     skip : float
         What is left out at the beginning [s].
+    also : sequence of str
+        Further channels, as the file calls them.
 
     Raises
     ------
@@ -93,41 +104,41 @@ def read_recorded(
         The file cannot be read, or has no channel of a name.
     """
     file = existing_file(path)
-    mapped = dict(columns or {})
-    if wrong := [name for name in mapped if name not in NAMES]:
-        raise InputError(f"channel '{wrong[0]}' is not one of {', '.join(NAMES)}")
     suffix = file.suffix.lower()
     if suffix not in SUFFIXES:
         raise InputError(
             f"hub loads '{file}': the suffix '{file.suffix}' is not one of {', '.join(SUFFIXES)}; "
             "convert the file or rename it"
         )
-    loads_mapped = [name for name in mapped if name in _STANDARD]
-    if suffix == ".csv":
-        known = [name for names in KNOWN.values() for name in names]
-        wanted = {n.lower() for n in (*_STANDARD, *known, *mapped.values())}
-        channels = csv_channels(file, wanted)
-    else:
-        channels = openfast_channels(file)
-    named = {name: _named(file, channels, column) for name, column in mapped.items()}
-    attributes: dict[str, Attribute] = {}
-    if suffix == ".csv" and not loads_mapped:
+    is_table, loads_mapped = suffix == ".csv", mapping.loads_mapped
+    beside_loads = [n.lower() for names in KNOWN.values() for n in names]
+    wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
+    wanted |= {name.lower() for name in also}
+    if is_table and loads_mapped:
+        wanted |= {name.lower() for name in LOAD_NAMES}
+    channels = (
+        csv_channels(file, wanted, mapping.units)
+        if is_table
+        else openfast_channels(file, wanted | LOAD_CHANNELS)
+    )
+    units = {name.lower(): unit for name, unit in mapping.units.items()}
+    channels = {n: replace(c, unit=units.get(n, c.unit)) for n, c in channels.items()}
+    named = {name: _named(file, channels, *mapping.column(name)) for name in mapping.channels}
+    further = [_named(file, channels, name) for name in also]
+    if is_table and not loads_mapped:
         history = read_csv(file)
     else:
-        if suffix == ".csv":  # the seven columns of a table, but for those that are mapped
-            shared = {name: channels.get(name.lower()) for name in _STANDARD}
-            channels |= {_STANDARD[n]: c for n, c in shared.items() if c is not None}
-        channels |= {_STANDARD[name]: named[name] for name in loads_mapped}
-        time, loads, read = loads_from_channels(str(file), channels)
-        attributes = {"source": file.name, "channels": read}
-        history = LoadHistory(file.stem, time, loads, attributes)
+        history = _of_channels(file, channels, named, mapping)
+    history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
     beside = {}
-    for name, units in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
+    for name, sizes in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
         candidates = (channels.get(candidate.lower()) for candidate in KNOWN[name])
         channel = named.get(name) or next((c for c in candidates if c is not None), None)
         if channel is not None:
-            beside[name] = in_si(str(file), channel, units)
+            beside[name] = in_si(str(file), channel, sizes)
             require_sound(f"hub loads '{file}'", history.time, {channel.name: beside[name]})
+    others = {f"{c.name} [{c.unit.strip('()')}]": c.values for c in further}
+    require_sound(f"hub loads '{file}'", history.time, others)
     kept = history.time >= history.time[0] + skip
     if kept.sum() < MIN_SAMPLES:
         raise InputError(
@@ -136,13 +147,74 @@ def read_recorded(
         )
     speed, wind = (beside.get(name) for name in KNOWN)
     return Recorded(
-        replace(history, time=history.time[kept], loads=history.loads[kept]),
+        history.between(float(history.time[0]) + skip),
         None if speed is None else speed[kept],
         None if wind is None else wind[kept],
+        {name: values[kept] for name, values in others.items()},
     )
 
 
-def csv_channels(file: Path, wanted: Collection[str]) -> dict[str, Channel]:
+def read_mapped(mapping: ChannelMap, path: Path, skip: float = 0.0) -> LoadHistory:
+    """Hub loads alone, as `read_recorded` reads them.
+
+    Parameters
+    ----------
+    mapping : ChannelMap
+        How the file calls its channels, and their frame and origin.
+    path : Path
+        The file.
+    skip : float
+        What is left out at the beginning [s].
+
+    Raises
+    ------
+    InputError
+        As of `read_recorded`, or the loads never vary.
+    """
+    history = read_recorded(path, mapping, skip).history
+    require_variation(f"hub loads '{path}'", history.loads)
+    return history
+
+
+def _of_channels(
+    file: Path, channels: dict[str, Channel], named: Mapping[str, Channel], mapping: ChannelMap
+) -> LoadHistory:
+    """Loads of OpenFAST's channels, or of those that are mapped in their place."""
+    if file.suffix.lower() == ".csv":  # the columns of a table, but for those that are mapped
+        shared = {name: channels.get(name.lower()) for name in LOAD_NAMES}
+        channels = channels | {LOAD_NAMES[n]: c for n, c in shared.items() if c is not None}
+    for name in mapping.loads_mapped:
+        channels.pop(LOAD_NAMES[name], None)  # fixed ones would be taken before rotating ones
+        channels = channels | {mapping.read_as(name): named[name]}
+    at_gage = mapping.moments_at if "My" not in mapping.channels and mapping.moments_at else None
+    time, loads, read = loads_from_channels(
+        str(file), channels, at_gage, np.radians(mapping.azimuth_blade1_up)
+    )
+    return LoadHistory(file.stem, time, loads, {"source": file.name, "channels": read})
+
+
+def _at_hub(history: LoadHistory, mapping: ChannelMap, own_names: bool) -> LoadHistory:
+    """Loads in the shaft's frame, about the hub; those of OpenFAST's names stand there already."""
+    loads, read = history.loads, str(history.attributes.get("channels", "as in the file"))
+    if mapping.tilt and own_names:
+        raise InputError(
+            f"hub loads '{history.attributes['source']}': loads of OpenFAST's own names are in the "
+            "shaft's frame: leave out tilt, or map the loads"
+        )
+    if mapping.tilt:
+        loads = to_shaft_frame(loads, mapping.tilt)
+        read += f"; turned from a horizontal frame by the shaft's tilt of {mapping.tilt:g} deg"
+    if mapping.moments_at and (not own_names or "My" in mapping.channels):
+        loads = carried_to_hub(loads, mapping.moments_at)
+        read += f"; moments carried to the hub from {mapping.moments_at:g} m downwind of it"
+    if loads is history.loads:
+        return history
+    return replace(history, loads=loads, attributes={**history.attributes, "channels": read})
+
+
+def csv_channels(
+    file: Path, wanted: Collection[str], units: Collection[str] = ()
+) -> dict[str, Channel]:
     """Columns of a table that have a unit, by their names in lower case.
 
     Parameters
@@ -152,6 +224,8 @@ def csv_channels(file: Path, wanted: Collection[str]) -> dict[str, Channel]:
     wanted : collection of str
         Names in lower case; other columns have no values, so that a large table is read in the
         memory of what is used.
+    units : collection of str
+        Names of columns whose unit is known though their title has none.
 
     Raises
     ------
@@ -169,8 +243,11 @@ def csv_channels(file: Path, wanted: Collection[str]) -> dict[str, Channel]:
         raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
     found: dict[str, Channel] = {}
     places: list[int] = []
+    bare = {name.lower() for name in units}
     for place, title in enumerate(next(csv.reader([titles]), [])):
         match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
+        if match is None and title.strip().lower() in bare:
+            match = re.fullmatch(r"\s*(.+?)()\s*", title)
         if match is not None and match[1].lower() not in found:
             found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
             if match[1].lower() in wanted:
@@ -192,7 +269,7 @@ def csv_channels(file: Path, wanted: Collection[str]) -> dict[str, Channel]:
     return found
 
 
-def _named(file: Path, channels: Mapping[str, Channel], column: str) -> Channel:
+def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:
     found = channels.get(column.lower())
     if found is None:
         names = ", ".join(channel.name for channel in list(channels.values())[:12])
@@ -200,4 +277,6 @@ def _named(file: Path, channels: Mapping[str, Channel], column: str) -> Channel:
             f"hub loads '{file}': there is no channel '{column}'; it has {names}"
             + (" and others" if len(channels) > 12 else "")
         )
-    return found
+    if sign > 0.0:
+        return found
+    return replace(found, name=f"-{found.name}", values=-found.values)

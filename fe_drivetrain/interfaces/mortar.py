@@ -66,7 +66,7 @@ _BLOCK = 256  # columns that are dense at a time
 _DROP = 1e-15  # of a row's largest: smaller entries are round-off
 
 # What each corner gets of the shape function of a mid-side beside it. Popp et al. 2012 take 1/5 for
-# both (as quoted by others, not re-read); on the cylinder above 1/12 errs six times less.
+# both (as quoted by others, not re-read); on the cylinder above 1/12 has a sixth of the error.
 _SHARE = {6: 1.0 / 12.0, 8: 0.2}
 _SIDES = {
     6: ((3, 0, 1), (4, 1, 2), (5, 2, 0)),

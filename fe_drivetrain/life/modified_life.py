@@ -8,6 +8,7 @@ Additives, wear, sliding and micropitting are not covered.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,6 +30,22 @@ BRANCHES = (
     (1.0, 1.2348, 0.071739),
 )
 """From which kappa on, and the constants a and b of a / kappa^b."""
+
+BALL_BRANCHES = (
+    (0.1, 2.2649, 0.054381),
+    (0.4, 1.9987, 0.19087),
+    (1.0, 1.9987, 0.071739),
+)
+"""The same of balls. Public code has 0.019087 in the second branch, with which it would jump at
+kappa = 0.4; 0.19087 meets the first branch to five digits."""
+
+Contact = Literal["line", "point"]
+
+FACTORS = {
+    "line": (1.5859, 1.0, 0.4, 9.185, BRANCHES),
+    "point": (2.5671, 0.83, 1.0 / 3.0, 9.3, BALL_BRANCHES),
+}
+"""Of a_ISO by contact: the largest slope, exponents of slope, ratio and bracket, branches."""
 
 LAST_KAPPA = 4.0
 """Viscosity beyond this ratio brings nothing."""
@@ -132,18 +149,61 @@ def contamination(kappa: ArrayLike, pitch_diameter: float, grease: str) -> Float
     InputError
         There is no such contamination.
     """
+    return film_factor(kappa, pitch_diameter, *grease_constants(pitch_diameter, grease))
+
+
+def grease_constants(pitch_diameter: float, grease: str) -> tuple[float, float]:
+    """c1 and c2 of a contamination of grease.
+
+    Parameters
+    ----------
+    pitch_diameter : float
+        D_pw [m].
+    grease : str
+        A key of `GREASE`.
+
+    Returns
+    -------
+    c1, c2 : float
+        For `film_factor`.
+
+    Raises
+    ------
+    InputError
+        There is no such contamination.
+    """
     if grease not in GREASE:
         raise InputError(f"contamination '{grease}': choose {', '.join(GREASE)}")
     c1, c2 = GREASE[grease]
-    mm = 1e3 * pitch_diameter
-    if grease == "slight to typical" and mm < 500.0:
+    if grease == "slight to typical" and 1e3 * pitch_diameter < 500.0:
         c2 = SMALL_SLIGHT
+    return c1, c2
+
+
+def film_factor(kappa: ArrayLike, pitch_diameter: float, c1: float, c2: float) -> Floats:
+    """e_C of its two constants.
+
+    Parameters
+    ----------
+    kappa : array_like
+        Viscosity ratio; above 4 it counts as 4.
+    pitch_diameter : float
+        D_pw [m].
+    c1, c2 : float
+        Constants of ISO 281, annex A.
+
+    Returns
+    -------
+    e_C : Floats
+        min(c1 kappa^0.68 D_pw^0.55, 1) (1 - c2 / D_pw^(1/3)), D_pw in mm; at least 0.
+    """
+    mm = 1e3 * pitch_diameter
     film = np.minimum(np.asarray(kappa, dtype=float), LAST_KAPPA) ** 0.68
     return np.asarray(np.minimum(c1 * film * mm**0.55, 1.0) * max(1.0 - c2 / mm ** (1 / 3), 0.0))
 
 
-def life_factor(ratio: ArrayLike, kappa: ArrayLike) -> Floats:
-    """a_ISO of radial roller bearings.
+def life_factor(ratio: ArrayLike, kappa: ArrayLike, contact: Contact = "line") -> Floats:
+    """a_ISO of radial bearings.
 
     Parameters
     ----------
@@ -152,24 +212,28 @@ def life_factor(ratio: ArrayLike, kappa: ArrayLike) -> Floats:
     kappa : array_like
         Viscosity ratio; above 4 it counts as 4, below 0.1 the method does not hold and a_ISO is its
         smallest value.
+    contact : {"line", "point"}
+        Of rollers, or of balls.
 
     Returns
     -------
     a_ISO : Floats
-        0.1 (1 - (1.5859 - a / kappa^b) ratio^0.4)^-9.185, from 0.1 to 50; of both arguments'
-        common shape.
+        Rollers: 0.1 (1 - (1.5859 - a / kappa^b) ratio^0.4)^-9.185; balls:
+        0.1 (1 - (2.5671 - a / kappa^b)^0.83 ratio^(1/3))^-9.3; both from 0.1 to 50, of both
+        arguments' common shape.
     """
+    whole, of_slope, of_ratio, power, branches = FACTORS[contact]
     x = np.asarray(ratio, dtype=float)
     k = np.minimum(np.asarray(kappa, dtype=float), LAST_KAPPA)
     film = np.full(k.shape, np.inf)
-    for start, a, b in BRANCHES:
+    for start, a, b in branches:
         with np.errstate(divide="ignore"):
             film = np.where(k >= start, a / k**b, film)
-    slope = np.where(k < BRANCHES[0][0], 0.0, np.maximum(1.5859 - film, 0.0))
+    slope = np.where(k < branches[0][0], 0.0, np.maximum(whole - film, 0.0) ** of_slope)
     with np.errstate(invalid="ignore"):
-        bracket = np.maximum(np.where(slope == 0.0, 1.0, 1.0 - slope * x**0.4), 0.0)
+        bracket = np.maximum(np.where(slope == 0.0, 1.0, 1.0 - slope * x**of_ratio), 0.0)
     with np.errstate(divide="ignore"):
-        return np.asarray(np.minimum(LEAST * bracket**-9.185, MOST))
+        return np.asarray(np.minimum(LEAST * bracket**-power, MOST))
 
 
 def equivalent_loads(row: RowLoads) -> Floats:

@@ -302,20 +302,39 @@ def ball_life(
         (n,) [million revolutions]; rows combine by `combined_life` with `POINT_SLOPE`.
     """
     Q = np.asarray(loads, dtype=float)
-    gamma, r_i, r_e = abs(pitch_ratio(row)), row.inner_groove, row.outer_groove
-    grooves = r_i * (2.0 * r_e - row.diameter) / (r_e * (2.0 * r_i - row.diameter))
-    opening = (1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * grooves**0.41) ** (10.0 / 3.0)
-    share = capacity / (row.balls * np.cos(row.angle) ** 0.7 * rows**0.7)
-    capacities = (
-        share / 0.407 * (1.0 + opening) ** 0.3,
-        share / 0.389 * (1.0 + 1.0 / opening) ** 0.3,
-    )
+    capacities = ball_capacities(row, capacity, rows)
     exponents = (3.0, 10.0 / 3.0) if turning == "inner" else (10.0 / 3.0, 3.0)
     damage = sum(
         (np.mean(Q**p, axis=1) ** (1.0 / p) / Q_c) ** (10.0 / 3.0)
         for p, Q_c in zip(exponents, capacities, strict=True)
     )
     return _life(np.asarray(damage), POINT_SLOPE)
+
+
+def ball_capacities(row: BallRow, capacity: float, rows: int = 1) -> tuple[float, float]:
+    """Load of a ball that the inner and the outer race carry for a million revolutions.
+
+    Parameters
+    ----------
+    row : BallRow
+        One of the rows.
+    capacity : float
+        C of the whole bearing [N].
+    rows : int
+        Equal rows that C is for.
+
+    Returns
+    -------
+    inner, outer : float
+        Q_ci, Q_ce [N], of ISO/TS 16281 as public code has it.
+    """
+    gamma, r_i, r_e = abs(pitch_ratio(row)), row.inner_groove, row.outer_groove
+    grooves = r_i * (2.0 * r_e - row.diameter) / (r_e * (2.0 * r_i - row.diameter))
+    opening = (1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * grooves**0.41) ** (10.0 / 3.0)
+    share = capacity / (row.balls * np.cos(row.angle) ** 0.7 * rows**0.7)
+    inner = share / 0.407 * (1.0 + opening) ** 0.3
+    outer = share / 0.389 * (1.0 + 1.0 / opening) ** 0.3
+    return float(inner), float(outer)
 
 
 def combined_life(lives: ArrayLike, slope: float = SLOPE) -> Floats:

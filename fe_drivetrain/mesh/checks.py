@@ -189,7 +189,7 @@ class _Facets:
 def triple_keys(corners: Ints, n_nodes: int) -> Ints:
     """One number for each (m, 3) triple of nodes, whatever their order.
 
-    Exact up to two million nodes; beyond, what 64 bits hold of it, which errs only where two
+    Exact up to two million nodes; beyond, what 64 bits hold of it, which is wrong only where two
     triples differ by a multiple of 2^64.
     """
     low = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])

@@ -124,7 +124,7 @@ def run_rounds(
     earlier : iterable of Row, optional
         Rows of smaller meshes: what is sure to go over a limit is not begun.
     report : callable, optional
-        Told of each run.
+        Called for each run.
     start : callable, optional
         Runs one; tests have another.
     """

@@ -17,11 +17,12 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.report.results import (
+    Cell,
     Chart,
     Image,
     Limit,
@@ -33,15 +34,13 @@ from fe_drivetrain.report.results import (
     read_results,
     results_below,
 )
+from fe_drivetrain.report.typeset import MINUS, THIN_SPACE, superscript, typeset
 
 DIGITS = 5
 """Significant digits of a number on the page; results.json keeps all of them."""
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _PNG = b"\x89PNG\r\n\x1a\n"
-_THIN_SPACE = "\u202f"  # the narrow no-break one: a number never breaks over two lines
-_MINUS = "\u2212"
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _CONTENTS_FROM = 5  # sections from which on a page has a table of contents
 
 # Okabe and Ito 2008, "Color Universal Design", without the yellow, which is too faint on white
@@ -65,7 +64,9 @@ _CHART_TEMPLATE: dict[str, Any] = {
         "font": {"family": "system-ui, 'Segoe UI', Arial, sans-serif", "size": 14},
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
-        "margin": {"l": 60, "r": 20, "t": 30, "b": 50},
+        "margin": {"l": 60, "r": 44, "t": 30, "b": 50},
+        # beside the plot, not over the last names of the legend
+        "modebar": {"orientation": "v"},
         "legend": {"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"},
         "hovermode": "closest",
         "hoverlabel": {"align": "left"},
@@ -126,7 +127,7 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
         row: dict[str, Any] = {"name": name, "group": name.partition("/")[0], "results": None}
         row |= {"skipped": False, "pending": False}
         if name in problems:
-            row["problem"] = problems[name].message
+            row["problem"] = escape(problems[name].message)  # to be typed again, perhaps
             row["skipped"] = problems[name].is_missing_tool
             row["pending"] = problems[name].is_pending
         else:
@@ -178,6 +179,8 @@ def _environment() -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        # of plain strings alone: what is Markup is scripts, styles, and what is to be typed again
+        finalize=lambda value: _printed(value) if type(value) is str else value,
     )
     shared: dict[str, Callable[..., str]] = {
         "seconds": lambda s: f"{s:.3g}" if abs(s) < 1000 else f"{s:.0f}",
@@ -198,6 +201,17 @@ def _style() -> Markup:
     return Markup((_TEMPLATES / "report.css").read_text(encoding="utf-8"))
 
 
+def _printed(text: str) -> str:
+    """Text as a page prints it; what stands between backticks is code, and stays as it is."""
+    if text.count("`") % 2 or "`" not in text:
+        return typeset(text)
+    parts = [
+        Markup("<code>{}</code>").format(part) if i % 2 else escape(typeset(part))
+        for i, part in enumerate(text.split("`"))
+    ]
+    return Markup("").join(parts)
+
+
 def render(results: Results, folder: Path) -> str:
     """The page as text; see `write_page`."""
     charts = [i for s in results.sections for i in s.items if isinstance(i, Chart)]
@@ -212,8 +226,9 @@ def render(results: Results, folder: Path) -> str:
         "figure": _figure_as_json,
         "unit_unbroken": _unit_unbroken,
         "numeric_columns": _numeric_columns,
+        "in_column": _in_column,
         "height": _chart_height,
-        "as_given": lambda settings: [(key, _as_given(settings[key])) for key in settings],
+        "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
         "data_url": lambda image: _as_data_url(image, folder),
     }
     passed = sum(verdict.passed for verdict in results.verdicts)
@@ -227,11 +242,14 @@ def render(results: Results, folder: Path) -> str:
     )
 
 
-def formatted(value: float | int | str | bool | None, digits: int = DIGITS) -> str:
+def formatted(
+    value: float | int | str | bool | None, digits: int = DIGITS, unit: str | None = None
+) -> str:
     """A value as an engineer reads it.
 
     Numbers have at most `digits` significant digits and thin spaces between thousands; very
-    large and very small ones a power of ten that is a multiple of three.
+    large and very small ones a power of ten. It is a multiple of three, as units have prefixes,
+    but for percentages and pure numbers (`unit` "%", "" or "-").
     """
     if value is None:
         return "–"
@@ -240,40 +258,41 @@ def formatted(value: float | int | str | bool | None, digits: int = DIGITS) -> s
     if isinstance(value, str):
         return value
     if not math.isfinite(value):
-        return "not a number" if math.isnan(value) else f"{_MINUS if value < 0 else ''}∞"
+        return "not a number" if math.isnan(value) else f"{MINUS if value < 0 else ''}∞"
     if value == 0:
         return "0"
     if isinstance(value, int) and abs(value) < 10**9:
-        return f"{value:,}".replace(",", _THIN_SPACE).replace("-", _MINUS)
+        return f"{value:,}".replace(",", THIN_SPACE).replace("-", MINUS)
     # rounded first: 999 999.9 has another exponent than it seems
     rounded, _, exponent_text = f"{value:.{digits - 1}e}".partition("e")
     exponent = int(exponent_text)
-    power = 0 if -3 <= exponent < 6 else 3 * (exponent // 3)
+    step = 1 if unit in ("%", "", "-") else 3
+    power = 0 if -3 <= exponent < 6 else step * (exponent // step)
     decimals = max(digits - 1 - exponent + power, 0)
     shown = float(rounded) * 10 ** (exponent - power) if power else value
     number = f"{shown:,.{decimals}f}"
     if decimals:
         number = number.rstrip("0").rstrip(".")
-    number = number.replace(",", _THIN_SPACE).replace("-", _MINUS)
-    return f"{number}\u00a0×\u00a010{str(power).translate(_SUPERSCRIPTS)}" if power else number
+    number = number.replace(",", THIN_SPACE).replace("-", MINUS)
+    return f"{number}\u00a0×\u00a010{superscript(power)}" if power else number
 
 
 def computed_text(verdict: Verdict) -> str:
     """The computed value; of a statement, whether it holds."""
     if verdict.check == "holds":
         return "yes" if verdict.computed == 1.0 else "no"
-    return formatted(verdict.computed)
+    return formatted(verdict.computed, unit=verdict.unit)
 
 
 def expected_text(verdict: Verdict) -> str:
     """What a check asks for: a reference, zero, a bound, a range, or that a statement holds."""
-    reference = formatted(verdict.reference)
+    reference = formatted(verdict.reference, unit=verdict.unit)
     if verdict.check == "at most":
         return f"≤\u00a0{reference}"
     if verdict.check == "at least":
         return f"≥\u00a0{reference}"
     if verdict.check == "between":
-        return f"{reference} to {formatted(verdict.upper)}"
+        return f"{reference} to {formatted(verdict.upper, unit=verdict.unit)}"
     return {"vanishes": "0", "holds": "yes"}.get(verdict.check, reference)
 
 
@@ -292,8 +311,8 @@ def band_text(verdict: Verdict) -> str:
     if verdict.band is None:
         return "–"
     if verdict.relative and verdict.computed != 0:
-        return f"±{formatted(100 * verdict.band / abs(verdict.computed), 2)}\u00a0%"
-    return f"±{_with_unit(formatted(verdict.band, 2), verdict.unit)}"
+        return f"±{formatted(100 * verdict.band / abs(verdict.computed), 2, '%')}\u00a0%"
+    return f"±{_with_unit(formatted(verdict.band, 2, verdict.unit), verdict.unit)}"
 
 
 def safe_range(limit: Limit) -> str:
@@ -309,12 +328,12 @@ def tolerance_text(verdict: Verdict) -> str:
     if verdict.check not in ("equals", "vanishes"):
         return "–" if verdict.check == "holds" else ""
     if verdict.relative:
-        return f"±{formatted(100 * verdict.tolerance, 3)}\u00a0%"
-    return f"±{_with_unit(formatted(verdict.tolerance, 3), verdict.unit)}"
+        return f"±{formatted(100 * verdict.tolerance, 3, '%')}\u00a0%"
+    return f"±{_with_unit(formatted(verdict.tolerance, 3, verdict.unit), verdict.unit)}"
 
 
 def _signed(value: float, unit: str) -> str:
-    return _with_unit(("+" if value > 0 else "") + formatted(value, 3), unit)
+    return _with_unit(("+" if value > 0 else "") + formatted(value, 3, unit), unit)
 
 
 def _with_unit(number: str, unit: str) -> str:
@@ -345,6 +364,12 @@ def _numeric_columns(table: Table) -> set[int]:
     }
 
 
+def _in_column(value: Cell, heading: str) -> str:
+    """A cell: of percentages and pure numbers, which the heading says, with any power of ten."""
+    unit = next((unit for unit in ("%", "-") if heading.endswith(f"[{unit}]")), None)
+    return formatted(value, unit=unit)
+
+
 def _chart_height(item: Chart) -> int:
     """Pixels, so that the page does not jump when the chart appears."""
     height = item.figure.get("layout", {}).get("height")
@@ -366,14 +391,27 @@ def _figure_as_json(item: Chart) -> Markup:
         {**trace, "type": "scatter"} if trace.get("type") == "scattergl" else trace
         for trace in figure.get("data", [])
     ]
-    content = {"data": _told_apart(traces), "layout": layout}
+    for axis in ("x", "y"):
+        own = layout.get(f"{axis}axis", {})
+        if own.get("type") == "log":
+            layout[f"{axis}axis"] = {**_log_ticks(axis, traces), **own}
+    content = {"data": _distinguished(traces), "layout": layout}
     text = json.dumps(_finite(content), ensure_ascii=True, allow_nan=False)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
 
 
-def _told_apart(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def _log_ticks(axis: str, traces: list[dict[str, Any]]) -> dict[str, Any]:
+    """Labels of a logarithmic axis that do not run into each other: decades, or 1, 2 and 5."""
+    values = [v for trace in traces for v in trace.get(axis, []) if _is_number(v) and v > 0]
+    decades = math.log10(max(values) / min(values)) if values else 0.0
+    if decades > 12:
+        return {}
+    return {"dtick": 1 if decades >= 2 else "D2" if decades >= 1 else "D1"}
+
+
+def _distinguished(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """The same traces, those in line for a colour a second time drawn in another style."""
     found = []
     place = 0
@@ -390,11 +428,13 @@ def _told_apart(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _finite(value: Any) -> Any:
-    """The same data with null for what JSON has no number for."""
+    """The same data, its texts typeset, with null for what JSON has no number for."""
     if isinstance(value, dict):
         return {key: _finite(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
         return [_finite(inner) for inner in value]
+    if isinstance(value, str):
+        return typeset(value)
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

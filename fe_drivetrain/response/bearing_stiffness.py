@@ -157,7 +157,7 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
             if np.abs(response.reactions[other][:, :6]).max() > 1e-6 * np.abs(wrench).max():
                 raise InputError(
                     f"the stiffness of bonded bearing {bearing!r} needs a scene in which it "
-                    f"carries everything, but {other!r} carries a part: take away the gearbox "
+                    f"carries everything, but {other!r} carries a part: remove the gearbox "
                     "stiffness and other bearings"
                 )
         arm = response.positions["gearbox"] - response.positions[bearing]

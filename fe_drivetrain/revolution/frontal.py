@@ -168,7 +168,7 @@ def dissection(centres: Floats) -> Ints:
         else:
             x, r = centres[some, 0], centres[some, 1]
             wide, high = x.max() - x.min(), r.max() - r.min()
-            # what is level is told apart by the other coordinate, so that cuts are straight
+            # ties are broken by the other coordinate, so that cuts are straight
             key = x + 1e-6 * r if wide >= high else r + 1e-6 * x
             some = some[np.argsort(key)]
             half = len(some) // 2

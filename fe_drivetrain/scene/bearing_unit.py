@@ -110,6 +110,12 @@ class BearingUnit(Keys):
     stiffness: _Spring | None = None
     rollers: Rollers | None = None
     bedplate: Springs | None = None
+    catalogue: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=100,
+        description="name of its rolling bearing in a bearing catalogue, for lives",
+    )
 
     @property
     def ring_on_housing(self) -> bool:

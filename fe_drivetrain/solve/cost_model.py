@@ -3,7 +3,7 @@
 Nested dissection of a solid whose cross-section has w nodes, n unknowns in all, fills a factor with
 about n w^(1/2) entries at n w^(3/2) operations (George 1973 for squares and cubes; a slender solid
 is a row of cubes). The width comes from the levels of one breadth-first search, so that slender
-and chunky solids of one size are told apart. The constants were fitted to the grid of
+and chunky solids of one size are distinguished. The constants were fitted to the grid of
 ``cases/performance/solvers.py`` on two cores; on other machines their ratios are what counts.
 """
 

@@ -90,7 +90,7 @@ def _pardiso(K: sparse.bsr_array) -> Factor:
     upper = sparse.csr_matrix(sparse.triu(K.tocsr(), format="csr"))
     upper.sort_indices()
     solver = PyPardisoSolver(mtype=2)  # real, symmetric, positive definite
-    # Each new one looks for MKL through the file system, unless it is told where it is.
+    # Each new one looks for MKL through the file system, unless its place is given.
     os.environ.setdefault("PYPARDISO_MKL_RT", solver.libmkl._name)
 
     def apply(F: Floats) -> Floats:

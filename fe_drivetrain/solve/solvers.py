@@ -25,7 +25,7 @@ TOLERANCE = 1e-9
 
 _USELESS = 1e-2  # a direct solver's residual; 1e-7 is seen in slender solids whose answer is right
 _DOUBTFUL, _LOST = 1e-4, 0.1
-"""Bounds of what rounding does, above which it is told, and refused: of first order, they bound
+"""Bounds of what rounding does, above which it is reported, and refused: of first order, they bound
 nothing where they are not small. Mostly it does a tenth to a hundredth of that, see
 ``cases/stability/slender_shafts.py``."""
 
@@ -115,7 +115,7 @@ class Solver:
         size[size == 0.0] = 1.0
         residual = float((np.linalg.norm(K @ found.x - F, axis=0) / size).max())
         iterative = self.method in ITERATIVE
-        # A factor of a singular matrix may well come out, by round-off, with anything in it.
+        # A factor of a singular matrix may well exist, by round-off, with anything in it.
         if not np.isfinite(residual) or (not iterative and residual > _USELESS):
             raise InputError(SINGULAR)
         if found.energy_error > self.tolerance and iterative:

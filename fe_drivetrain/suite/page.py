@@ -27,6 +27,8 @@ from fe_drivetrain.suite.records import (
     Record,
     as_json,
     column,
+    counted,
+    group_name,
     grouped,
     plain_cells,
 )
@@ -162,7 +164,7 @@ class Page:
             band=band,
         )
 
-    def finest(self, series: MeshSeries, *targets: Target) -> None:
+    def finest(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
         """The finest of several meshes meets targets; the band of each value is that of them all.
 
         Parameters
@@ -171,24 +173,41 @@ class Page:
             What each mesh gave.
         *targets : Target
             What the finest should give.
+        of : str
+            Whose quantities they are, put before each of them: "solid shaft".
         """
         for target in targets:
-            value, band = series.rows[-1][target.key], series.band(target.key, target.order)
-            self.meets(value, target, band)
+            band = series.band(target.key, target.order)
+            self.meets(series.last[target.key], target, band, of)
 
-    def meets(self, computed: float, target: Target, band: float | None = None) -> None:
-        """The computed value meets a target; `band` as for `equals`."""
+    def settled(self, series: MeshSeries, *targets: Target, of: str = "") -> None:
+        """As `finest`, but the band is the change from the mesh before.
+
+        For what has no steady order of convergence, as the largest error of a field.
+        """
+        for target in targets:
+            self.meets(series.last[target.key], target, series.change(target.key), of)
+
+    def meets(
+        self, computed: float, target: Target, band: float | None = None, of: str = ""
+    ) -> None:
+        """The computed value meets a target; `band` as for `equals`, `of` as for `finest`."""
         quantity, unit = split_unit(target.key)
-        self.equals(
-            target.name or quantity,
+        quantity = target.name or quantity
+        zero = target.value == 0.0
+        self._judge(
+            "vanishes" if zero else "equals",
+            f"{of}: {quantity}" if of else quantity,
             computed,
             target.value,
-            within=target.within,
-            why=target.why,
-            source=target.source,
+            target.why,
+            target.source,
+            tolerance=target.within,
+            relative=target.relative and not zero,
             unit=unit,
-            relative=target.relative,
-            measure=target.measure or MEASURES.get(unit),
+            measure=target.measure
+            or MEASURES.get(unit)
+            or ("identity" if not target.value else None),
             band=band,
         )
 
@@ -338,11 +357,19 @@ class Page:
         logarithmic: Iterable[str] = (),
         safe: tuple[float | None, float | None] | None = None,
     ) -> None:
-        """Add a chart of traces; see `fe_drivetrain.report.chart`."""
+        """Add a chart of traces, or a sentence if they have no point; see `report.chart`."""
+        if not any(len(trace.get(axis, ())) for trace in traces for axis in "xyz"):
+            self.text(f"{caption}: there is nothing to show in this run.")
+            return
         self.add(chart(caption, traces, x, y, logarithmic, safe))
 
     def targets(
-        self, caption: str, series: MeshSeries, targets: Sequence[Target], heading: str = "target"
+        self,
+        caption: str,
+        series: MeshSeries,
+        targets: Sequence[Target],
+        heading: str = "target",
+        of: str = "",
     ) -> None:
         """Check the finest of several meshes against targets, and show all meshes beside them.
 
@@ -356,15 +383,17 @@ class Page:
             In the order of the checks.
         heading : str
             Of the targets' column.
+        of : str
+            Whose quantities they are, put before each of them in the checks.
         """
-        self.finest(series, *targets)
+        self.finest(series, *targets, of=of)
         rows = []
         for target in targets:
             unit = target.key.partition(" [")[2]
             shown = f"{target.name} [{unit}" if target.name and unit else target.name
             rows.append((shown or target.key, target.key, target.value))
         meshes, by = series.rows, series.by
-        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
+        columns = ["quantity", *(counted(mesh[by], by) for mesh in meshes), heading]
         cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
         self.table(caption, cells, columns)
         keys = [by, *dict.fromkeys(target.key for target in targets)]
@@ -420,7 +449,8 @@ class Page:
             for key, name in keys.items():
                 # a record without that value has no point
                 at = [row for row in of if row[key] is not None]
-                title = ", ".join(str(part) for part in (group, name) if part != "") or key
+                parts = (group_name(by, group) if by else "", name)
+                title = ", ".join(part for part in parts if part) or key
                 traces.append(trace(title, column(at, x), column(at, key), mode=mode))
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
@@ -430,7 +460,7 @@ class Page:
         self.chart(caption, traces, x, axis or next(iter(keys)), tuple(log), safe)
         plain = [key for key, value in rows[0].items() if np.ndim(value) == 0]
         if table is not False:
-            self.table(caption, rows, plain if table is True else table)
+            self.table("The same in numbers", rows, plain if table is True else table)
         self.data(caption, [{key: row[key] for key in plain} for row in rows])
 
     def data(self, name: str, value: Any) -> None:

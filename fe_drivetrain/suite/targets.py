@@ -42,9 +42,9 @@ class Target(NamedTuple):
     key : str
         The quantity with its unit: "deflection [mm]"; in the record of a mesh its key.
     value : float
-        What it should be.
+        What it should be; a target of zero is a check that the quantity vanishes.
     within : float
-        Allowed difference, relative to the value.
+        Allowed difference, relative to the value; of a target of zero in the unit.
     why, source : str
         Why the tolerance is what it is, and where the value comes from.
     name : str

@@ -8,8 +8,11 @@ from .moved_meshes import WALL as WALL
 from .moved_meshes import moved as moved
 from .numbers import first_order as first_order
 from .numbers import relative_spread as relative_spread
+from .sampling import Samples as Samples
+from .sampling import Shares as Shares
 from .sampling import nominal_value as nominal_value
 from .sampling import sample as sample
 from .sampling import sensitivities as sensitivities
 from .sampling import sobol_shares as sobol_shares
+from .sampling import variance_shares as variance_shares
 from .sampling import with_values as with_values

@@ -308,8 +308,7 @@ def sobol_shares(
     """
     check_spreads(scene)
     keys = tuple(scene.uncertainty)
-    d = len(keys)
-    total = count * (d + 2)
+    total = count * (len(keys) + 2)
     done = 0
 
     def results(rows: Floats) -> Floats:
@@ -325,8 +324,39 @@ def sobol_shares(
         done += len(rows)
         return np.array([values[name] for name in names])
 
+    found = variance_shares(results, dict(zip(keys, _spreads(scene), strict=True)), count, seed)
+    return dict(zip(names, found, strict=True))
+
+
+def variance_shares(
+    results: Callable[[Floats], Floats],
+    distributions: Mapping[str, Any],
+    count: int = 64,
+    seed: int = 0,
+) -> list[Shares]:
+    """First-order and total shares of the variance of any function of independent inputs.
+
+    Parameters
+    ----------
+    results : callable
+        Of rows (n, d) of values the s results, (s, n). It is called with the base samples, twice
+        `count` rows of independent inputs, and then with each input exchanged.
+    distributions : mapping
+        scipy's distribution of each of d values, by name.
+    count : int
+        Base samples, a power of two; (d + 2) times as many evaluations.
+    seed : int
+        Of the samples.
+
+    Returns
+    -------
+    shares : list of Shares
+        Of each of the s results (Sobol 2001; Saltelli et al. 2010).
+    """
+    keys = tuple(distributions)
+    d = len(keys)
     quantiles = qmc.Sobol(d=2 * d, rng=seed).random(count)
-    spreads = _spreads(scene)
+    spreads = list(distributions.values())
     A, B = (
         np.column_stack([spread.ppf(q) for spread, q in zip(spreads, half.T, strict=True)])
         for half in (quantiles[:, :d], quantiles[:, d:])
@@ -338,15 +368,12 @@ def sobol_shares(
         """(2, s, d) first and total."""
         known = {"f_A": f_A[:, chosen], "f_B": f_B[:, chosen], "f_AB": f_AB[..., chosen]}
         found = stats.sobol_indices(func=known, n=count)
-        return np.reshape([found.first_order, found.total_order], (2, len(names), d))
+        return np.reshape([found.first_order, found.total_order], (2, len(f_A), d))
 
     draws = np.random.default_rng(seed).integers(count, size=(_RESAMPLES, count))
     errors = np.std([shares(draw) for draw in draws], axis=0, ddof=1)
     first, whole = shares(np.arange(count))
-    return {
-        name: Shares(keys, first[k], whole[k], errors[0, k], errors[1, k])
-        for k, name in enumerate(names)
-    }
+    return [Shares(keys, first[k], whole[k], errors[0, k], errors[1, k]) for k in range(len(f_A))]
 
 
 def distribution(spread: Spread, nominal: float) -> Any:

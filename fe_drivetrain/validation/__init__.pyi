@@ -1,14 +1,17 @@
 from . import bar_sections as bar_sections
 from . import bent_blocks as bent_blocks
 from . import bracket_plane as bracket_plane
+from . import bracket_solid as bracket_solid
 from . import clamped_plates as clamped_plates
 from . import condensed_bodies as condensed_bodies
 from . import curved_bars as curved_bars
+from . import determinate_bearings as determinate_bearings
 from . import distorted_blocks as distorted_blocks
 from . import elliptic_plate as elliptic_plate
 from . import end_flexibilities as end_flexibilities
 from . import end_loaded as end_loaded
 from . import exact_blocks as exact_blocks
+from . import exact_shafts as exact_shafts
 from . import extreme_parts as extreme_parts
 from . import faulty_meshes as faulty_meshes
 from . import fillet_factors as fillet_factors
@@ -26,6 +29,7 @@ from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import low_speed_shaft as low_speed_shaft
 from . import manufactured as manufactured
+from . import matrix_readers as matrix_readers
 from . import moved_bodies as moved_bodies
 from . import one_norm as one_norm
 from . import other_precisions as other_precisions
@@ -54,6 +58,7 @@ from . import spherical_shells as spherical_shells
 from . import squeezed_rings as squeezed_rings
 from . import stiffness_choices as stiffness_choices
 from . import streamed_series as streamed_series
+from . import supported_shafts as supported_shafts
 from . import thin_bodies as thin_bodies
 from . import tied_bars as tied_bars
 from . import tied_rings as tied_rings

@@ -1,4 +1,4 @@
-"""A body condensed to the motions of two rigid ends, and the rank of what comes out."""
+"""A body condensed to the motions of two rigid ends, and the rank of the result."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def zeros_by_gap(values: Floats) -> tuple[int, float]:
         How many are below, and the largest of them over the smallest above, by magnitude.
     """
     sizes = np.sort(np.abs(values))
-    # Below round-off nothing can be told apart, an exact zero included.
+    # Below round-off nothing can be distinguished, an exact zero included.
     sizes = np.maximum(sizes, np.finfo(float).eps * sizes[-1])
     ratios = sizes[:-1] / sizes[1:]
     k = int(ratios.argmin())

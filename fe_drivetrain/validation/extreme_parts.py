@@ -81,7 +81,7 @@ def sagging(turn: float) -> float:
     return 1 - drawn / math.pi
 
 
-#: Elements may come out longer than asked for: three quarters of their number round a turn.
+#: Elements may be longer than asked for: three quarters of their number round a turn.
 SHAPE_ERROR = sagging(0.75 * TURN)
 
 

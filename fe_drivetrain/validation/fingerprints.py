@@ -39,7 +39,7 @@ STIFFNESS = "stiffness"
 
 
 def scene_arrays() -> dict[str, Floats]:
-    """ "mesh" and "operator" of a main bearing, made again where the cache is off."""
+    """ "mesh" and "operator" of a main bearing, made again where the cache is disabled."""
     scene = scene_of("bonded")
     mesh = mesh_scene(scene)
     return {"mesh": mesh.points, "operator": build_model(scene, mesh).stiffness.data}

@@ -218,7 +218,7 @@ def sampled(scene: Scene, form: Form, count: int, order: int, report: Progress =
     count : int
         Of the samples.
     order : int
-        Of the polynomials of the logarithms that are laid through their K_R.
+        Of the polynomials of the logarithms that are fitted to their K_R.
     report : Progress
         Called with each housing that is begun.
 

@@ -39,6 +39,25 @@ NAMES = {4: "tet4", 10: "tet10", 8: "hex8", 20: "hex20", 27: "hex27"}
 Pair = tuple[int, int, int, int]
 """Nodes of the slave's elements, of the master's, divisions of the slave, of the master."""
 
+MESHES = (
+    (10, 10, 3, 3),
+    (10, 10, 2, 3),
+    (10, 10, 3, 2),
+    (10, 10, 1, 4),
+    (10, 10, 4, 1),
+    (10, 10, 5, 1),
+    (10, 10, 1, 5),
+    (27, 10, 2, 3),
+    (10, 27, 2, 3),
+    (20, 10, 3, 2),
+    (10, 20, 3, 2),
+    (8, 4, 2, 3),
+    (10, 8, 3, 2),
+    (4, 4, 3, 2),
+)
+"""Pairs of meshes: nodes of the slave's elements, of the master's, divisions of either."""
+QUICK_MESHES = (MESHES[0], MESHES[1], MESHES[2], MESHES[3], MESHES[5], MESHES[7], MESHES[8])
+
 
 def oblique(x: Floats) -> Floats:
     """Skew and turn, so that nothing is parallel to an axis and no angle is a right one."""

@@ -1,14 +1,25 @@
 """Slices of a ring between planes of symmetry: of a long cylinder, or of a thin disc."""
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.interfaces import Constraint, held_nodes
 from fe_drivetrain.mesh import Block
-from fe_drivetrain.validation.loaded_blocks import LoadedBlock
-from fe_drivetrain.validation.ring_solids import moves_as_one, ring_sector, sector_symmetry
+from fe_drivetrain.operator import pressure
+from fe_drivetrain.scene import Material
+from fe_drivetrain.validation.loaded_blocks import LoadedBlock, face_loads, solve_block
+from fe_drivetrain.validation.plane_rings import Lame
+from fe_drivetrain.validation.ring_solids import (
+    moves_as_one,
+    plane_strain_hold,
+    ring_sector,
+    sector_symmetry,
+)
+
+EIGHTH = 0.25 * np.pi  # rad, between planes of symmetry
 
 
 def divided_sector(
@@ -121,3 +132,53 @@ def along_the_middle(
         record[f"hoop stress, {name} [MPa]"] = 1e-6 * float(found.polar.hoop[node])
         record[f"radial displacement, {name} [µm]"] = 1e6 * float(found.polar_u[node, 1])
     return record
+
+
+class PressedBore(NamedTuple):
+    """What one mesh gives of a ring's bore.
+
+    Attributes
+    ----------
+    moved : float
+        Mean radial displacement, by the work of the pressure over pressure and area [m].
+    hoop, radial : float
+        Recovered stresses, halfway round the sector [Pa].
+    """
+
+    moved: float
+    hoop: float
+    radial: float
+
+
+def pressed_ring(
+    ring: Lame, material: Material, nodes: int, n: int, free_ends: bool = False
+) -> PressedBore:
+    """An eighth of a ring under internal pressure, one element wide.
+
+    Parameters
+    ----------
+    ring : Lame
+        Its radii and the pressure inside.
+    material : Material
+        Of the ring.
+    nodes : int
+        Of an element: 4, 8, 10, 20 or 27.
+    n : int
+        Elements through the wall, and round the sector: those at the bore are about square.
+    free_ends : bool
+        Whether one side is free, and not held as in plane strain.
+    """
+    width = (ring.outer - ring.inner) / n
+    block = ring_sector(ring.inner, ring.outer, width, EIGHTH, (n, n, 1), nodes)
+    free = held_nodes("end", block.face_nodes("z0"), [0], block.points.size) if free_ends else None
+    F = face_loads(block, x0=pressure(ring.inside))
+    held = [*sector_symmetry(block, EIGHTH), free or plane_strain_hold(block)]
+    found = solve_block(block, material, F, *held)
+    t = 0.5 * EIGHTH
+    middle = found.node(0.0, ring.inner * np.cos(t), ring.inner * np.sin(t))
+    work = float(F @ found.u.ravel())
+    return PressedBore(
+        work / (ring.inside * (EIGHTH * ring.inner * width)),
+        float(found.polar.hoop[middle]),
+        float(found.polar.radial[middle]),
+    )

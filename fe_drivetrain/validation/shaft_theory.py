@@ -73,6 +73,16 @@ class Tube:
         return float(cowper_shear_coefficient(nu, m)) * self.material.shear_modulus * self.area
 
 
+def solid_and_bored(
+    outer: float, bore: float, length: float, material: Material
+) -> dict[str, Tube]:
+    """The same shaft "solid" and "bored"; diameters and length in m."""
+    return {
+        name: Tube(outer, inner, length, material)
+        for name, inner in (("solid", 0.0), ("bored", bore))
+    }
+
+
 def evenly_loaded_shear(tube: Tube) -> float:
     """Shear rigidity [N] of a beam whose loads and supports act evenly over its sections.
 
@@ -84,6 +94,11 @@ def evenly_loaded_shear(tube: Tube) -> float:
     the same; derived again here.
     """
     return 1.0 / (1.0 / tube.kGA - extra_curvature(tube))
+
+
+def sag(load: float, EI: float, kGA: float, length: float) -> float:
+    """Deflection of a cantilever's tip under a load per length [N/m], with shear [m]."""
+    return load * length**4 / (8 * EI) + load * length**2 / (2 * kGA)
 
 
 def recovery_error(per_turn: int) -> float:
@@ -134,6 +149,19 @@ def parabola_slope(per_turn: int) -> float:
     """Largest angle [rad] between such a parabola and the circle: (1 - cos t)^2 / t."""
     half = np.pi / per_turn
     return float((1 - np.cos(half)) ** 2 / half)
+
+
+def within_lean(per_turn: int) -> tuple[float, str]:
+    """How much of the meshed section's stiffness parabolic arcs may miss, relative, and why.
+
+    They lean against the circle: `parabola_slope` squared, and that in words.
+    """
+    slope = parabola_slope(per_turn)
+    why = "the exact displacement is one of the element's; the meshed surface leans against the "
+    return (
+        slope**2,
+        why + f"circle by at most {slope:.2g} rad, and what that warps is of second order",
+    )
 
 
 def within_arcs(per_turn: int, what: str, power: int) -> tuple[float, str]:
@@ -256,6 +284,22 @@ def michell_torque(half_angle: float, shear_modulus: float) -> float:
     """
     c = np.cos(half_angle)
     return float(2 * np.pi * shear_modulus * (2 - 3 * c + c**3))
+
+
+def between_spheres(radii: tuple[float, float], half_angle: float, shear_modulus: float) -> float:
+    """Stiffness [N m/rad] of Michell's cone between spheres about its apex.
+
+    Parameters
+    ----------
+    radii : tuple of float
+        Of the flat ends through whose centres the spheres go [m].
+    half_angle : float
+        Of the cone [rad].
+    shear_modulus : float
+        G [Pa].
+    """
+    near, far = (r / np.tan(half_angle) for r in radii)
+    return float(michell_torque(float(half_angle), shear_modulus) / (near**-3 - far**-3))
 
 
 @dataclass(frozen=True)

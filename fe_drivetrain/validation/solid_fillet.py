@@ -128,7 +128,7 @@ def solve(wide: float, radius: float, per_fillet: int) -> SolidFillet:
 
 
 def _fine_at_fillet(shaft: Shaft, radius: float, per_fillet: int) -> Mesh:
-    """A mesh whose elements grow away from the fillet, told where by a coarse one."""
+    """A mesh whose elements grow away from the fillet, whose place a coarse one gives."""
     coarse = _coarse(shaft)
     x, r = coarse.points[:, 0], np.hypot(coarse.points[:, 1], coarse.points[:, 2])
     away = np.abs(np.hypot(x - radius, r - 0.5 - radius) - radius)

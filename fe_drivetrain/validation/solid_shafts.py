@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from scipy import sparse
 
 from fe_drivetrain.common import Floats, InputError, Ints
-from fe_drivetrain.compare import DOUBTFUL, grid_convergence
+from fe_drivetrain.compare import band_of
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Section, Shaft
 from fe_drivetrain.interfaces import averaged_point
 from fe_drivetrain.mesh import (
@@ -104,6 +104,21 @@ def straight(stations: Sequence[float], outer: float, inner: float = 0.0) -> Sha
     )
 
 
+def stepped(outer: Sequence[float], length: float, bore: float = 0.0) -> Shaft:
+    """Parts of one length with sharp steps between them; diameters and length in m."""
+    sections = [Section(length=length, outer_diameter=d, inner_diameter=bore) for d in outer]
+    return Shaft(front=0.0, sections=tuple(sections))
+
+
+def cone(radii: tuple[float, float], half_angle: float) -> Shaft:
+    """A solid cone between flat ends, its apex at the origin; radii in m, angle in degrees."""
+    start, end = (r / np.tan(np.radians(half_angle)) for r in radii)
+    thin, thick = (2 * r for r in radii)
+    length = float(end - start)
+    section = Section(length=length, outer_diameter=thin, outer_diameter_end=thick)
+    return Shaft(front=float(start), sections=(section,))
+
+
 def solid(
     shaft: Shaft,
     refinement: int,
@@ -144,18 +159,11 @@ def mesh_band(refinements: Sequence[int], values: ArrayLike, order: float = 4.0)
     Parameters
     ----------
     refinements, values : Sequence[int], ArrayLike
-        Of two meshes or more of the family, coarse first. Of two, what is missing at the order of
-        the theory, three times over (Roache 1994); of more, see `convergence.grid_convergence`.
+        Of two meshes or more of the family, coarse first; see `fe_drivetrain.compare.band_of`.
     order : float
         Of the theory: fourth for energies of smooth solutions, and of parabolas for circles.
     """
-    h, v = 1.0 / np.asarray(refinements, dtype=float), np.asarray(values, dtype=float)
-    if len(v) > 2:
-        band = grid_convergence(h, v, expected_order=order).uncertainty
-        # a series that does not settle into an order: by the first order of elements at the worst
-        least = grid_convergence(h, v, expected_order=order, least_order=1.0).uncertainty
-        return band if np.isfinite(band) else least
-    return DOUBTFUL * float(abs(v[1] - v[0]) / ((h[0] / h[1]) ** order - 1))
+    return band_of(1.0 / np.asarray(refinements, dtype=float), values, order)
 
 
 def meshed_moment(mesh: Solid) -> float:
@@ -401,3 +409,8 @@ LOCAL = 0.05
 def local_compliance(tube: Tube) -> float:
     """That deflection [m/N]: a bound to tell beam and solid apart by, not a correction."""
     return LOCAL * tube.outer / tube.kGA
+
+
+def local_rotation(tube: Tube) -> float:
+    """The same of a moment's rotation [rad/(N m)], of what one diameter bends."""
+    return LOCAL * tube.outer / tube.EI

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -212,3 +213,32 @@ class SqueezedRing:
         fine = np.asarray(np.interp(divided, range(len(coarse)), coarse))
         fine[-1] = quarter
         return fine
+
+
+def shares(
+    ring: Callable[[float], SqueezedRing], ratios: Floats
+) -> list[tuple[str, Floats, Floats]]:
+    """By each theory, the closing along the load as `SqueezedRing.share` of rings.
+
+    Parameters
+    ----------
+    ring : callable
+        The ring of a mean radius over wall thickness.
+    ratios : array
+        (n,) of them.
+
+    Returns
+    -------
+    curves : list of tuple
+        Name of the theory, the ratios, and (n,) shares.
+    """
+    theories: dict[str, Callable[[SqueezedRing], float]] = {
+        "exact series": lambda of: of.series()[ALONG],
+        "curved beam with shear": lambda of: -of.curved_beam(),
+        "thin ring": lambda of: -of.thin(),
+    }
+    rings = [ring(float(ratio)) for ratio in ratios]
+    return [
+        (name, ratios, np.array([of.share(change(of)) for of in rings]))
+        for name, change in theories.items()
+    ]

@@ -21,8 +21,9 @@ import numpy as np
 from skfem import Basis, BilinearForm, ElementTriP4, MeshQuad, condense, solve
 
 from fe_drivetrain.common import Floats
-from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
+from fe_drivetrain.geometry import LENGTH_TOLERANCE, Section, Shaft
 from fe_drivetrain.mesh import shaft_quadrilaterals
+from fe_drivetrain.validation.shaft_theory import polar_moment
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,25 @@ def torsion_bounds(shaft: Shaft, shear_modulus: float, size: float, halvings: in
         least = _least(basis, function, values, surface)
     scale = 2 * np.pi * shear_modulus
     return Bounds(scale / least, scale * most)
+
+
+def series_stiffness(shaft: Shaft, shear_modulus: float) -> float:
+    """1 over the integral of dx / GJ [N m/rad], of cylinders and of solid cones.
+
+    Sections that stay plane are one of the displacements over which the energy is least, so it is
+    no smaller than the exact stiffness, nor than the upper of `torsion_bounds`.
+    """
+    return 1.0 / sum(_compliance(piece, shear_modulus) for piece in shaft.pieces)
+
+
+def _compliance(piece: Section, shear_modulus: float) -> float:
+    start, end = piece.outer_diameter / 2, piece.end_diameter / 2
+    if start == end:
+        polar = polar_moment(piece.outer_diameter, piece.inner_diameter)
+        return piece.length / (shear_modulus * polar)
+    grows = (end - start) / piece.length
+    integral = (start**-3 - end**-3) / (3 * grows)
+    return integral / (shear_modulus * np.pi / 2)
 
 
 def _least(basis: Any, form: Callable[..., Any], values: Floats, held: Any) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
+from scipy.spatial.transform import Rotation
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.interfaces import Constraint, ReferencePoint, constraints
@@ -77,6 +78,14 @@ def solve_ring(nodes: int, turn: Floats, shift: Floats) -> Ring:
 def twice(turn: Floats) -> Floats:
     """(6, 6): a rotation of displacements and of rotations."""
     return np.asarray(np.kron(np.eye(2), turn), dtype=float)
+
+
+def random_frame(seed: int) -> tuple[Floats, Floats]:
+    """A rotation matrix (3, 3) and a direction (3,), at random."""
+    rng = np.random.default_rng(seed)
+    Q = Rotation.random(random_state=rng).as_matrix()
+    away = rng.normal(size=3)
+    return Q, away / np.linalg.norm(away)
 
 
 def differences(here: Ring, there: Ring, turn: Floats) -> dict[str, float]:

@@ -24,8 +24,8 @@ def pynastran(module: str) -> Any:
     """
     # its version 1.4 takes numpy.in1d at import, which numpy 2.4 has no more: isin is the same of
     # vectors, and all that is read here does without
-    lacking = {} if hasattr(np, "in1d") else {"in1d": np.isin}
-    vars(np).update(lacking)
+    missing = {} if hasattr(np, "in1d") else {"in1d": np.isin}
+    vars(np).update(missing)
     try:
         return import_module(f"pyNastran.{module}")
     except (ImportError, AttributeError) as error:
@@ -34,7 +34,7 @@ def pynastran(module: str) -> Any:
             'install "fe-drivetrain[nastran]"'
         ) from error
     finally:
-        for name in lacking:
+        for name in missing:
             del vars(np)[name]
 
 

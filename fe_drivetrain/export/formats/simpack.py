@@ -66,7 +66,7 @@ def read(path: Path) -> Superelement:
     Raises
     ------
     InputError
-        The file is no `.subvar` file of a superelement, or lacks one of its variables.
+        The file is no `.subvar` file of a superelement, or one of its variables is missing.
     """
     text = text_of(path, "SIMPACK subvar file")
     if not text.startswith("!file.version="):

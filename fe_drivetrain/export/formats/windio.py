@@ -4,7 +4,7 @@ WISDEM computes spring and damper from its own shafts, and takes others from
 ``components.drivetrain.spring_constant_user`` and ``damping_coefficient_user``. (Its schema lists
 them a level deeper, in ``elastic_properties``, where WISDEM 4.2 does not look; windIO's own check
 refuses them.) windIO's files hold the result in ``components.drivetrain.elastic_properties``, as
-``spring_constant`` and ``damping_coefficient``: WISDEM reads that where it is told to take elastic
+``spring_constant`` and ``damping_coefficient``: WISDEM reads that where it is set to take elastic
 properties as given.
 """
 

@@ -16,7 +16,7 @@
     Plotly.newPlot(chart, figure.data, figure.layout, config);
     charts.push(chart);
   }
-  // a chart keeps the width of the screen on paper unless told otherwise
+  // without this a chart keeps the width of the screen on paper
   const refit = function (width) {
     for (const chart of charts) {
       Plotly.relayout(chart, width ? { width: width, autosize: false } : { width: null, autosize: true });

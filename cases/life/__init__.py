@@ -1,0 +1,1 @@
+"""Rating life of rolling bearings: acceptance, studies of a main bearing."""

@@ -1,0 +1,205 @@
+"""Basic life of a main bearing against wind speed, with both stress risers."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.bearing.thesis_beam import BEARINGS, beam_body, housed_body
+from fe_drivetrain.cases.life.operating import (
+    EDGES,
+    HOUSING,
+    SPEEDS,
+    Setup,
+    Winds,
+    at_site,
+    basic_lives,
+    bearing_s,
+    by_wind,
+    rotor_speed,
+    scatter_of_seeds,
+    shares,
+    state_assumptions,
+    state_meaning,
+    thesis_setup,
+)
+from fe_drivetrain.common import Floats
+from fe_drivetrain.histories import Site
+from fe_drivetrain.life import equivalent_life, years
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+
+#: Site of the thesis's figure 5.9 [m/s], and its lives without and with the stress riser [years].
+MEAN_WIND = 10.0
+THESIS = (7.9, 1.6)
+SOURCE = "Stirling 2023, section 5.3.6, figure 5.9"
+
+EVENLY, RISEN = "straight, f = 1", "straight, f of ISO"
+PROFILED, FAIR = "profile, f of ISO", "straight, f = 1, lambda nu = 1"
+
+
+@case(
+    "Basic life of a main bearing against wind speed, with and without stress riser",
+    source="Stirling 2023, section 5.3.6",
+)
+def run(run: Run, page: Page) -> None:
+    """Lives at eleven wind speeds and at a site, of three arrangements in two housings."""
+    state_assumptions(page)
+    winds = Winds("medium", 0.1, 3, 20.0, 1.0) if run.quick else Winds("medium", 0.1, 6, 600.0, 0.5)
+    with run.step("hub loads"):
+        loads = winds.hub_loads()
+    thesis = thesis_setup()
+    with run.step("lives as the thesis's"):
+        lives = variants(thesis, loads)
+    check(page, lives, winds)
+    rows: list[Record] = []
+    for name, entry in BEARINGS.items():
+        for housing, body in (("rigid", beam_body()), ("in series", housed_body(*HOUSING))):
+            if run.quick and housing != "rigid":
+                continue
+            with run.step(f"{name}, housing {housing}"):
+                setup = replace(thesis, bearing=bearing_s(entry, False), body=body)
+                found = variants(setup, loads)
+            rows.append({"bearing S": name, "housing": housing, **at_the_site(found)})
+    ratios = [row["ratio"] for row in rows]
+    page.between(
+        "life with the stress riser over life without, of the thesis",
+        THESIS[1] / THESIS[0],
+        min(ratios),
+        max(ratios),
+        why="contact angle, arrangement and housing, none of them printed, decide how uneven "
+        "laminae are: our choices are on both sides",
+        source="bearing S in three arrangements and two housings",
+    )
+    show(page, lives, winds)
+    page.section("Arrangement, contact angle, housing")
+    page.table(
+        f"Life at a site of {MEAN_WIND:g} m/s [years], and its ratio with and without stress riser "
+        f"(thesis: {THESIS[1]:g} over {THESIS[0]:g}, {THESIS[1] / THESIS[0]:.2f})",
+        rows,
+    )
+    page.data("life at the site [years]", rows)
+    state_meaning(page)
+    own = {name: at_site(by_wind(one), MEAN_WIND) for name, one in lives.items()}
+    page.answer(
+        f"At a site of {MEAN_WIND:g} m/s the stress riser of ISO/TS 16281 leaves "
+        f"{own[RISEN] / own[EVENLY]:.2f} of the life without it (the thesis: "
+        f"{THESIS[1] / THESIS[0]:.2f}); over arrangements, contact angles and housings it is "
+        f"{min(ratios):.2f} to {max(ratios):.2f}. For laminae that carry evenly it would be 0.29.",
+        f"In years: {own[EVENLY]:.1f} and {own[RISEN]:.1f} on the thesis's choices (the thesis: "
+        f"{THESIS[0]:g} and {THESIS[1]:g}, another turbine and bearing). With the profile that the "
+        f"stress riser is meant for it is {own[PROFILED]:.1f}; without stress riser, but with what "
+        f"belongs to it (lambda nu = 1), {own[FAIR]:.1f}.",
+    )
+
+
+def variants(setup: Setup, loads: Floats) -> dict[str, Floats]:
+    """L10r (winds, steps) of both stress risers, and of what belongs to each."""
+    straight = setup.deflections(loads)
+    name = setup.bearing.with_rows(crown=45e-5 * setup.bearing.rows[0].diameter)
+    crowned = replace(setup, bearing=name, riser=None)
+    even = basic_lives(setup, straight)
+    return {
+        EVENLY: even,
+        RISEN: basic_lives(replace(setup, riser=None), straight),
+        PROFILED: basic_lives(crowned, crowned.deflections(loads)),
+        FAIR: basic_lives(replace(setup, edge=1.0), straight),
+    }
+
+
+def at_the_site(lives: dict[str, Floats]) -> Record:
+    """Years of each variant, and the ratio of the thesis's two."""
+    found = {name: at_site(by_wind(one), MEAN_WIND) for name, one in lives.items()}
+    return {**found, "ratio": found[RISEN] / found[EVENLY]}
+
+
+def check(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
+    """What does not depend on whose turbine it is."""
+    page.equals(
+        "life without stress riser: lambda nu of 0.83 over 1, the worst step",
+        float((lives[EVENLY] / lives[FAIR]).max()),
+        0.83**-4,
+        within=1e-9,
+        why="round-off: life goes with the fourth power of C",
+        source="Q_c is as 1 / (lambda nu), Stirling 2023, eqs 5.1 and 5.8",
+    )
+    of_winds = by_wind(lives[EVENLY])
+    weights = np.broadcast_to(Site(MEAN_WIND).shares(EDGES)[:, None], lives[EVENLY].shape)
+    steps = years(lives[EVENLY], rotor_speed()[:, None])
+    at_once = equivalent_life(steps.ravel(), weights.ravel()) / Site(MEAN_WIND).shares(EDGES).sum()
+    page.equals(
+        "life at the site: of each wind, then of all, over all steps at once",
+        at_site(of_winds, MEAN_WIND) / float(at_once),
+        1.0,
+        within=1e-10,
+        why="round-off of a sum",
+        source="Miner's rule does not depend on the order",
+        basis="self-consistency",
+    )
+    for name in (EVENLY, RISEN):
+        fall = np.diff(np.log(by_wind(lives[name])))
+        error = scatter_of_seeds(lives[name], winds.seeds)
+        allowed = 2.0 * np.hypot(error[1:], error[:-1])
+        page.holds(
+            f"{name}: life falls from each wind speed to the next, but for twice the standard "
+            "error of the seeds",
+            bool((fall < allowed).all() and fall.sum() < 0.0),
+            why="the moment grows with wind speed",
+            source=SOURCE,
+        )
+        rated = int(np.searchsorted(SPEEDS, 12.0))
+        page.holds(
+            f"{name}: a m/s costs more up to 12 m/s than above",
+            fall[:rated].mean() < fall[rated:].mean(),
+            why="thrust and rotor speed grow up to rated wind, and not above",
+            source=SOURCE,
+        )
+
+
+def show(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
+    """Figure 5.9, and the share of damage."""
+    page.section("Life by wind speed")
+    found = {name: by_wind(one) for name, one in lives.items()}
+    ends = [SPEEDS[0], SPEEDS[-1]]
+    colors = {EVENLY: "#0072b2", RISEN: "#d55e00", PROFILED: "#009e73", FAIR: "#999999"}
+    traces = [
+        trace(name, SPEEDS, one, mode="lines+markers", line={"color": colors[name]})
+        for name, one in found.items()
+    ]
+    for name, years_there in zip((EVENLY, RISEN), THESIS, strict=True):
+        site = at_site(found[name], MEAN_WIND)
+        for words, value, dash in (("site", site, "dash"), ("thesis, site", years_there, "dot")):
+            line = {"color": colors[name], "dash": dash}
+            traces.append(trace(f"{words}: {value:.2g} years", ends, [value, value], line=line))
+    page.chart(
+        "Basic reference life with the choices of the thesis: face to face, 38 deg, rigid housing",
+        traces,
+        "mean wind speed [m/s]",
+        "life [years]",
+        "y",
+    )
+    rows: list[Record] = [
+        {
+            "mean wind speed [m/s]": float(v),
+            "time [%]": 100.0 * float(w),
+            **{f"life, {name} [years]": float(one[k]) for name, one in found.items()},
+            "damage, f = 1 [%]": float(shares(found[EVENLY], MEAN_WIND)[k]),
+            "damage, f of ISO [%]": float(shares(found[RISEN], MEAN_WIND)[k]),
+        }
+        for k, (v, w) in enumerate(zip(SPEEDS, Site(MEAN_WIND).shares(EDGES), strict=True))
+    ]
+    page.sweep(
+        f"Share of time and of damage at a site of {MEAN_WIND:g} m/s",
+        rows,
+        "mean wind speed [m/s]",
+        {"time [%]": "time", "damage, f = 1 [%]": "damage"},
+        axis="share [%]",
+    )
+    error = float(scatter_of_seeds(lives[EVENLY], winds.seeds, MEAN_WIND))
+    page.data("standard error of the logarithm of life, of seeds [-]", error)
+    page.text(
+        f"{winds.seeds} histories of {winds.duration:g} s at each wind speed: their number alone "
+        f"leaves a standard error of {100 * error:.0f} % in the life at the site, but hardly any "
+        "in ratios of lives, which share the histories. Wind speeds above 14 m/s, a small part of "
+        "the time, do most of the damage: life goes with the fourth power of load."
+    )

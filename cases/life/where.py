@@ -1,0 +1,287 @@
+"""Where a main bearing is used up: which row, which ring, where on it, where along the rollers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.bearing import angles, turn
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.life.operating import (
+    EDGES,
+    SPEEDS,
+    Setup,
+    Winds,
+    by_chunks,
+    by_wind,
+    on_rigid_rings,
+    own_setup,
+    roller_rows,
+    rotor_speed,
+    state_assumptions,
+    state_meaning,
+    thesis_setup,
+)
+from fe_drivetrain.common import Floats
+from fe_drivetrain.histories import Site
+from fe_drivetrain.life import lamina_life, stress_riser
+from fe_drivetrain.report import Chart, rounded, trace
+from fe_drivetrain.suite import Page, Record, Run
+
+MEAN_WIND = 8.0
+ROWS = ("upwind", "downwind")
+
+#: Weibull's slope of line contact, and life's exponent of load for each part of a ring.
+SLOPE, FOURTH = 9.0 / 8.0, 4.0
+
+HOURS = 60.0 * 8760.0
+
+
+@dataclass(frozen=True)
+class Used:
+    """Damage a year at each wind speed of each part of the rings, and by Miner's sum over steps.
+
+    Attributes
+    ----------
+    outer : Floats
+        (winds, rows, places, laminae).
+    inner : Floats
+        (winds, rows, laminae): every place of the ring that turns meets all loads.
+    steps : Floats
+        (winds,) of the whole bearing, rated at each step as one.
+    """
+
+    outer: Floats
+    inner: Floats
+    steps: Floats
+
+    def at(self, mean_wind: float) -> "Used":
+        """At a site: of each part, with all its winds."""
+        weights = Site(mean_wind).shares(EDGES)
+        parts = (np.tensordot(weights, one, 1)[None] for one in (self.outer, self.inner))
+        outer, inner = parts
+        return Used(outer, inner, np.array([weights @ self.steps]))
+
+    def risks(self) -> tuple[Floats, Floats]:
+        """Of each place (winds, rows, places, laminae) and of the rings that turn."""
+        return self.outer**SLOPE, self.inner**SLOPE
+
+    def life(self) -> Floats:
+        """(winds,) [years] in which a tenth fails, each part with its own sum of damage."""
+        outer, inner = self.risks()
+        return np.asarray((outer.sum(axis=(1, 2, 3)) + inner.sum(axis=(1, 2))) ** (-1.0 / SLOPE))
+
+
+@case(
+    "Where a main bearing's life is used up: row, ring, place, lamina",
+    source="Stirling 2023, sections 5.2.2 and 5.3.3; Lundberg and Palmgren's weakest link",
+)
+def run(run: Run, page: Page) -> None:
+    """Damage of each place of the outer rings, summed over all winds of a site."""
+    state_assumptions(page)
+    winds = Winds("medium", 0.2, 2, 20.0, 1.0) if run.quick else Winds("medium", 0.2, 6, 600.0, 0.5)
+    with run.step("hub loads"):
+        hub = winds.hub_loads()
+    rows: list[Record] = []
+    for words, setup in (("choices of the thesis", thesis_setup()), ("our choices", own_setup())):
+        with run.step(words):
+            u = setup.deflections(hub)
+            used = damage(setup, u)
+        if words == "our choices":
+            turned(page, setup, u)
+        check(page, words, used)
+        show(page, words, used)
+        rows.append(summary(setup, words, used))
+    for name, top in (("upwind", -1.0), ("downwind", 1.0)):
+        centre = rows[0][f"{name}, centre [deg]"]
+        page.at_least(
+            f"choices of the thesis: {name} row, height of the centre of damage over its distance "
+            f"from the axis, {'upwards' if top > 0.0 else 'downwards'}",
+            top * float(np.sin(np.radians(centre))),
+            0.5,
+            why="within 60 deg of the place where the mean load of rollers is largest",
+            source="Stirling 2023, section 5.2.2: upwind row at the bottom, downwind row on top",
+            measure="identity",
+        )
+    page.section("In numbers")
+    page.table(
+        f"At a site of {MEAN_WIND:g} m/s; 0 deg right, 90 deg on top, looking downwind", rows
+    )
+    page.data("where", rows)
+    state_meaning(page)
+    thesis, own = rows
+    more = [100.0 * (row["life by place over life by step"] - 1.0) for row in rows]
+    page.answer(
+        f"The upwind row does {thesis['upwind row [%]']:.0f} % of the damage with the choices of "
+        f"the thesis, most of it at {thesis['upwind, centre [deg]']:.0f} deg, the downwind row's "
+        f"is at {thesis['downwind, centre [deg]']:.0f} deg (the thesis on mean loads: upwind row "
+        "more, at 270; downwind row at 90). Back to back in a housing in series it is "
+        f"{own['upwind row [%]']:.0f} %, at {own['upwind, centre [deg]']:.0f} and "
+        f"{own['downwind, centre [deg]']:.0f} deg.",
+        f"The ring that turns does {min(row['inner rings [%]'] for row in rows):.0f} % of the "
+        "damage or more. Because the load zone wanders, places of the standing ring share it: "
+        f"damage that is summed place by place gives {more[0]:.1f} and {more[1]:.1f} % more life "
+        "than Miner's sum over steps that are rated as one, which is on the safe side.",
+    )
+
+
+def damage(setup: Setup, deflections: Floats) -> Used:
+    """Of all parts at each wind speed."""
+    riser = stress_riser(30) if setup.riser is None else setup.riser
+    outer, inner, lives = [], [], []
+    for u in deflections:
+
+        def of_chunk(q: list[Floats]) -> dict[str, Floats]:
+            rows = setup.rows(q)
+            places = [
+                np.sum((riser * one / row.outer_capacity) ** FOURTH, axis=0)
+                / one.shape[1] ** (8 / 9)
+                for one, row in zip(q, rows, strict=True)
+            ]
+            turning = [np.sum((row.inner / row.inner_capacity) ** FOURTH, axis=0) for row in rows]
+            return {
+                "outer": np.array(places)[None],
+                "inner": np.array(turning)[None],
+                "L": lamina_life(rows),
+            }
+
+        found = by_chunks(len(u), on_rigid_rings(setup.bearing, u), of_chunk)
+        outer.append(found["outer"].sum(axis=0) / len(u))
+        inner.append(found["inner"].sum(axis=0) / len(u))
+        lives.append(found["L"])
+    a_year = rotor_speed() * HOURS / 1e6
+    return Used(
+        np.array(outer) * a_year[:, None, None, None],
+        np.array(inner) * a_year[:, None, None],
+        1.0 / by_wind(np.array(lives)),
+    )
+
+
+def check(page: Page, words: str, used: Used) -> None:
+    """Bounds of the two ways to sum damage."""
+    ratio = used.life() * used.steps
+    page.at_least(
+        f"{words}: life by place over life by step, the least of all winds",
+        float(ratio.min()),
+        1.0,
+        why="a norm of a sum is no larger than the sum of norms: wandering load zones only help",
+        source="Minkowski's inequality with the exponent 9/8",
+        measure="identity",
+    )
+    # all steps at their worst place: what places could share at most
+    largest = (72.0 * 30.0 * 2.0) ** (1.0 - 8.0 / 9.0)
+    page.at_most(
+        f"{words}: life by place over life by step, the largest of all winds",
+        float(ratio.max()),
+        largest,
+        why="as many equal parts, each damaged in steps of its own",
+        source="norms of as many numbers differ by no more",
+        measure="identity",
+    )
+
+
+def turned(page: Page, setup: Setup, deflections: Floats) -> None:
+    """A turn of the inner ring's motion by one pitch moves the damage by one place."""
+    few = deflections[:, :20]
+    pitch = 2.0 * np.pi / roller_rows(setup.bearing)[0].rollers
+    flat = few.reshape(-1, 5)
+    moved = turn(flat, np.full(len(flat), pitch)).reshape(few.shape)
+    one, other = (damage(setup, u).outer for u in (few, moved))
+    page.vanishes(
+        "damage of places, all motions turned by a pitch, less that of the next place, over the "
+        "largest",
+        float(np.abs(np.roll(one, 1, axis=2) - other).max() / one.max()),
+        within=1e-9,
+        why="round-off",
+        source="rollers are equal",
+    )
+
+
+def summary(setup: Setup, words: str, used: Used) -> Record:
+    """Of a site: rows, rings, centres of damage, and the life of both sums."""
+    site = used.at(MEAN_WIND)
+    outer, inner = (risk[0] for risk in site.risks())
+    total = outer.sum() + inner.sum()
+    psi = angles(roller_rows(setup.bearing)[0])
+    centres = np.degrees(np.angle(outer.sum(axis=2) @ np.exp(1j * psi))) % 360.0
+    of_rows = outer.sum(axis=(1, 2)) + inner.sum(axis=1)
+    laminae = outer.sum(axis=(0, 1)) + inner.sum(axis=0)
+    return {
+        "choices": words,
+        "upwind row [%]": 100.0 * float(of_rows[0] / total),
+        "inner rings [%]": 100.0 * float(inner.sum() / total),
+        "upwind, centre [deg]": float(centres[0]),
+        "downwind, centre [deg]": float(centres[1]),
+        "worst tenth of the places of both outer rings [%]": 100.0 * worst_tenth(outer),
+        "end laminae, 4 of 30 [%]": 100.0 * float(laminae[[0, 1, -2, -1]].sum() / total),
+        "life by place [years]": float(site.life()[0]),
+        "life by step [years]": 1.0 / float(site.steps[0]),
+        "life by place over life by step": float(site.life()[0] * site.steps[0]),
+    }
+
+
+def worst_tenth(outer: Floats) -> float:
+    """Share of the outer rings' damage that a tenth of their places does."""
+    places = np.sort(outer.sum(axis=2).ravel())[::-1]
+    return float(places[: len(places) // 10].sum() / places.sum())
+
+
+def show(page: Page, words: str, used: Used) -> None:
+    """Polar picture of the outer rings, and damage over places and winds."""
+    page.section(words.capitalize())
+    site = used.at(MEAN_WIND)
+    outer = site.risks()[0][0].sum(axis=2)
+    share = 100.0 * outer / outer.sum()
+    n = share.shape[1]
+    psi = 2.0 * np.pi * np.arange(n + 1) / n
+    traces = [
+        trace(name, one[at] * np.cos(psi), one[at] * np.sin(psi), mode="lines+markers")
+        for name, one in zip(ROWS, share, strict=True)
+        for at in [np.arange(n + 1) % n]
+    ]
+    page.chart(
+        f"Damage of each place of the standing outer rings, towards its place, {words}, site of "
+        f"{MEAN_WIND:g} m/s",
+        traces,
+        "to the right, looking downwind [% of both outer rings]",
+        "upwards [% of both outer rings]",
+    )
+    square = page.sections[-1].items[-1]
+    assert isinstance(square, Chart)
+    square.figure["layout"]["yaxis"]["scaleanchor"] = "x"
+    weights = Site(MEAN_WIND).shares(EDGES)
+    of_winds = weights[:, None, None] * used.outer.sum(axis=3)
+    of_winds *= 100.0 / of_winds.sum()
+    for k, name in enumerate(ROWS):
+        page.add(
+            heat_map(
+                f"Where and when: {name} row, {words}; places of the outer ring against mean wind",
+                np.degrees(psi[:-1]),
+                SPEEDS,
+                of_winds[:, k],
+                float(of_winds.max()),
+            )
+        )
+    page.data(f"damage of places [%], {words}", share)
+
+
+def heat_map(caption: str, places: Floats, winds: Floats, share: Floats, largest: float) -> Chart:
+    """Damage over places and winds, both rows on one scale."""
+    figure = {
+        "data": [
+            {
+                "type": "heatmap",
+                "x": rounded(places),
+                "y": rounded(winds),
+                "z": [rounded(line, 3) for line in share],
+                "colorscale": "Viridis",
+                "zmin": 0.0,
+                "zmax": largest,
+                "colorbar": {"title": {"text": "% of damage"}},
+            }
+        ],
+        "layout": {
+            "xaxis": {"title": {"text": "place [deg]: 0 right, 90 top"}, "dtick": 90},
+            "yaxis": {"title": {"text": "mean wind speed [m/s]"}},
+        },
+    }
+    return Chart(caption=caption, figure=figure)

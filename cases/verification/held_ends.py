@@ -1,0 +1,94 @@
+"""Tension of a shaft whose ends are held flat and round: how much stiffer it is than EA / L."""
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.shaft_inputs import show_uniform
+from fe_drivetrain.mesh import Grading
+from fe_drivetrain.revolution import end_stiffness
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.validation import end_loaded, solid_shafts
+from fe_drivetrain.validation import shaft_theory as theory
+
+STEEL = MATERIALS["steel"]
+OUTER, BORE = 0.4, 0.28  # m
+#: Lengths over the outer diameter, and the one that is solved in three dimensions, too.
+RATIOS, QUICK_RATIOS, SOLVED = (0.5, 1.0, 2.0, 4.0, 8.0), (1.0, 4.0, 8.0), 1.0
+
+SHAFT, RATIO = "shaft", "length over diameter"
+STIFFER, SHORTER = "stiffer by [%]", "length taken off, over diameter"
+SOLIDS = "hexahedra, stiffer by [%]"
+STRETCH = 1e-4  # m
+PRINCIPLE = "Saint-Venant's principle: the ends' disturbance dies out within a few diameters, and "
+PRINCIPLE += "is then the same whatever the length"
+
+
+def in_the_meridian(name: str, ratio: float) -> Record:
+    """By Fourier harmonics."""
+    tube = theory.solid_and_bored(OUTER, BORE, ratio * OUTER, STEEL)[name]
+    shaft = solid_shafts.straight((0.0, tube.length), OUTER, tube.inner)
+    stiffer = float(end_stiffness(shaft, STEEL)[6, 6] * tube.length / tube.EA - 1)
+    # a shaft of length L - e: k = E A / (L - e)
+    shorter = ratio * stiffer / (1 + stiffer)
+    return {SHAFT: name, RATIO: ratio, STIFFER: 100 * stiffer, SOLIDS: None, SHORTER: shorter}
+
+
+def in_three_dimensions(bore: float, refinement: int, layers: int) -> float:
+    """Stiffness over E A / L of a solid."""
+    length = SOLVED * OUTER
+    shaft = solid_shafts.straight((0.0, length), OUTER, bore)
+    mesh = solid_shafts.solid(shaft, refinement, Grading(ends=layers), size=OUTER)
+    stretch = STRETCH / length * mesh.points * [1.0, 0.0, 0.0]
+    found = end_loaded.solve_displaced(mesh, STEEL, stretch).static
+    # of the meshed area: what is left is the effect of the ends
+    EA = STEEL.youngs_modulus * end_loaded.section_area(mesh, 0.0)
+    return 2 * float(found.energy[0]) / STRETCH**2 * length / EA
+
+
+@case(
+    "Tension of a uniform shaft with clamped ends: the length that they take off",
+    source="Fourier harmonics in the meridian; Saint-Venant's principle",
+)
+def run(run: Run, page: Page) -> None:
+    """Ends that are held flat and round, by the meridian and in three dimensions."""
+    layers, rows, off = 1 if run.quick else 2, [], {}
+    # the coarsest elements are half a diameter long, the layers at the ends 0.3 of that each
+    edge = 2 * 0.5 / 2 * 0.3**layers
+    singular = "stress is singular along held edges, of exponent 0.71 in steel; elements there are "
+    singular += f"{edge:.2g} radii long, what they miss goes as that to the power 1.4, and a tenth "
+    singular += "of the energy is at the ends at most"
+    fades = "the slowest even self-balanced disturbance of a round steel bar fades by "
+    fades += "exp(-2.72 x / R), 2.72 the real part of the first root of g^2 (J0^2 + J1^2) = "
+    fades += "2 (1 - nu) J1^2: 2e-5 over two diameters; and the meridian's own error at held edges"
+    for name, bore in (("solid", 0.0), ("bored", BORE)):
+        ratios = QUICK_RATIOS if run.quick else RATIOS
+        held = [run.timed(f"{name}: meridian", in_the_meridian, name, ratio) for ratio in ratios]
+        step = f"{name}: mesh and solve"
+        solids = [run.timed(step, in_three_dimensions, bore, r, layers) for r in (1, 2)]
+        same, before, last = held[ratios.index(SOLVED)], *held[-2:]
+        same[SOLIDS] = 100 * (solids[-1] - 1)
+        title = f"{name}: stiffness over E A / L between held ends, L = {SOLVED:g} D"
+        source = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"
+        within, stiffness = 0.1 * edge**1.4, 1 + same[STIFFER] / 100
+        target = Target(title, stiffness, within, singular, source, measure="stiffness")
+        page.meets(solids[-1], target, solid_shafts.mesh_band((1, 2), solids, 1.4))
+        title = f"{name}: length that held ends take off, L = {last[RATIO]:g} D against "
+        title += f"{before[RATIO]:g} D [diameters]"
+        shorter = Target(title, before[SHORTER], 1e-3, fades, PRINCIPLE, "", False, "deflection")
+        page.meets(last[SHORTER], shorter)
+        off[name] = last[SHORTER]
+        rows += held
+    page.answer(
+        f"Ends that are held flat and round take {off['solid']:.3f} diameters off a solid shaft's "
+        f"length, {off['bored']:.3f} off a bored one's."
+    )
+    page.section("Held ends")
+    length = "length of the shaft in three dimensions", SOLVED * OUTER, "m"
+    show_uniform(page, OUTER, BORE, length, steel=STEEL)
+    title = "What ends that can neither contract nor warp add to E A / L"
+    curves = {STIFFER: "meridian", SOLIDS: "hexahedra"}
+    page.sweep(title, rows, RATIO, curves, by=SHAFT, log="xy", axis=STIFFER)
+    page.text(
+        "Traction leaves the ends free to contract, and the stress is uniform to the ends. A rigid "
+        "flange does not: the shaft is stiffer, as if shorter by a fixed part of its diameter."
+    )
+    page.data("held_ends_diameters_solid", off["solid"])

@@ -1,0 +1,95 @@
+"""Torsion of a cone between rigid flat ends, and the error of the integral of dx / GJ."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
+from fe_drivetrain.cases.verification.torsion_bound import BOUNDS, check_plane_sections
+from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.validation import solid_shafts
+from fe_drivetrain.validation.shaft_theory import between_spheres, parabola_shortfall
+from fe_drivetrain.validation.torsion_meridian import series_stiffness, torsion_bounds
+
+STEEL = MATERIALS["steel"]
+G = STEEL.shear_modulus
+#: Radii at the ends [m] and half angle of the cone [degrees].
+RADII, HALF_ANGLE = (0.15, 0.3), 10.0
+SHAFT = solid_shafts.cone(RADII, HALF_ANGLE)
+ANGLES, QUICK_ANGLES = (2.5, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0), (5.0, 10.0, 20.0, 30.0)
+
+ANGLE, FLAT, SPHERES = "half angle [degrees]", "rigid flat ends", "spheres"
+TURN, RIGID = "per turn", "stiffness between rigid flat ends [N m/rad]"
+
+
+def solve(refinement: int) -> Record:
+    """Rigid flat ends, on one mesh."""
+    mesh = solid_shafts.solid(SHAFT, refinement, size=SHAFT.length / 2)
+    return {TURN: mesh.per_turn, RIGID: solid_shafts.twist(mesh, STEEL)[1]}
+
+
+def too_stiff(degrees: float) -> Record:
+    """How much too stiff the integral of dx / GJ is [%], by the half angle."""
+    shaft = solid_shafts.cone(RADII, degrees)
+    flat = torsion_bounds(shaft, G, RADII[0] / 2, 2).middle
+    # Michell's cone, as long on its axis as the flat-ended one
+    by = {FLAT: flat, SPHERES: between_spheres(RADII, np.radians(degrees), G)}
+    simple = series_stiffness(shaft, G)
+    return {ANGLE: degrees} | {name: 100 * (simple / k - 1) for name, k in by.items()}
+
+
+@case(
+    "Torsion of a cone between rigid flat ends, and the integral of dx / GJ",
+    source="Two bounds from the meridian (Michell 1899; Timoshenko and Goodier, Theory of "
+    "Elasticity, article 119, 3rd edition)",
+)
+def run(run: Run, page: Page) -> None:
+    """A cone between flat ends by solids, by two bounds, and by the integral of dx / GJ."""
+    meshes = [run.timed("mesh and solve", solve, r) for r in ((1, 2) if run.quick else (1, 2, 3))]
+    with run.step("bounds from the meridian"):
+        bounds = torsion_bounds(SHAFT, G, RADII[0] / (2 if run.quick else 3), 2)
+        sweep = [too_stiff(angle) for angle in (QUICK_ANGLES if run.quick else ANGLES)]
+    series, simple = MeshSeries(meshes, TURN), series_stiffness(SHAFT, G)
+    turn, width = series.last[TURN], bounds.half_width / bounds.middle
+    shortfall = 4 * parabola_shortfall(turn)
+    arcs = f"{turn} parabolic arcs round a turn: J is {shortfall:.2g} too low, and three times "
+    arcs += "that is allowed, since the elements do not contain this field; and the bounds' own "
+    arcs += "width"
+    rigid = Target(RIGID, bounds.middle, 3 * shortfall + width, arcs, BOUNDS, order=4.0)
+    page.finest(series, rigid)
+    title = "excess of the upper bound over 1 / integral of dx / GJ"
+    check_plane_sections(page, title, bounds, simple)
+    title = f"1 / integral of dx / GJ at a half angle of {HALF_ANGLE:g} degrees [N m/rad]"
+    first = "of a complete cone between spheres the integral is 5/3 a^2 too stiff to first order "
+    first += "in the half angle a; flat rigid ends stiffen the cone, so it is less"
+    within = float(np.tan(np.radians(HALF_ANGLE)) ** 2) * 5 / 3
+    between = "between two bounds from the meridian"
+    page.meets(simple, Target(title, bounds.middle, within, first, between))
+    excess = 100 * (simple / bounds.middle - 1)
+    page.answer(
+        f"Between rigid flat ends the integral of dx / GJ is {excess:.2f} % too stiff at a half "
+        f"angle of {HALF_ANGLE:g} degrees."
+    )
+    page.section("Cone")
+    show_inputs(
+        page,
+        ("radius at the thin end", RADII[0], "m"),
+        ("radius at the thick end", RADII[1], "m"),
+        ("half angle of the cone", HALF_ANGLE, "degrees"),
+        ("length", SHAFT.length, "m", "of these"),
+        steel=STEEL,
+    )
+    title = "How much too stiff the integral of dx / GJ is: against rigid flat ends, and against "
+    title += "Michell's cone between spheres through the ends' centres"
+    curves = {FLAT: FLAT, SPHERES: SPHERES}
+    page.sweep(title, sweep, ANGLE, curves, axis="too stiff by [%]", table=False)
+    page.table(
+        "Stiffness between rigid flat ends [N m/rad]",
+        [
+            ("1 / integral of dx / GJ", simple, None),
+            ("two bounds", bounds.middle, bounds.half_width),
+            ("three dimensions", series.last[RIGID], series.band(RIGID, 4.0)),
+        ],
+        ["by", "stiffness", "half width of bounds or band"],
+    )
+    page.data("series_too_stiff_percent", excess)

@@ -1,0 +1,310 @@
+"""The command ``life``: rating life of the rolling bearings of a scene under load histories."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fe_drivetrain.commands.progress import show_steps
+from fe_drivetrain.commands.run import results_text
+from fe_drivetrain.commands.scenes import named_scene
+from fe_drivetrain.commands.settings import SceneSettings, parse_settings
+from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.threads import hold_threads
+
+if TYPE_CHECKING:
+    from fe_drivetrain.life.lubricants import Lubricant
+
+_KEPT = "files that are done are kept: run again with --resume"
+
+
+def life_command(
+    scene: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENE", help="A scene file, or a name of the library, as in two_bearings."
+        ),
+    ],
+    loads: Annotated[
+        list[str],
+        typer.Option(
+            "--loads",
+            metavar="FILES",
+            help="Hub loads: a file (.out, .outb of OpenFAST, or .csv), a folder, or a pattern in "
+            "quotes, as in 'outputs/*.outb'. May be repeated.",
+        ),
+    ],
+    site: Annotated[
+        str | None,
+        typer.Option(
+            "--site",
+            metavar="CLASS",
+            help="Weight winds: a class of IEC 61400-1, as in class-II, or the mean wind speed of "
+            "a Rayleigh distribution in m/s. Without it the files follow each other for ever.",
+        ),
+    ] = None,
+    bearing: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--bearing",
+            metavar="NAME=ENTRY",
+            help="Entry of the bearing catalogue for a bearing of the scene, before what the scene "
+            "says under 'catalogue'. May be repeated.",
+        ),
+    ] = None,
+    only: Annotated[
+        str | None,
+        typer.Option("--only", metavar="NAME", help="The one bearing whose life is asked for."),
+    ] = None,
+    catalogue: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--catalogue", metavar="FILE", help="A bearing catalogue of your own. May be repeated."
+        ),
+    ] = None,
+    lubricant: Annotated[
+        str,
+        typer.Option(
+            "--lubricant",
+            metavar="GRADE",
+            help="A grade (VG 460, VG 320, VG 220, LGWM 1, LGWM 2), or viscosity at 40 and at "
+            "100 degC in mm2/s, as in 460,30.5.",
+        ),
+    ] = "VG 460",
+    temperature: Annotated[
+        float, typer.Option("--temperature", metavar="DEGC", help="Of the bearing in operation.")
+    ] = 50.0,
+    supply: Annotated[
+        str, typer.Option("--supply", metavar="KIND", help="grease, 'filtered oil' or 'oil bath'.")
+    ] = "grease",
+    cleanliness: Annotated[
+        str | None,
+        typer.Option(
+            "--cleanliness",
+            metavar="CLASS",
+            help="Of grease: high, normal, 'slight to typical', severe, 'very severe'; of oil a "
+            "code of ISO 4406, as in -/15/12. Default: normal, -/15/12.",
+        ),
+    ] = None,
+    profile: Annotated[
+        bool,
+        typer.Option(
+            "--profile/--straight",
+            help="Whether rollers have the standard's logarithmic profile where their entry has "
+            "none.",
+        ),
+    ] = True,
+    riser: Annotated[
+        bool,
+        typer.Option(
+            "--riser/--no-riser", help="Whether the stress riser of ISO/TS 16281 is applied."
+        ),
+    ] = True,
+    turning: Annotated[
+        str,
+        typer.Option(
+            "--turning", metavar="RING", help="The ring that turns against the load: inner, outer."
+        ),
+    ] = "inner",
+    support: Annotated[
+        str,
+        typer.Option(
+            "--support",
+            metavar="MODEL",
+            help="The shaft on its bearings: rollers (in equilibrium with it), pinned, or K_R in "
+            "N m/rad.",
+        ),
+    ] = "rollers",
+    rings: Annotated[
+        str,
+        typer.Option(
+            "--rings",
+            metavar="MODEL",
+            help="The bearing's rings: rigid, three-degree, or housing (the raceway gives way with "
+            "the scene's housing, whose bore it has to be).",
+        ),
+    ] = "rigid",
+    reliability: Annotated[
+        float,
+        typer.Option(
+            "--reliability", metavar="PERCENT", help="Of modified lives: 90, 95 to 99, 99.5, 99.9."
+        ),
+    ] = 90.0,
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--channel",
+            metavar="NAME=COLUMN",
+            help="How the files call a channel: NAME is time, Fx, Fy, Fz, Mx, My, Mz, rotor speed "
+            "or wind speed. May be repeated.",
+        ),
+    ] = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            "--mapping",
+            metavar="YAML",
+            help="Names, units, frame and origin of channels, for files of other programs "
+            "(docs/loads.md); --channel goes before it.",
+        ),
+    ] = None,
+    rotor_speed: Annotated[
+        float | None,
+        typer.Option(
+            "--rotor-speed", metavar="RPM", min=0.0, help="Of files that have no rotor speed."
+        ),
+    ] = None,
+    skip: Annotated[
+        float,
+        typer.Option(
+            "--skip",
+            metavar="SECONDS",
+            min=0.0,
+            help="What is left out at the beginning of each file.",
+        ),
+    ] = 0.0,
+    every: Annotated[
+        int, typer.Option("--every", metavar="COUNT", min=1, help="Take one sample of so many.")
+    ] = 1,
+    weight: Annotated[
+        bool,
+        typer.Option("--weight/--no-weight", help="Whether gearbox and shaft have their weight."),
+    ] = True,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Go on where a run was stopped: files that were done with the same options, and "
+            "have not changed since, are not computed again.",
+        ),
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/life/SCENE."),
+    ] = None,
+    set_: SceneSettings = None,
+) -> None:
+    """Rating life of a scene's rolling bearings under load histories, by ISO 281 and ISO/TS 16281.
+
+    Each load step is brought to equilibrium with shaft and rollers; lives L10, L10m, L10r and L10mr
+    stand side by side, with the damage by wind speed, row, ring and place of the rollers, and with
+    the time in which the methods do not hold. Tables stand beside the page as CSV.
+
+    The exit status is 0 if every check passes.
+    """
+
+    def work() -> int:
+        hold_threads()
+        found = named_scene(scene, parse_settings(set_ or ()))
+        from fe_drivetrain.commands.life_bearings import Choices, bearings_of
+        from fe_drivetrain.commands.life_digest import Reading
+        from fe_drivetrain.commands.life_page import lived
+        from fe_drivetrain.commands.loads_words import parse_channels, parse_site
+        from fe_drivetrain.hub_loads.channel_map import read_channel_map
+        from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
+        from fe_drivetrain.life.roller_damage import LifeRules
+        from fe_drivetrain.suite.case import Case
+        from fe_drivetrain.suite.result_folders import run_case
+
+        rules = LifeRules(
+            parse_lubricant(lubricant, temperature, supply, cleanliness),
+            "standard" if riser else "none",
+            turning=turning,  # type: ignore[arg-type]
+            reliability=_a_1(reliability),
+        )
+        names = OWN_NAMES if mapping is None else read_channel_map(mapping)
+        names = names.with_columns(parse_channels(channel or ()))
+        reading = Reading(names, skip, every, rotor_speed)
+        choices = Choices(
+            _pairs(bearing or ()), tuple(catalogue or ()), profile, support, rings, weight, only
+        )
+        place = None if site is None else parse_site(site)
+        files = recorded_files(loads)
+        name = Path(scene).stem
+        case = Case(
+            f"life/{name}",
+            f"{found.title}: rating life of its bearings",
+            "the user's scene and files",
+            lambda run, page: lived(
+                run, page, found, bearings, files, rules, reading, place, choices, resume
+            ),
+        )
+        with show_steps() as report:
+            report("bearings")
+            bearings = bearings_of(found, choices)
+            target = out or Path("reports") / "life" / name
+            results = run_case(case, target.resolve(), report=report)
+        write(sys.stdout, results_text(results, target / "report.html"))
+        return PASSED if results.passed else FAILED
+
+    raise typer.Exit(guarded(work, _KEPT))
+
+
+def parse_lubricant(
+    grade: str, temperature: float, supply: str, cleanliness: str | None
+) -> Lubricant:
+    """The lubricant of the options.
+
+    Parameters
+    ----------
+    grade : str
+        A grade, or two viscosities with a comma between them.
+    temperature : float
+        [degC].
+    supply : str
+        How it comes to the rollers.
+    cleanliness : str or None
+        Its class; a usual one if not given.
+
+    Returns
+    -------
+    lubricant : Lubricant
+        Checked.
+
+    Raises
+    ------
+    InputError
+        There is no such grade, supply or class.
+    """
+    from fe_drivetrain.life.lubricants import GRADES, Lubricant
+
+    if grade in GRADES:
+        at_40, at_100 = GRADES[grade]
+    else:
+        try:
+            at_40, at_100 = (float(part) for part in grade.split(","))
+        except ValueError as error:
+            raise InputError(
+                f"--lubricant {grade}: choose {', '.join(GRADES)}, or give the viscosity at 40 and "
+                "at 100 degC in mm2/s, as 460,30.5"
+            ) from error
+    usual = "normal" if supply == "grease" else "-/15/12"
+    return Lubricant(at_40, at_100, temperature, supply, cleanliness or usual)  # type: ignore[arg-type]
+
+
+def _a_1(percent: float) -> float:
+    """a_1 of a reliability."""
+    from fe_drivetrain.life.roller_damage import RELIABILITY
+
+    if percent not in RELIABILITY:
+        known = ", ".join(f"{value:g}" for value in RELIABILITY)
+        raise InputError(f"--reliability {percent:g}: choose one of {known} %")
+    return RELIABILITY[percent]
+
+
+def _pairs(texts: Iterable[str]) -> dict[str, str]:
+    """Entries by name of ``--bearing NAME=ENTRY``."""
+    found = {}
+    for text in texts:
+        name, equals, entry = (part.strip() for part in text.partition("="))
+        if not equals or not name or not entry:
+            raise InputError(
+                f"--bearing {text}: write NAME=ENTRY, as in --bearing main_bearing=bearing_s"
+            )
+        found[name] = entry
+    return found

@@ -1,0 +1,201 @@
+"""The rolling bearings of a scene for ``life``: their catalogue entries, ratings and models."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
+from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.coupled.load_paths import PINNED, LoadPath
+from fe_drivetrain.coupled.of_scene import scene_body
+from fe_drivetrain.life.rated import RatedBearing, rated_from_catalogue
+from fe_drivetrain.life.roller_models import flexible_rings, three_degree_rings
+from fe_drivetrain.scene.scene import Scene
+
+SUPPORTS = ("rollers", "pinned")
+"""How the shaft stands on its bearings; a number is K_R [N m/rad] of springs."""
+
+RINGS_OF = ("rigid", "three-degree", "housing")
+"""How the load of a bearing is shared by its rollers."""
+
+PROFILE = {"double_row_tapered": 4.5e-4, "single_row_tapered": 4.5e-4, "cylindrical": 3.5e-4}
+"""Logarithmic profile over a roller's diameter by kind (ISO/TS 16281 as public code has it); other
+rollers align themselves, and have none here."""
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What the user asks of the model.
+
+    Attributes
+    ----------
+    named : Mapping
+        Catalogue entry by bearing, before what the scene says.
+    catalogues : Sequence
+        Catalogue files of the user.
+    profiled : bool
+        Rollers have the standard's profile where their entry has none.
+    support, rings : str
+        See `SUPPORTS` and `RINGS_OF`.
+    weight : bool
+        Whether the weight of gearbox and shaft counts.
+    only : str or None
+        The one bearing whose life is asked for.
+    """
+
+    named: Mapping[str, str]
+    catalogues: Sequence[Path]
+    profiled: bool
+    support: str
+    rings: str
+    weight: bool
+    only: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class OneBearing:
+    """A bearing of a scene, ready for lives.
+
+    Attributes
+    ----------
+    name, entry_name : str
+        In the scene, and in the catalogue.
+    entry : Entry
+        Of the catalogue.
+    rated : RatedBearing
+        With ratings.
+    path : LoadPath
+        From the hub to its rollers.
+    """
+
+    name: str
+    entry_name: str
+    entry: Entry
+    rated: RatedBearing
+    path: LoadPath
+
+
+def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
+    """The rolling bearings of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        With one bearing unit or more.
+    choices : Choices
+        Of the user.
+
+    Returns
+    -------
+    bearings : list of OneBearing
+        In the scene's order; all of them, or the one that is asked for.
+
+    Raises
+    ------
+    InputError
+        A bearing has no entry, an entry is unknown, or a choice is none.
+    """
+    stiffness = _stiffness(choices.support)
+    if choices.rings not in RINGS_OF:
+        raise InputError(f"--rings {choices.rings}: choose one of {', '.join(RINGS_OF)}")
+    units = {unit.bearing.name: unit for unit in scene.bearing_units}
+    if wrong := [name for name in choices.named if name not in units]:
+        raise InputError(
+            f"--bearing {wrong[0]}={choices.named[wrong[0]]}: the scene has no bearing "
+            f"{wrong[0]!r}; name one of {', '.join(units)}"
+        )
+    if choices.only is not None and choices.only not in units:
+        raise InputError(
+            f"--only {choices.only}: the scene has no such bearing; name one of {', '.join(units)}"
+        )
+    known = read_catalogue(*choices.catalogues)
+    found: dict[str, tuple[str, Entry, RatedBearing]] = {}
+    for name, unit in units.items():
+        entry_name = choices.named.get(name) or unit.catalogue
+        if entry_name is None:
+            raise InputError(
+                f"bearing {name!r} of the scene has no rollers: name its entry of the catalogue "
+                f"with --bearing {name}=ENTRY, or under 'catalogue' in the scene; there are "
+                f"{', '.join(known)}"
+            )
+        changes = _profile(known.get(entry_name), choices.profiled)
+        rated = rated_from_catalogue(entry_name, *choices.catalogues, **changes)
+        found[name] = entry_name, known[entry_name], rated
+    rolling = {name: rated.bearing for name, (_, _, rated) in found.items()}
+    body = scene_body(scene, 1)
+    result = []
+    for name, (entry_name, entry, rated) in found.items():
+        if choices.only not in (None, name):
+            continue
+        model = None
+        if choices.rings == "three-degree":
+            model = three_degree_rings(rated.bearing)
+        elif choices.rings == "housing":
+            from fe_drivetrain.rings.housing import housing_races
+
+            model = flexible_rings(housing_races(scene, name, rated.bearing))
+        path = LoadPath(
+            body,
+            rolling,
+            name,
+            model,
+            stiffness,
+            scene.gearbox.weight if choices.weight else 0.0,
+            GRAVITY if choices.weight else 0.0,
+        )
+        result.append(OneBearing(name, entry_name, entry, rated, path))
+    return result
+
+
+def rollers_in_words(one: OneBearing, riser: str) -> str:
+    """What the ends of rollers are taken to be, as a sentence.
+
+    Parameters
+    ----------
+    one : OneBearing
+        The bearing.
+    riser : str
+        Of `LifeRules`.
+
+    Returns
+    -------
+    text : str
+        Names profile and stress riser together.
+    """
+    rows = [row for row in one.rated.bearing.rows if isinstance(row, RollerRow)]
+    if not rows:
+        return "balls, whose contact angle follows the load"
+    profiled = any(row.crown for row in rows)
+    shape = "rollers with the logarithmic profile" if profiled else "straight rollers"
+    if rows[0].aligning and not profiled:
+        shape = "barrel rollers that align themselves, evenly loaded along their length"
+    ends = "with the stress riser of ISO/TS 16281" if riser == "standard" else "no stress riser"
+    if riser == "standard" and not profiled and not rows[0].aligning:
+        ends += ", which is for profiled ones: their ends count twice"
+    return f"{shape}, {ends}"
+
+
+def _profile(entry: Entry | None, profiled: bool) -> dict[str, Any]:
+    """The standard's profile, for rollers whose entry has none."""
+    if entry is None or not profiled or entry.crown or entry.kind not in PROFILE:
+        return {}
+    return {"crown": PROFILE[entry.kind]}
+
+
+def _stiffness(support: str) -> float | None:
+    if support in SUPPORTS:
+        return None if support == "rollers" else PINNED
+    try:
+        value = float(support)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value < 1e16:
+        raise InputError(
+            f"--support {support}: choose {', '.join(SUPPORTS)}, or K_R in N m/rad, as 145e6"
+        )
+    return value

@@ -1,0 +1,140 @@
+"""Charts of the page of ``life``: load zones, maps of damage, pressure along rollers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.bearing.geometry import RollerRow, Row, angles
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.report.charts import chart, rounded, trace
+from fe_drivetrain.report.results import Chart
+
+
+def row_names(count: int) -> list[str]:
+    """What rows are called, upwind first."""
+    return ["row"] if count == 1 else ["upwind row", "downwind row"][:count]
+
+
+def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats) -> Chart:
+    """Mean and largest load of the rollers' places, as seen looking downwind.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    rows : sequence of Row
+        Of the bearing.
+    mean, peak : Floats
+        (rows, elements) [N].
+
+    Returns
+    -------
+    chart : Chart
+        In polar coordinates: 0 degrees on the right, 90 on top.
+    """
+    data: list[Any] = []
+    for r, (row, word) in enumerate(zip(rows, row_names(len(rows)), strict=True)):
+        degrees = np.degrees(angles(row))
+        closed = np.append(degrees, degrees[0] + 360.0)
+        for values, kind, dash in ((mean[r], "mean", "solid"), (peak[r], "largest", "dot")):
+            data.append(
+                {
+                    "type": "scatterpolar",
+                    "mode": "lines",
+                    "name": f"{word}, {kind}",
+                    "theta": rounded(closed, 5),
+                    "r": rounded(1e-3 * np.append(values, values[0]), 5),
+                    "line": {"color": ("#0072b2", "#d55e00")[r % 2], "dash": dash},
+                }
+            )
+    layout = {"polar": {"radialaxis": {"title": {"text": "kN"}, "angle": 45}}, "height": 520}
+    return Chart(
+        caption=f"{name}: load of the places of its rollers, looking downwind, 90 deg on top [kN]",
+        figure={"data": data, "layout": layout},
+    )
+
+
+def damage_map(caption: str, across: Floats, across_title: str, row: Row, values: Floats) -> Chart:
+    """How damage is spread over places of rollers, and over wind or time.
+
+    Parameters
+    ----------
+    caption : str
+        What it shows.
+    across : Floats
+        (n,) wind [m/s] or time [s].
+    across_title : str
+        Its axis.
+    row : Row
+        Whose places they are.
+    values : Floats
+        (n, elements) damage, of which the map shows shares.
+
+    Returns
+    -------
+    chart : Chart
+        In percent of all.
+    """
+    whole = values.sum()
+    shares = 100.0 * values / whole if whole else values
+    order = np.argsort(np.degrees(angles(row)) % 360.0)
+    figure = {
+        "data": [
+            {
+                "type": "heatmap",
+                "x": rounded(across, 5),
+                "y": rounded(np.degrees(angles(row))[order] % 360.0, 5),
+                "z": [[float(f"{v:.3g}") for v in line] for line in shares.T[order]],
+                "colorscale": "Viridis",
+                "colorbar": {"title": {"text": "%"}},
+            }
+        ],
+        "layout": {
+            "xaxis": {"title": {"text": across_title}},
+            "yaxis": {"title": {"text": "place [deg], 90 on top"}, "dtick": 90},
+        },
+    }
+    if len(across) <= 12 and "wind" in across_title:
+        figure["layout"]["xaxis"] |= {"type": "category"}  # type: ignore[index,call-overload]
+    return Chart(caption=caption, figure=figure)
+
+
+def along_rollers(name: str, rows: Sequence[Row], worst: Floats) -> Chart | None:
+    """Pressure along the roller that has the most of it; nothing of balls.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    rows : sequence of Row
+        Of the bearing.
+    worst : Floats
+        (rows, 2, laminae) on both races [Pa].
+
+    Returns
+    -------
+    chart : Chart or None
+        Against the place along the roller.
+    """
+    traces = []
+    for r, (row, word) in enumerate(zip(rows, row_names(len(rows)), strict=True)):
+        if not isinstance(row, RollerRow):
+            return None
+        for ring, (race, dash) in enumerate((("inner", "solid"), ("outer", "dot"))):
+            traces.append(
+                trace(
+                    f"{word}, {race} race",
+                    1e3 * row.places,
+                    1e-6 * worst[r, ring],
+                    line={"color": ("#0072b2", "#d55e00")[r % 2], "dash": dash},
+                )
+            )
+    return chart(
+        f"{name}: pressure along the roller with the largest pressure of all steps",
+        traces,
+        "place along the roller, downwind [mm]",
+        "Hertz pressure [MPa]",
+    )

@@ -1,0 +1,306 @@
+"""What the page of ``life`` needs of one bearing under one file, in little memory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import astuple, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.bearing.contact import line_pressure
+from fe_drivetrain.bearing.geometry import RollerRow, pitch_ratio
+from fe_drivetrain.commands.life_bearings import OneBearing
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.hub_loads.recorded import read_recorded
+from fe_drivetrain.life.roller_damage import Damage, LifeRules, Limits, Steps, damage_of_steps
+from fe_drivetrain.scene.scene import Scene
+
+VERSION = 1
+"""Raise whenever a change alters a digest: kept ones of another version are not used."""
+
+WINDOWS = 60
+"""Of a file, over which the damage map follows the time."""
+
+MOST = 512
+"""Steps at a time, at most."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How files are read.
+
+    Attributes
+    ----------
+    names : ChannelMap
+        How files call their channels, and their frame and origin.
+    skip : float
+        Left out at the beginning of each [s].
+    every : int
+        Take one sample of so many.
+    rotor_speed : float or None
+        Of files that have none [1/min].
+    """
+
+    names: ChannelMap
+    skip: float
+    every: int
+    rotor_speed: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class LifeDigest:
+    """One bearing under one file.
+
+    Attributes
+    ----------
+    damage : Damage
+        Of the whole file.
+    wind : float
+        Mean [m/s]; not a number where the file has none.
+    speed : float
+        Mean of the rotor [1/min].
+    samples : float
+        That were taken.
+    mean_load, peak_load : Floats
+        (rows, elements) of each roller's place, over time [N].
+    times, over_time : Floats
+        (w,) middles of windows [s], and (w, rows, elements) damage of both rings in them.
+    worst : Floats
+        (rows, 2, laminae) pressure along the roller that has the most of it, on the inner and the
+        outer race [Pa].
+    """
+
+    damage: Damage
+    wind: float
+    speed: float
+    samples: float
+    mean_load: Floats
+    peak_load: Floats
+    times: Floats
+    over_time: Floats
+    worst: Floats
+
+
+def content(
+    file: Path, one: OneBearing, rules: LifeRules, reading: Reading, scene: Scene, choices: object
+) -> dict[str, Any]:
+    """All that a digest depends on.
+
+    Parameters
+    ----------
+    file : Path
+        With the history.
+    one : OneBearing
+        The bearing.
+    rules : LifeRules
+        Of the life.
+    reading : Reading
+        Of the file.
+    scene : Scene
+        The shaft.
+    choices : object
+        Of the model.
+
+    Returns
+    -------
+    content : dict
+        For the cache.
+    """
+    status = file.stat()
+    return {
+        "version": VERSION,
+        "file": str(file.resolve()),
+        "size": status.st_size,
+        "written": status.st_mtime_ns,
+        "bearing": one.name,
+        "rated": repr(one.rated),
+        "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
+        "rules": repr(rules),
+        "mapping": reading.names.content(),
+        "reading": [reading.skip, reading.every, reading.rotor_speed],
+        "scene": scene.model_dump_json(),
+        "choices": repr(choices),
+    }
+
+
+def digest(
+    file: Path,
+    one: OneBearing,
+    rules: LifeRules,
+    reading: Reading,
+    scene: Scene,
+    report: Progress = silent,
+) -> LifeDigest:
+    """Damage, load zone and pressures of a bearing under a file.
+
+    Parameters
+    ----------
+    file : Path
+        With the history.
+    one : OneBearing
+        The bearing.
+    rules : LifeRules
+        Of the life.
+    reading : Reading
+        Of the file.
+    scene : Scene
+        Says which point of the shaft hub loads are about.
+    report : Progress
+        Told how far it is.
+
+    Returns
+    -------
+    digest : LifeDigest
+        What adds up over files.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or has no rotor speed.
+    """
+    found = read_recorded(file, reading.names, reading.skip)
+    history = found.history.moved(scene.loads_at, scene.shaft.front)
+    if found.rotor_speed is not None:
+        speed = found.rotor_speed * 30.0 / np.pi
+    elif reading.rotor_speed is not None:
+        speed = np.full(len(history), reading.rotor_speed)
+    else:
+        raise InputError(
+            f"hub loads '{file}': there is no rotor speed, by which lives count turns: give "
+            "--rotor-speed in 1/min, or --channel 'rotor speed=COLUMN'"
+        )
+    loads, speed = history.loads[:: reading.every], speed[:: reading.every]
+    n = len(loads)
+    step = history.step * reading.every
+    sums = _Sums(one)
+    chunk = int(np.clip(-(-n // WINDOWS), 1, MOST))
+    done = 0
+    for steps in one.path.steps(loads, speed, step, chunk):
+        sums.add(steps, damage_of_steps(steps, one.rated, rules), (done + 0.5 * chunk) * step)
+        done += len(steps.loads)
+        report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
+    wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
+    return sums.digest(wind, float(np.abs(speed).mean()), float(n))
+
+
+class _Sums:
+    """Sums over chunks of steps."""
+
+    def __init__(self, one: OneBearing) -> None:
+        self.one = one
+        self.damage: Damage | None = None
+        self.load_seconds = np.zeros(0)
+        self.peak = np.zeros(0)
+        self.times: list[float] = []
+        self.windows: list[Floats] = []
+        self.worst = np.zeros(0)
+
+    def add(self, steps: Steps, damage: Damage, time: float) -> None:
+        rollers = [q.sum(axis=2) for q in steps.laminae]
+        seconds = np.stack([steps.seconds @ Q for Q in rollers])
+        peaks = np.stack([Q.max(axis=0) for Q in rollers])
+        worst = np.stack([self._pressures(r, q) for r, q in enumerate(steps.laminae)])
+        if self.damage is None:
+            self.damage, self.load_seconds, self.peak, self.worst = damage, seconds, peaks, worst
+        else:
+            self.damage = self.damage + damage
+            self.load_seconds = self.load_seconds + seconds
+            self.peak = np.maximum(self.peak, peaks)
+            self.worst = worse(self.worst, worst)
+        self.times.append(time)
+        self.windows.append(
+            np.stack([damage.of_positions(r).sum(axis=0) for r in range(len(rollers))])
+        )
+
+    def _pressures(self, r: int, q: Floats) -> Floats:
+        """(2, laminae) along the roller with the most loaded lamina; zeros of balls."""
+        row = self.one.rated.bearing.rows[r]
+        if not isinstance(row, RollerRow):
+            return np.zeros((2, q.shape[2]))
+        step, roller, _ = np.unravel_index(int(np.argmax(q)), q.shape)
+        per_length = q[step, roller] * q.shape[2] / row.length
+        gamma = pitch_ratio(row)
+        curvatures = (2.0 / row.diameter / (1.0 - gamma), 2.0 / row.diameter / (1.0 + gamma))
+        return np.stack([line_pressure(per_length, c) for c in curvatures])
+
+    def digest(self, wind: float, speed: float, samples: float) -> LifeDigest:
+        assert self.damage is not None
+        return LifeDigest(
+            self.damage,
+            wind,
+            speed,
+            samples,
+            self.load_seconds / self.damage.seconds,
+            self.peak,
+            np.array(self.times),
+            np.stack(self.windows),
+            self.worst,
+        )
+
+
+def worse(mine: Floats, its: Floats) -> Floats:
+    """Of each row the roller with the higher pressure, (rows, 2, laminae) [Pa]."""
+    higher = its.max(axis=(1, 2)) > mine.max(axis=(1, 2))
+    return np.where(higher[:, None, None], its, mine)
+
+
+def as_arrays(found: LifeDigest) -> dict[str, Floats]:
+    """A digest as arrays by name, for the cache.
+
+    Parameters
+    ----------
+    found : LifeDigest
+        The digest.
+
+    Returns
+    -------
+    arrays : dict
+        For `from_arrays`.
+    """
+    damage = found.damage
+    return {
+        "numbers": np.array([damage.seconds, damage.turns, found.wind, found.speed, found.samples]),
+        "limits": np.array(astuple(damage.limits)),
+        "of standard": damage.of_standard,
+        "of bearing": damage.of_bearing,
+        "alone": damage.alone,
+        **{f"basic {r}": part for r, part in enumerate(damage.basic)},
+        **{f"modified {r}": part for r, part in enumerate(damage.modified)},
+        "mean load": found.mean_load,
+        "peak load": found.peak_load,
+        "times": found.times,
+        "over time": found.over_time,
+        "worst": found.worst,
+    }
+
+
+def from_arrays(kept: Mapping[str, Floats]) -> LifeDigest:
+    """The digest of `as_arrays`."""
+    seconds, turns, wind, speed, samples = kept["numbers"].tolist()
+    rows = range(len(kept["mean load"]))
+    damage = Damage(
+        seconds,
+        turns,
+        tuple(kept[f"basic {r}"] for r in rows),
+        tuple(kept[f"modified {r}"] for r in rows),
+        kept["of standard"],
+        kept["of bearing"],
+        kept["alone"],
+        Limits(*kept["limits"].tolist()),
+    )
+    return LifeDigest(
+        damage,
+        wind,
+        speed,
+        samples,
+        kept["mean load"],
+        kept["peak load"],
+        kept["times"],
+        kept["over time"],
+        kept["worst"],
+    )

@@ -1,0 +1,370 @@
+"""The page of ``life``: lives of a scene's bearings, what takes them, and where methods end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.commands.life_bearings import Choices, OneBearing, rollers_in_words
+from fe_drivetrain.commands.life_charts import row_names
+from fe_drivetrain.commands.life_digest import (
+    LifeDigest,
+    Reading,
+    as_arrays,
+    content,
+    digest,
+    from_arrays,
+)
+from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
+from fe_drivetrain.commands.loads_tables import write_tables
+from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.histories.sites import Site
+from fe_drivetrain.life.at_site import site_lives
+from fe_drivetrain.life.reference_life import reference_load
+from fe_drivetrain.life.roller_damage import KINDS, RINGS, LifeRules
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import Record
+from fe_drivetrain.suite.run import Run
+
+WIND_BIN = 1.0
+"""Files whose mean winds are nearer stand for one wind [m/s]."""
+
+UNVERIFIED = (
+    "No constant here was read in ISO 281, ISO 76 or ISO/TS 16281. Those of capacities, reference "
+    "lives, a_ISO, nu_1, and of X, Y and e of rollers agree with public code, reference lives of a "
+    "ball bearing with MASTA; those of contamination are from memory, with two numbers of MASTA "
+    "beside them."
+)
+
+
+def lived(
+    run: Run,
+    page: Page,
+    scene: Scene,
+    bearings: Sequence[OneBearing],
+    files: Sequence[Path],
+    rules: LifeRules,
+    reading: Reading,
+    site: Site | None,
+    choices: Choices,
+    resume: bool,
+) -> None:
+    """Compute damage file by file, and show the lives that follow.
+
+    Parameters
+    ----------
+    run : Run
+        Its folder takes the tables.
+    page : Page
+        Takes tables and charts.
+    scene : Scene
+        The shaft.
+    bearings : sequence of OneBearing
+        Whose lives they are.
+    files : sequence of Path
+        Histories of hub loads.
+    rules : LifeRules
+        Choices that change lives.
+    reading : Reading
+        How files are read.
+    site : Site or None
+        Whose winds are weighted.
+    choices : Choices
+        Of the model.
+    resume : bool
+        Take what an earlier run has done.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or a site is asked for and files have no wind speed.
+    """
+    page.seed = None
+    cache = user_cache()
+    found: list[BearingLife] = []
+    with run.step("load steps"):
+        for one in bearings:
+            digests = []
+            for file in files:
+                key = content(file, one, rules, reading, scene, choices)
+                kept = cache.load("life-digests", key) if resume else None
+                if kept is None:
+                    new = digest(file, one, rules, reading, scene, run.report)
+                    kept = as_arrays(new)
+                    cache.keep("life-digests", key, kept)
+                digests.append(from_arrays(kept))
+            found.append(_of_bearing(one, digests, files, site))
+    _answer(page, found, rules, site)
+    page.note(UNVERIFIED)
+    _lives(page, found)
+    _limits(page, found, rules)
+    tables: dict[str, list[Record]] = {
+        "lives": _life_rows(found),
+        "files": _file_rows(found, files),
+    }
+    tables |= {"winds": [], "places": [], "laminae": []}
+    for life in found:
+        page.section(f"Bearing {life.one.name}: {life.one.entry.title}")
+        tables["winds"] += winds(page, life)
+        tables["places"] += places(page, life, files)
+        tables["laminae"] += laminae(page, life)
+    _assumptions(page, found, rules, reading, choices, files)
+    _checks(page, found)
+    facts = {
+        "frame": "x downwind along the shaft, z up; places of rollers: 0 right, 90 deg on top",
+        "units": "as in the heads of columns",
+        "lives": "with 90 % reliability but for a_1 of modified ones",
+    }
+    write_tables(run.folder, tables, facts)
+    page.section("Tables")
+    names = ", ".join(f"{name}.csv" for name, rows in tables.items() if rows)
+    page.text(f"Beside this page: {names}, and results.json with the numbers of all charts.")
+
+
+def _of_bearing(
+    one: OneBearing, digests: list[LifeDigest], files: Sequence[Path], site: Site | None
+) -> BearingLife:
+    if site is None:
+        whole = digests[0].damage
+        for found in digests[1:]:
+            whole = whole + found.damage
+        return BearingLife(one, digests, whole, None)
+    for file, found in zip(files, digests, strict=True):
+        if np.isnan(found.wind):
+            raise InputError(
+                f"hub loads '{file}': there is no wind speed, by which --site weights files: name "
+                "its channel, as in --channel 'wind speed=Vhub', or leave --site out"
+            )
+    at = [(_bin(found.wind), found.damage) for found in digests]
+    if len({wind for wind, _ in at}) < 2:
+        raise InputError(
+            f"--site weights winds, and all {len(at)} files have a mean wind of {at[0][0]:g} m/s: "
+            "give files of two winds or more, or leave --site out"
+        )
+    life = site_lives(at, site)
+    return BearingLife(one, digests, life.a_year, life)
+
+
+def _bin(wind: float) -> float:
+    return WIND_BIN * float(np.round(wind / WIND_BIN))
+
+
+def _years(value: float) -> str:
+    if np.isinf(value):
+        return "without end"
+    return f"{value:,.0f} years" if value >= 1000.0 else f"{value:.3g} years"
+
+
+def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Site | None) -> None:
+    at = (
+        "if these files followed each other for ever"
+        if site is None
+        else f"at a mean wind of {site.mean_wind:g} m/s"
+    )
+    for life in found:
+        years, parts = life.years, life.damage.of_rows(rules.lubricant is not None)
+        row, ring = np.unravel_index(int(np.argmax(parts)), parts.shape)
+        whole = parts.sum()
+        words = f"Bearing {life.one.name} lives {_years(years['L10mr'])} {at} (L10mr"
+        words += f"; L10r {_years(years['L10r'])}, L10 {_years(years['L10'])})"
+        if whole:
+            words += (
+                f"; the {RINGS[ring]} ring of the {row_names(len(parts))[row]} takes "
+                f"{100 * parts[row, ring] / whole:.0f} % of the damage"
+            )
+        if life.site is not None:
+            shares = life.site.of_winds("L10mr")
+            most = life.site.speeds[np.argmax(shares)]
+            words += f", winds about {most:g} m/s {100 * shares.max():.0f} %"
+        page.answer(words + ".")
+
+
+def _life_rows(found: Sequence[BearingLife]) -> list[Record]:
+    rows: list[Record] = []
+    for life in found:
+        rated, years = life.one.rated, life.years
+        million = life.damage.lives("Mrev")
+        row: Record = {"bearing": life.one.name, "entry": life.one.entry_name}
+        for name, value in zip(("C", "C0", "Cu"), rated.three, strict=True):
+            row[f"{name} [kN]"] = value / 1e3
+        row["P_ref [kN]"] = 1e-3 * float(
+            reference_load(rated.dynamic, million["L10r"], rated.exponent)
+        )
+        row["P of L10 [kN]"] = 1e-3 * float(
+            reference_load(rated.dynamic, million["L10"], rated.exponent)
+        )
+        row |= {f"{kind} [Mrev]": million[kind] for kind in KINDS}
+        row |= {f"{kind} [years]": years[kind] for kind in KINDS}
+        rows.append(row)
+    return rows
+
+
+def _file_rows(found: Sequence[BearingLife], files: Sequence[Path]) -> list[Record]:
+    rows: list[Record] = []
+    for life in found:
+        for file, one in zip(files, life.digests, strict=True):
+            limits = one.damage.limits
+            row: Record = {
+                "bearing": life.one.name,
+                "file": file.name,
+                "mean wind [m/s]": one.wind,
+                "mean speed [1/min]": one.speed,
+                "time [s]": one.damage.seconds,
+                "turns": one.damage.turns,
+            }
+            row |= {f"{kind} [years]": v for kind, v in one.damage.lives("years").items()}
+            row |= {
+                "largest P [kN]": 1e-3 * limits.largest_load,
+                "largest P0 [kN]": 1e-3 * limits.largest_static,
+                "largest roller load [kN]": 1e-3 * limits.largest_roller,
+                "standing [s]": limits.standing,
+            }
+            rows.append(row)
+    return rows
+
+
+def _lives(page: Page, found: Sequence[BearingLife]) -> None:
+    page.section("Lives")
+    rows = _life_rows(found)
+    page.table("Ratings, and the constant load that has the same life", rows, list(rows[0])[:7])
+    page.table(
+        "Lives in years, standstill of the files with them",
+        rows,
+        ["bearing", *(f"{kind} [years]" for kind in KINDS)],
+    )
+    page.table(
+        "Lives in million revolutions", rows, ["bearing", *(f"{kind} [Mrev]" for kind in KINDS)]
+    )
+    page.text(
+        "L10 and L10m are those of ISO 281, of radial and axial force alone: a moment, and how the "
+        "load is spread over rollers, is not in them. L10r and L10mr are the reference lives of "
+        "ISO/TS 16281, from the loads of all laminae; P_ref is the load that has L10r as its L10. "
+        "The m stands for lubricant and contamination."
+    )
+    page.data("lives", rows)
+    sources: list[Record] = [
+        {"bearing": life.one.name, "rating": name, "source": text}
+        for life in found
+        for name, text in zip(("C", "C0", "Cu"), life.one.rated.sources, strict=True)
+    ]
+    page.table("Where ratings come from", sources)
+
+
+def _limits(page: Page, found: Sequence[BearingLife], rules: LifeRules) -> None:
+    page.section("Static safety, and limits of the methods")
+    rows: list[Record] = []
+    for life in found:
+        limits, rated = life.limits, life.one.rated
+        seconds = sum(one.damage.seconds for one in life.digests)
+        safety = rated.static / limits.largest_static if limits.largest_static else np.inf
+        rows.append(
+            {
+                "bearing": life.one.name,
+                "least S0 = C0 / P0": safety,
+                "largest roller load [kN]": 1e-3 * limits.largest_roller,
+                "P above C/2 [% of time]": 100.0 * limits.heavy / seconds,
+                "S0 below 1 [% of time]": 100.0 * limits.weak / seconds,
+                "kappa below 0.1 [% of time]": 100.0 * limits.thin / seconds,
+                "kappa above 4 [% of time]": 100.0 * limits.thick / seconds,
+                "standing [% of time]": 100.0 * limits.standing / seconds,
+                "reversals": limits.reversals,
+            }
+        )
+        _notes(page, rows[-1])
+    page.table("Time beyond the limits of the methods, in the files as they are", rows)
+    page.data("limits", rows)
+    page.text(
+        "Above P = C/2 the load is beyond the range of ISO 281. Below kappa = 0.1 a_ISO is "
+        "its smallest value, 0.1; above 4 it stays that of 4. Below "
+        f"{rules.standing:g} 1/min a bearing stands: marks of standstill and of oscillation are no "
+        "fatigue of rolling contact, and no life is computed for them. P0 is of forces alone, too."
+    )
+
+
+def _notes(page: Page, row: Record) -> None:
+    """What a reader has to know before the lives."""
+    for key, words in (
+        ("P above C/2 [% of time]", "the load is above C/2, beyond the range of ISO 281"),
+        ("S0 below 1 [% of time]", "static safety is below 1"),
+        ("kappa below 0.1 [% of time]", "the film is below kappa = 0.1: a_ISO is taken as 0.1"),
+        ("standing [% of time]", "the bearing stands: no life is computed for that time"),
+    ):
+        share = row[key]
+        if isinstance(share, float) and share > 0.0:
+            page.note(f"Bearing {row['bearing']}: in {share:.3g} % of the time {words}.")
+    if row["reversals"]:
+        page.note(
+            f"Bearing {row['bearing']} turns back {row['reversals']:g} times: lives are of turning "
+            "one way, oscillation is not computed."
+        )
+
+
+def _assumptions(
+    page: Page,
+    found: Sequence[BearingLife],
+    rules: LifeRules,
+    reading: Reading,
+    choices: Choices,
+    files: Sequence[Path],
+) -> None:
+    for life in found:
+        one = life.one
+        for field in one.entry.assumed:
+            if field == "ratings":  # those that are given stand in a table with their source
+                continue
+            value = getattr(one.entry, field)
+            unit = {"elements": "-", "contact_angle": "deg"}.get(field, "m")
+            page.assume(
+                f"{one.name}: {field.replace('_', ' ')}", value, unit, one.entry.sources[field]
+            )
+        words = rollers_in_words(one, rules.riser)
+        page.assume(f"{one.name}: rolling elements", words, "", "--profile and --riser")
+    oil = rules.lubricant
+    if oil is not None:
+        page.assume("temperature", oil.temperature, "degC", "--temperature")
+        page.assume("viscosity there", oil.viscosity, "mm2/s", "--lubricant, by ASTM D341")
+        page.assume("lubrication", oil.supply, "", "--supply")
+        page.assume("cleanliness", oil.cleanliness, "", "--cleanliness")
+    page.assume(
+        "lambda nu taken out of C", rules.reduction, "-", "0.83 with a stress riser, else 1"
+    )
+    page.assume("a_1", rules.reliability, "-", "--reliability, as public code has it")
+    share = "C_u over the number of rows" if rules.limit_per_row else "the whole C_u"
+    page.assume("fatigue limit of a row", share, "", "loads P_ks are those of a row")
+    page.assume("ring that turns against the load", rules.turning, "", "--turning")
+    words = {
+        "rollers": "bearings in equilibrium with the shaft, a beam",
+        "pinned": "pinned bearings: no moment on them",
+    }.get(choices.support, f"springs with K_R of {choices.support} N m/rad")
+    page.assume("shaft", words, "", "--support")
+    page.assume("rings", choices.rings, "", "--rings; housings are rigid but for 'housing'")
+    page.assume("samples", f"one of {reading.every}", "", f"--every; {len(files)} files")
+
+
+def _checks(page: Page, found: Sequence[BearingLife]) -> None:
+    for life in found:
+        for kind, modified in (("L10r", False), ("L10mr", True)):
+            parts = sum(
+                life.damage.of_positions(r, modified).sum()
+                for r in range(len(life.one.rated.bearing.rows))
+            )
+            whole = float(life.damage.totals[kind])
+            page.vanishes(
+                f"{life.one.name}: damage of places by {kind}, less that of all, as a share",
+                float(parts / whole - 1.0) if whole else 0.0,
+                within=1e-9,
+                why="each place takes its part: rounding of the sums",
+                source="lives of the steps, by Miner's rule",
+                basis="self-consistency",
+            )
+        page.vanishes(
+            f"{life.one.name}: time without equilibrium [s]",
+            life.limits.lost,
+            within=0.0,
+            why="steps without equilibrium do no damage, and the life would be too long",
+            source="residual of 1e-8 of each step's load",
+        )

@@ -1,0 +1,163 @@
+"""From hub loads to the laminae of one bearing in a shaft, at any level of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.bearing.geometry import Bearing
+from fe_drivetrain.common.arrays import Bools, Floats, chunks
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.coupled.body import LinearBody, factors_of
+from fe_drivetrain.coupled.newton import coupled_equilibrium
+from fe_drivetrain.coupled.springs import on_springs, tilt_springs
+from fe_drivetrain.life.rated import RatedBearing
+from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_history
+from fe_drivetrain.life.roller_models import CHUNK, RollerModel, balanced, rigid_rings
+
+PINNED = 0.0
+"""Tilting stiffness of a support that carries no moment [N m/rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadPath:
+    """How hub loads reach the rollers of a bearing.
+
+    Attributes
+    ----------
+    body : LinearBody
+        The shaft, with or without housings in series.
+    bearings : Mapping
+        All bearings of the body by name.
+    name : str
+        The one whose life is asked for.
+    rollers : callable
+        How its load is shared by its laminae: `rigid_rings`, `three_degree_rings` or
+        `flexible_rings` of `fe_drivetrain.life`; rigid rings where not given.
+    tilt_stiffness : float or None
+        None: all bearings are in equilibrium with the shaft, rollers and all. A number: they are
+        springs, rigid along the axes, with this K_R [N m/rad] at the named bearing and none at the
+        others; `PINNED` leaves out its moment, too.
+    gearbox_weight, gravity : float
+        [N] and [m/s^2], along -z.
+    """
+
+    body: LinearBody
+    bearings: Mapping[str, Bearing]
+    name: str
+    rollers: RollerModel | None = None
+    tilt_stiffness: float | None = None
+    gearbox_weight: float = 0.0
+    gravity: float = 0.0
+    _model: RollerModel = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.name not in self.bearings or set(self.bearings) != set(self.body.bearings):
+            raise InputError(
+                f"bearing {self.name!r}: give one rolling bearing for each of "
+                f"{', '.join(self.body.bearings)}, and name one of these"
+            )
+        object.__setattr__(self, "_model", self.rollers or rigid_rings(self.bearings[self.name]))
+
+    def bearing_loads(self, hub_loads: ArrayLike) -> tuple[Floats, Bools]:
+        """Loads on the inner ring of the named bearing.
+
+        Parameters
+        ----------
+        hub_loads : array_like
+            (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m] of the rotor on the shaft at the hub.
+
+        Returns
+        -------
+        loads : Floats
+            (n, 5) Fx, Fy, Fz [N], My, Mz [N m] at its centre.
+        converged : Bools
+            (n,) whether there is equilibrium.
+        """
+        factors = factors_of(hub_loads, self.gearbox_weight, self.gravity)
+        place = self.body.bearings.index(self.name)
+        if self.tilt_stiffness is None:
+            found = coupled_equilibrium(self.body, self.bearings, factors)
+            return found.forces[:, place], found.converged
+        springs = [
+            tilt_springs(self.bearings[name], self.tilt_stiffness if name == self.name else PINNED)
+            for name in self.body.bearings
+        ]
+        forces = on_springs(self.body, factors, np.stack(springs)).forces[:, place]
+        return forces, np.ones(len(forces), dtype=bool)
+
+    def steps(
+        self, hub_loads: ArrayLike, speed: ArrayLike, seconds: ArrayLike, chunk: int = CHUNK
+    ) -> Iterator[Steps]:
+        """Load steps of the bearing, some hundred at a time.
+
+        Parameters
+        ----------
+        hub_loads : array_like
+            (n, 6) [N, N m].
+        speed, seconds : array_like
+            (n,) or one for all: of the shaft [1/min], and how long each lasts [s].
+        chunk : int
+            Steps at a time.
+
+        Yields
+        ------
+        steps : Steps
+            In order.
+        """
+        hub = np.atleast_2d(np.asarray(hub_loads, dtype=float))
+        turns, lasting = (
+            np.broadcast_to(np.asarray(v, dtype=float), (len(hub),)) for v in (speed, seconds)
+        )
+        for part in chunks(len(hub), chunk):
+            loads, found = self.bearing_loads(hub[part])
+            laminae, converged = self._model(loads)
+            both = found & converged
+            yield Steps(loads, balanced(laminae, both), turns[part], lasting[part], both)
+
+
+def damage_of_hub_loads(
+    path: LoadPath,
+    hub_loads: ArrayLike,
+    speed: ArrayLike,
+    seconds: ArrayLike,
+    rated: RatedBearing,
+    rules: LifeRules,
+    report: Progress = silent,
+) -> Damage:
+    """Damage that a history of hub loads does to a bearing.
+
+    Parameters
+    ----------
+    path : LoadPath
+        From the hub to its laminae.
+    hub_loads : array_like
+        (n, 6) [N, N m].
+    speed, seconds : array_like
+        (n,) or one for all: of the shaft [1/min], and how long each step lasts [s].
+    rated : RatedBearing
+        The named bearing with its ratings.
+    rules : LifeRules
+        Choices.
+    report : Progress
+        Told how many steps are done.
+
+    Returns
+    -------
+    damage : Damage
+        Of the whole history, in memory that does not grow with it.
+    """
+    count = len(np.atleast_2d(np.asarray(hub_loads)))
+
+    def counted() -> Iterator[Steps]:
+        done = 0
+        for steps in path.steps(hub_loads, speed, seconds):
+            yield steps
+            done += len(steps.loads)
+            report(f"load steps ({done} of {count})")
+
+    return damage_of_history(counted(), rated, rules)

@@ -1,0 +1,109 @@
+"""Files of other programs: names, signs, units, frames and origins, as a mapping states them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.commands.study_loads import own_loads
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.channel_map import ChannelMap, read_channel_map
+from fe_drivetrain.hub_loads.recorded import read_recorded
+from fe_drivetrain.scene.reading import library_scene
+
+TIME = 0.1 * np.arange(50)
+FORCE = np.array([200e3, -15e3, -400e3])
+MOMENT = np.array([900e3, 300e3, -100e3])
+NAMES = {"Fx": "thrust", "Fy": "side", "Fz": "lift", "Mx": "torque", "My": "nod", "Mz": "yaw"}
+
+
+def write_table(file: Path, loads: np.ndarray, **more: np.ndarray) -> Path:
+    """Loads (6,) or (n, 6) in kN and kN m under other names; the unit of yaw is left out."""
+    columns = dict(zip(NAMES.values(), np.broadcast_to(loads / 1e3, (50, 6)).T, strict=True))
+    units = {**dict.fromkeys(NAMES.values(), " [kN-m]"), "thrust": " (kN)", "yaw": ""}
+    units |= {"side": " [kN]", "lift": " [kN]", "angle": " [deg]"}
+    columns |= more
+    header = ",".join(["time [s]", *(name + units[name] for name in columns)])
+    table = np.column_stack([TIME, *columns.values()])
+    np.savetxt(file, table, delimiter=",", header=header, comments="", fmt="%.15g")
+    return file
+
+
+def test_signs_and_units_are_those_of_the_mapping(tmp_path: Path) -> None:
+    file = write_table(tmp_path / "a.csv", np.concatenate([FORCE, MOMENT]))
+    (tmp_path / "map.yaml").write_text(
+        "channels: {Fx: thrust, Fy: -Side, Fz: lift, Mx: torque, My: nod, Mz: yaw}\n"
+        "units: {yaw: MN m}\n"
+    )
+    found = read_recorded(file, read_channel_map(tmp_path / "map.yaml")).history
+    expected = [200e3, 15e3, -400e3, 900e3, 300e3, -100e6]
+    np.testing.assert_allclose(found.loads, np.broadcast_to(expected, (50, 6)))
+    assert "-side [kN]" in str(found.attributes["channels"])
+
+
+def test_loads_of_a_horizontal_frame_are_turned_by_the_tilt(tmp_path: Path) -> None:
+    """The weight of a raised rotor points downwind along its shaft, and presses across it."""
+    weight = np.array([0.0, 0.0, -1000e3, 0.0, 500e3, 0.0])
+    file = write_table(tmp_path / "a.csv", weight)
+    mapping = ChannelMap(channels=NAMES, units={"yaw": "kN m"}, tilt=5.0)
+    found = read_recorded(file, mapping).history
+    assert found.loads[0, 0] == pytest.approx(1000e3 * np.sin(np.radians(5.0)))
+    assert found.loads[0, 2] == pytest.approx(-1000e3 * np.cos(np.radians(5.0)))
+    assert found.loads[0, 4] == pytest.approx(500e3)
+    assert np.linalg.norm(found.loads[0, :3]) == pytest.approx(1000e3)
+    assert "tilt of 5 deg" in str(found.attributes["channels"])
+
+
+def test_moments_about_another_point_are_carried_to_the_hub_by_statics(tmp_path: Path) -> None:
+    behind = 1.9
+    at_point = MOMENT + np.cross([-behind, 0.0, 0.0], FORCE)
+    file = write_table(tmp_path / "a.csv", np.concatenate([FORCE, at_point]))
+    mapping = ChannelMap(channels=NAMES, units={"yaw": "kN m"}, moments_at=behind)
+    found = read_recorded(file, mapping).history
+    np.testing.assert_allclose(found.loads[0, 3:], MOMENT)
+    assert "carried to the hub from 1.9 m downwind" in str(found.attributes["channels"])
+
+
+def test_rotating_loads_are_turned_back_by_the_azimuth(tmp_path: Path) -> None:
+    azimuth = np.radians(20.0) + 1.3 * TIME
+    ya = np.stack([0.0 * TIME, np.cos(azimuth), np.sin(azimuth)], axis=1)
+    za = np.cross([1.0, 0.0, 0.0], ya)
+    force, moment = (
+        np.column_stack([np.full(50, load[0]), ya @ load, za @ load]) for load in (FORCE, MOMENT)
+    )
+    shown = np.degrees(azimuth) + 30.0
+    file = write_table(tmp_path / "a.csv", np.hstack([force, moment]), angle=shown)
+    names = {**NAMES, "azimuth": "angle"}
+    units = {"yaw": "kN m"}
+    mapping = ChannelMap(channels=names, units=units, rotating=True, azimuth_blade1_up=30.0)
+    found = read_recorded(file, mapping).history
+    np.testing.assert_allclose(found.loads[:, 1:3], np.broadcast_to(FORCE[1:], (50, 2)))
+    np.testing.assert_allclose(found.loads[:, 4:], np.broadcast_to(MOMENT[1:], (50, 2)))
+    with pytest.raises(InputError, match="no azimuth to turn them back"):
+        read_recorded(file, ChannelMap(channels=NAMES, units=units, rotating=True))
+
+
+def test_a_study_reads_files_of_other_programs(tmp_path: Path) -> None:
+    waving = np.concatenate([FORCE, MOMENT]) * (1.0 + 0.1 * np.sin(TIME))[:, None]
+    write_table(tmp_path / "a.csv", waving)
+    scene = library_scene("main_bearing_bonded")
+    mapping = ChannelMap(channels=NAMES, units={"yaw": "kN m"})
+    (history,) = own_loads(str(tmp_path), 1.0, scene, mapping).histories
+    np.testing.assert_allclose(history.loads, waving[10:])
+    with pytest.raises(InputError, match="no column Fx, Fy"):
+        own_loads(str(tmp_path), 1.0, scene)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("channels: {torque: Q}", "channel 'torque' is not one of time, Fx"),
+        ("tilt: 95", "tilt"),
+        ("frame: hub", "frame"),
+        ("rotating: true\ntilt: 5", "leave out tilt or rotating"),
+    ],
+)
+def test_mistakes_of_a_mapping_are_one_sentence(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "map.yaml").write_text(text)
+    with pytest.raises(InputError, match=message):
+        read_channel_map(tmp_path / "map.yaml")
