@@ -532,7 +532,7 @@ def test_ratings_of_balls_grow_with_their_number_and_size() -> None:
     assert_allclose(rated(0.02, balls=10) / rated(0.02, balls=5), 2 ** (2 / 3))
     assert_allclose(rated(0.0254 * (1 + 1e-9)), rated(0.0254), rtol=2e-4)
     with pytest.raises(InputError, match=r"0\.01 to 0\.4"):
-        ball_dynamic_rating(Bearing("large balls", (ball_row(3, 0.03, 0.06),)))
+        ball_dynamic_rating(Bearing("large balls", (ball_row(3, 0.03, 0.07),)))
     with pytest.raises(InputError, match="must be balls"):
         ball_dynamic_rating(size())
 
