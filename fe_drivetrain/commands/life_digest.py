@@ -15,6 +15,7 @@ from fe_drivetrain.commands.life_bearings import OneBearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Limits, Steps, damage_of_steps
 from fe_drivetrain.scene.scene import Scene
@@ -161,7 +162,7 @@ def digest(
     InputError
         The file cannot be read, or has no rotor speed.
     """
-    found = read_recorded(file, reading.columns, reading.skip)
+    found = read_recorded(file, ChannelMap(channels=dict(reading.columns)), reading.skip)
     history = found.history.moved(scene.loads_at, scene.shaft.front)
     if found.rotor_speed is not None:
         speed = found.rotor_speed * 30.0 / np.pi
