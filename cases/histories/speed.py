@@ -253,7 +253,7 @@ def cores(run: Run, page: Page) -> None:
 def whole(seed: int, size: int) -> int:
     """The digest of a made history; how many arrays it has."""
     loads = np.column_stack([1e3 * noise(size, 10 * seed + c) for c in range(6)])
-    history = LoadHistory("made", STEP * np.arange(size), loads)
+    history = LoadHistory("made", STEP * np.arange(size, dtype=np.float64), loads)
     options = Options({}, 0.0, (3.0, 4.0, 10.0), "half", 0.0, None)
     return len(digest(Recorded(history, np.full(size, 1.2)), options))
 

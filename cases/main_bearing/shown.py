@@ -90,8 +90,10 @@ def matrix_table(page: Page, caption: str, matrix: Floats) -> None:
     )
 
 
-def reaction_table(page: Page, caption: str, reaction: Floats) -> None:
-    """A (6, 10) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
+def reaction_table(
+    page: Page, caption: str, reaction: Floats, loads: Sequence[str] = LOADS
+) -> None:
+    """A (6, n) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
     size = np.abs(reaction).max(axis=0)
     # A column may hold nothing but round-off: the bearing feels no torque, no gearbox weight.
     shown = np.where(np.abs(reaction) < np.maximum(1e-4 * size, 1e-6), 0.0, reaction)
@@ -101,22 +103,21 @@ def reaction_table(page: Page, caption: str, reaction: Floats) -> None:
             [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *row]
             for c, row in zip(FORCES, shown.tolist(), strict=True)
         ],
-        ["reaction", *(f"{load} [per {_unit(load)}]" for load in LOADS)],
+        ["reaction", *(f"{load} [per {_unit(load)}]" for load in loads)],
     )
 
 
 def _unit(load: str) -> str:
     if load.startswith("gravity"):
         return "m/s²"
-    return "N m" if load.startswith("hub.M") else "N"
+    return "N m" if load.rpartition(".")[2].startswith("M") else "N"
 
 
 def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
     """A section with mesh, solver and diagnostics of each solution."""
     page.section("Mesh and solution")
     page.table(
-        "Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve. "
-        f"Solver {_choices(solutions)}{_warnings(solutions)}",
+        f"Meshes of curved ten-node tetrahedra, and what ten unit loads took{_warnings(solutions)}",
         [
             {
                 "model": label,
@@ -127,22 +128,32 @@ def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
                 "solver": s.response.diagnostics.method,
                 "iterations": s.response.diagnostics.iterations or None,
                 "set-up and solve [s]": s.response.diagnostics.seconds,
-                "relative residual": s.response.diagnostics.residual,
-                "energy error": s.response.diagnostics.energy_error,
-                "equilibrium error": s.response.equilibrium_error,
-                "superposition error": s.response.superposition_error,
             }
             for label, s in solutions.items()
         ],
     )
+    page.table(
+        "Relative errors of the solutions",
+        [
+            {
+                "model": label,
+                "residual [-]": s.response.diagnostics.residual,
+                "energy [-]": s.response.diagnostics.energy_error,
+                "equilibrium [-]": s.response.equilibrium_error,
+                "superposition [-]": s.response.superposition_error,
+            }
+            for label, s in solutions.items()
+        ],
+    )
+    page.table("Why that solver", _choices(solutions), ["model", "solvers, best first"])
 
 
-def _choices(solutions: Mapping[str, Solved]) -> str:
-    """Which solver, and why, of each model that gives another reason."""
+def _choices(solutions: Mapping[str, Solved]) -> list[tuple[str, str]]:
+    """Each model that gives another reason for its solver, and the reason."""
     reasons: dict[str, str] = {}
     for label, s in solutions.items():
         reasons.setdefault(s.response.diagnostics.reason, label)
-    return "; ".join(f"({label}): {reason}" for reason, label in reasons.items())
+    return [(label, reason) for reason, label in reasons.items()]
 
 
 def _warnings(solutions: Mapping[str, Solved]) -> str:
@@ -183,7 +194,7 @@ def pictures_of(run: Run, solved: Solved, loads: Floats, what: str) -> Sequence[
             return [Text(text=f"No picture: {reason}")]
     return [
         Image(caption=f"{solved.scene.title}: parts, loads and supports", file="model.png"),
-        Image(caption=f"Deformed {factor:,.0f} times too large, under {what}", file="deformed.png"),
+        Image(caption=f"Deformed shape, displacements times {factor:,.0f}, under {what}", file="deformed.png"),
     ]
 
 

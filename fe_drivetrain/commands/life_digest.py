@@ -36,8 +36,8 @@ class Reading:
 
     Attributes
     ----------
-    columns : Mapping
-        What a channel is, and how files call it.
+    names : ChannelMap
+        How files call their channels, and their frame and origin.
     skip : float
         Left out at the beginning of each [s].
     every : int
@@ -46,7 +46,7 @@ class Reading:
         Of files that have none [1/min].
     """
 
-    columns: Mapping[str, str]
+    names: ChannelMap
     skip: float
     every: int
     rotor_speed: float | None
@@ -121,7 +121,8 @@ def content(
         "rated": repr(one.rated),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
         "rules": repr(rules),
-        "reading": repr(reading),
+        "mapping": reading.names.content(),
+        "reading": [reading.skip, reading.every, reading.rotor_speed],
         "scene": scene.model_dump_json(),
         "choices": repr(choices),
     }
@@ -162,7 +163,7 @@ def digest(
     InputError
         The file cannot be read, or has no rotor speed.
     """
-    found = read_recorded(file, ChannelMap(channels=dict(reading.columns)), reading.skip)
+    found = read_recorded(file, reading.names, reading.skip)
     history = found.history.moved(scene.loads_at, scene.shaft.front)
     if found.rotor_speed is not None:
         speed = found.rotor_speed * 30.0 / np.pi

@@ -442,9 +442,10 @@ def _row_risks(
             q = q * stress_riser(count)
         inner, outer = race_capacities(row, rated.dynamic, rows, rules.reduction)
         inner, outer = (c * count ** (-7.0 / 9.0) for c in (inner, outer))
-    fourth = q**3 if isinstance(row, BallRow) else np.square(np.square(q))
-    half = fourth * (np.cbrt(q) if isinstance(row, BallRow) else np.sqrt(q))
-    by_ring = (fourth, half) if rules.turning == "inner" else (half, fourth)
+    # powers of q where the ring turns, and where it stands
+    moving: Floats = np.power(q, 3.0) if isinstance(row, BallRow) else np.square(np.square(q))
+    still: Floats = moving * (np.cbrt(q) if isinstance(row, BallRow) else np.sqrt(q))
+    by_ring = (moving, still) if rules.turning == "inner" else (still, moving)
     exponents = (turning, standing) if rules.turning == "inner" else (standing, turning)
     loads, risks, over_sums = [], [], []
     for powers, p, capacity in zip(by_ring, exponents, (inner, outer), strict=True):
