@@ -17,7 +17,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.recorded import read_recorded
-from fe_drivetrain.life.roller_damage import Damage, LifeRules, Limits, Steps, damage_of_steps
+from fe_drivetrain.life.limits import Limits
+from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
 from fe_drivetrain.scene.scene import Scene
 
 VERSION = 1

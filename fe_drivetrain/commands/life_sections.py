@@ -13,7 +13,8 @@ from fe_drivetrain.commands.life_bearings import OneBearing, rollers_in_words
 from fe_drivetrain.commands.life_charts import along_rollers, damage_map, load_zone, row_names
 from fe_drivetrain.commands.life_digest import LifeDigest, worse
 from fe_drivetrain.life.at_site import SiteLife
-from fe_drivetrain.life.roller_damage import KINDS, RINGS, Damage, Limits
+from fe_drivetrain.life.limits import Limits
+from fe_drivetrain.life.roller_damage import KINDS, RINGS, Damage
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
