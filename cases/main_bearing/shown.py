@@ -192,7 +192,10 @@ def pictures_of(run: Run, solved: Solved, loads: Floats, what: str) -> Sequence[
             return [Text(text=f"No picture: {reason}")]
     return [
         Image(caption=f"{solved.scene.title}: parts, loads and supports", file="model.png"),
-        Image(caption=f"Deformed shape, displacements times {factor:,.0f}, under {what}", file="deformed.png"),
+        Image(
+            caption=f"Deformed shape, displacements times {factor:,.0f}, under {what}",
+            file="deformed.png",
+        ),
     ]
 
 
