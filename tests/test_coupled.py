@@ -38,7 +38,7 @@ from fe_drivetrain.coupled.springs import (
     tilting_stiffness,
 )
 from fe_drivetrain.fidelity.ladder import shaft_level
-from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.scene.reading import change_scene, library_scene
 
 PARAMETERS = MainBearingBeam(shaft_diameter=0.635, yaw_stiffness=145e6)
 GEARBOX = (
@@ -284,14 +284,19 @@ def test_two_bearings_that_carry_moments_share_them_by_stiffness() -> None:
 
 
 def test_a_scene_s_shaft_on_linear_bearings_is_its_level_1() -> None:
-    scene = library_scene("two_bearings")
+    brake = {"name": "brake", "x": 0.7, "width": 0.1}
+    scene = change_scene(library_scene("two_bearings"), {"load_points": [brake]})
     names = [unit.bearing.name for unit in scene.bearing_units]
     bearings = {name: preloaded(2e9) for name in names}
     K = np.zeros((6, 6))
     K[np.ix_(FIVE, FIVE)] = contact_stiffness(bearings[names[0]])
     level = shaft_level(scene, 1, dict.fromkeys(names, K))
     body = scene_body(scene, 1)
-    found = coupled_equilibrium(body, bearings, factors_of(HUB, 1e5))
+    at_brake = HUB[::-1] * [1.0, 1.0, 1.0, 0.0, 1.0, 1.0]
+    found = coupled_equilibrium(body, bearings, factors_of(np.hstack([HUB, at_brake]), 1e5))
+    assert np.abs(found.imbalance()).max() < 1e-6 * np.abs(HUB).max()
+    with pytest.raises(InputError, match=r"shape \(n, 16\).*at hub, brake"):
+        coupled_equilibrium(body, bearings, factors_of(HUB))
     expected = level.reactions(found.factors)
     for name in names:
         assert_allclose(

@@ -11,6 +11,7 @@ from fe_drivetrain.suite.case import find_cases
 SCENES = (
     "housing_on_bedplate",
     "iea_15mw_main_shaft",
+    "iea_15mw_shaft_on_nose",
     "main_bearing_bonded",
     "main_bearing_spherical",
     "nrel_5mw_main_shaft",

@@ -8,7 +8,7 @@ import pytest
 from conftest import COARSE, coarse_scene
 from test_own_drivetrain import write_loads
 
-from fe_drivetrain.cases.main_bearing import general, rmse
+from fe_drivetrain.cases.main_bearing import general, rmse, study
 from fe_drivetrain.cases.main_bearing.secants import Cases, hub_loads
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.results import Chart, Table
@@ -29,6 +29,10 @@ STEPS = {
 
 def stepped() -> Scene:
     return change_scene(coarse_scene("bonded", **SIZES), STEPS)
+
+
+#: Where loads enter beside the hub, with a weight.
+BRAKE = {"name": "brake", "x": 0.8, "width": 0.1, "weight": 2e4}
 
 
 def two_bearings() -> Scene:
@@ -74,6 +78,14 @@ def test_why_no_closed_form_stands_for_a_scene_is_the_first_that_is_said(tmp_pat
     assert "a shaft of several diameters where the closed forms have one" in note
     # a secant needs one bearing and no uniform shaft
     assert general.general_scene(own, Page(), "bonded", uniform=False) is None
+    elsewhere = Run(COARSE | {"load_points": [BRAKE]}, False, tmp_path)
+    page = Page()
+    assert general.general_scene(elsewhere, page, "bonded", uniform=False) is not None
+    assert "loads enter at brake, too" in page.notes[0]
+    # a stiffness of the unit alone knows no loads
+    page = Page()
+    assert study.scene_of(elsewhere, page, "bonded").load_points == ()
+    assert page.notes[0].startswith("Without the loads and weights at brake")
 
 
 @pytest.mark.parametrize(
@@ -95,12 +107,16 @@ def test_no_bearing_of_several_is_exchanged_in_silence(
 
 def test_unit_loads_on_a_stepped_shaft(tmp_path: Path) -> None:
     page = Page()
-    general.unit_load_page(run_in(tmp_path), page, stepped())
+    scene = change_scene(stepped(), {"load_points": [BRAKE]})
+    general.unit_load_page(run_in(tmp_path), page, scene)
     assert all(verdict.passed for verdict in page.verdicts)
     rows = {row["reaction"]: row for row in rows_of(page, "Reactions in bending")}
     for label in ("FE", general.RIGID, general.STIFF, general.SOFT):
-        force = sum(rows[f"{n} Fz per Fz at the hub"][label] for n in ("main_bearing", "gearbox"))
-        assert force == pytest.approx(1.0, abs=1e-6)
+        for at in ("the hub", "brake"):
+            shares = [rows[f"{n} Fz per Fz at {at}"][label] for n in ("main_bearing", "gearbox")]
+            assert sum(shares) == pytest.approx(1.0, abs=1e-6)
+        # behind the bearing, the gearbox takes more of it than of a load in front
+        assert shares[1] > abs(rows["gearbox Fz per Fz at the hub"][label])
     hub = {row["quantity"].split(" per")[0]: row for row in rows_of(page, "Motion of the hub")}
     for row in hub.values():
         # a housing that gives makes any hub softer
@@ -113,7 +129,8 @@ def test_walls_of_a_stepped_shaft(tmp_path: Path) -> None:
     bored = {f"shaft.sections.{k}.inner_diameter": bore for k in range(2) for bore in (0.34 * 0.5,)}
     solid = {f"shaft.sections.{k}.inner_diameter": 0.0 for k in range(2)}
     page = Page()
-    scenes = {100: change_scene(scene, solid), 50: change_scene(scene, bored)}
+    weighed = change_scene(scene, {"load_points": [BRAKE]})
+    scenes = {100: change_scene(weighed, solid), 50: change_scene(weighed, bored)}
     general.wall_page(run_in(tmp_path), page, scenes)
     assert all(verdict.passed for verdict in page.verdicts)
     whole, half = rows_of(page, "Radial force on each bearing")
@@ -126,8 +143,11 @@ def test_secants_of_two_bearings(tmp_path: Path, rng: np.random.Generator) -> No
     page = Page()
     size = np.array([2e5, 5e4, 3e5, 1e6, 5e5, 5e5])
     hub = size * (1.0 + 0.5 * rng.standard_normal((80, 6)))
-    cases = Cases(hub, np.full(80, 1 / 80), "made loads")
-    general.secant_page(run_in(tmp_path), page, two_bearings(), cases)
+    scene = change_scene(two_bearings(), {"load_points": [BRAKE | {"x": 1.0}]})
+    at_brake = np.zeros((80, 6))
+    at_brake[:, 2] = -2e4
+    cases = Cases(np.hstack([hub, at_brake]), np.full(80, 1 / 80), "made loads")
+    general.secant_page(run_in(tmp_path), page, scene, cases)
     assert all(verdict.passed for verdict in page.verdicts)
     rows = rows_of(page, "K_R of each bearing")
     assert {row["bearing"] for row in rows} == {"front"}  # the rear one slides on a sphere

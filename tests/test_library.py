@@ -31,6 +31,7 @@ PUBLIC = (
     "three_point_suspension",
     "nrel_5mw_main_shaft",
     "iea_15mw_main_shaft",
+    "iea_15mw_shaft_on_nose",
     "nrel_750kw_low_speed_shaft",
     "nrel_750kw_high_speed_shaft",
 )
@@ -78,6 +79,7 @@ def test_no_mechanism_and_loads_reach_the_ground(name: str) -> None:
     size = np.sqrt(compliance.diagonal())
     assert np.linalg.eigvalsh(compliance / np.outer(size, size))[0] > 0
     places = {unit.bearing.name: unit.bearing.x for unit in scene.bearing_units}
+    places |= {bearing.name: bearing.x for bearing in scene.nose_bearings}
     places["gearbox"] = scene.shaft.rear
     carried = sum(
         wrench_transport(np.array([places[at] - scene.shaft.front, 0.0, 0.0])) @ matrix
@@ -123,6 +125,8 @@ def test_front_part_of_a_stepped_shaft_keeps_what_is_in_front() -> None:
     assert part.outer_radius(-0.1) == shaft.outer_radius(-0.1)
 
 
-@pytest.mark.parametrize("name", ["nrel_5mw_main_shaft", "iea_15mw_main_shaft"])
+@pytest.mark.parametrize(
+    "name", ["nrel_5mw_main_shaft", "iea_15mw_main_shaft", "iea_15mw_shaft_on_nose"]
+)
 def test_shear_modulus_is_that_of_the_public_models(name: str) -> None:
     assert library_scene(name).material_of("shaft").shear_modulus == pytest.approx(80e9, rel=1e-12)

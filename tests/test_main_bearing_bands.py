@@ -125,3 +125,35 @@ def test_recovered_stresses_give_the_tilt_stiffness_a_band_whatever_the_meshes()
         band = Series(levels).band(lambda f: float(f["K_R"][0, 1]))
         assert band == pytest.approx(5.1 * (1 - 1 / 1.2))
     assert Series((recovered,)).band(lambda f: float(f["checks"][0])) is None
+
+
+def test_recovered_stresses_give_reactions_a_band_whatever_the_meshes() -> None:
+    series = series_of_order(1.0)
+    levels = [{**level, "reaction b": np.array([[2.0, -3.0]])} for level in series.levels]
+    levels[-1] |= {"recovered reaction b": np.array([[0.01, 0.02]])}
+    for given in (levels[-1:], levels):
+        found = Series(tuple(given))
+        band = [found.band(lambda f, k=k: float(f["reaction b"][0, k])) for k in (0, 1)]
+        assert band == pytest.approx([3 * 0.01, 3 * 0.02])
+        # of what is made of several, that of all of them larger or smaller
+        assert found.band(lambda f: float(np.ptp(f["reaction b"]))) == pytest.approx(3 * 0.03)
+        assert "reactions" in found.note()
+        assert "K_R are" not in found.note()
+
+
+def test_errors_of_reactions_are_those_of_the_assembly(tmp_path) -> None:
+    """What equilibrium decides has none; what stiffness shares has one, far below the share."""
+    from fe_drivetrain.cases.main_bearing import (
+        study,
+    )
+
+    scene = coarse_scene("bonded")
+    solved = study.solve_scene(Run({}, True, tmp_path), scene, "x", recovered=True)
+    name = solved.bearing
+    errors, reactions = solved.recovered[name], solved.response.reactions[name]
+    assert set(solved.recovered) == {name, "gearbox"}
+    # both supports share a force at the hub: what one gets more, the other gets less
+    np.testing.assert_allclose(errors[2, 2], solved.recovered["gearbox"][2, 2], rtol=1e-5)
+    assert 1e-4 < errors[4, 4] / abs(reactions[4, 4]) < 0.2
+    figures = bands.of_solved(solved)
+    assert figures[f"recovered reaction {name}"] is errors

@@ -8,12 +8,23 @@ import pytest
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.of_scene import scene_body
+from fe_drivetrain.export.calculix_plan import plan_deck
 from fe_drivetrain.export.formats.summary import summary
 from fe_drivetrain.fidelity.adviser import Quantity, advise
-from fe_drivetrain.fidelity.ladder import LevelModel, shaft_level, statics_level
+from fe_drivetrain.fidelity.energy_sensitivities import energy_slopes, total
+from fe_drivetrain.fidelity.ladder import (
+    LevelModel,
+    shaft_level,
+    solved_assembly,
+    statics_level,
+)
+from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance
-from fe_drivetrain.response.model import mesh_scene
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.response.influence_fields import reaction_influences
+from fe_drivetrain.response.model import Model, mesh_scene
+from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.scene.nose import Nose
+from fe_drivetrain.scene.scene import Scene, coarser_scene
 
 FRONT, SPAN, ROOT = 1.0, 1.2, 3.0
 SHAFT, NOSE = (3.0, 2.6), (2.2, 1.8)
@@ -48,6 +59,12 @@ def rigidities(scene: Scene, tube: tuple[float, float]) -> tuple[float, float]:
     shear *= float(cowper_shear_coefficient(steel.poisson_ratio, inner / outer))
     area = np.pi / 4 * (outer**2 - inner**2)
     return steel.youngs_modulus * np.pi / 64 * (outer**4 - inner**4), shear * area
+
+
+#: Bearings that hold a shaft without a gearbox, one of them by springs.
+COUPLED = scene_of(["rigid", "rigid", "rigid", 0, "rigid", "rigid"], [0, 2e10, 2e10, 0, 0, 0])
+
+COARSE = coarser_scene(COUPLED, 1.2, 8)
 
 
 def hub_compliance(model: LevelModel) -> float:
@@ -88,10 +105,19 @@ def test_on_two_bearings_the_nose_moves_the_span_of_a_simple_beam() -> None:
         np.testing.assert_allclose(found, shares, rtol=1e-6)
 
 
-def test_beam_meridian_and_solid_agree_and_stand() -> None:
-    scene = scene_of(["rigid", "rigid", "rigid", 0, "rigid", "rigid"], [0, 2e10, 2e10, 0, 0, 0])
-    levels = [shaft_level(scene, level) for level in (1, 2, 3)]
-    assert all(imbalance(scene, model) < 1e-8 for model in levels)
+@pytest.fixture(scope="module")
+def levels() -> list[LevelModel]:
+    """Beam, meridian and solid of a shaft that nothing but its nose holds."""
+    return [shaft_level(COUPLED, level) for level in (1, 2, 3)]
+
+
+@pytest.fixture(scope="module")
+def assembly() -> tuple[LevelModel, Model, Response]:
+    return solved_assembly(COARSE)
+
+
+def test_beam_meridian_and_solid_agree_and_stand(levels: list[LevelModel]) -> None:
+    assert all(imbalance(COUPLED, model) < 1e-8 for model in levels)
     # tubes as wide as long: seats are bent out of round, which a beam does not know
     assert hub_compliance(levels[1]) == pytest.approx(hub_compliance(levels[0]), rel=0.2)
     assert hub_compliance(levels[2]) == pytest.approx(hub_compliance(levels[1]), rel=0.02)
@@ -100,6 +126,70 @@ def test_beam_meridian_and_solid_agree_and_stand() -> None:
         for load, size in ((1, 1.0), (2, 1.0), (4, 1.0), (8, weight)):
             meridian, solid = (m.reaction_matrices[name][:, load] for m in levels[1:])
             np.testing.assert_allclose(solid, meridian, atol=0.01 * size)
+
+
+def test_the_assembly_is_the_solid_shaft_on_the_solid_nose(
+    assembly: tuple[LevelModel, Model, Response],
+) -> None:
+    """Condensed each and put in series, or assembled in one system: the same model."""
+    solid, (top, _, response) = shaft_level(COARSE, 3), assembly
+    assert response.equilibrium_error < 1e-7
+    assert response.superposition_error < 1e-7
+    first = 6 * solid.points.index("hub")
+    condensed = solid.compliance[first : first + 6, first : first + 6]
+    size = np.sqrt(condensed.diagonal())
+    scale = np.outer(size, size)
+    np.testing.assert_allclose(top.compliance / scale, condensed / scale, atol=1e-7)
+    assert set(top.reaction_matrices) == set(solid.reaction_matrices)
+    size = np.max([np.abs(m).max(axis=0) for m in top.reaction_matrices.values()], axis=0)
+    for name, matrix in top.reaction_matrices.items():
+        np.testing.assert_allclose(
+            matrix / size, solid.reaction_matrices[name] / size, atol=1e-7, err_msg=name
+        )
+
+
+def test_a_motion_between_shaft_and_nose_is_the_influence_of_a_bearings_force(
+    assembly: tuple[LevelModel, Model, Response],
+) -> None:
+    """Mueller-Breslau: it moves each load by as much as that load puts on the bearing."""
+    _, model, response = assembly
+    for name, component in (("upwind", 4), ("downwind", 2)):
+        (moved,) = (model.unit_loads().T @ reaction_influences(model, name, [component])).T
+        expected = response.reactions[name][component]
+        np.testing.assert_allclose(moved, expected, atol=1e-7 * np.abs(expected).max())
+
+
+def test_moduli_and_bearings_are_all_that_gives(
+    assembly: tuple[LevelModel, Model, Response],
+) -> None:
+    slopes = energy_slopes(assembly[1], assembly[2])
+    assert {f"nose.bearings.1.stiffness.{c}" for c in (1, 2)} < set(slopes)
+    hub = assembly[2].motions["hub"][:, :6]
+    error = total(slopes)[:6, :6] + hub
+    assert np.abs(error).max() < 1e-6 * np.abs(hub).max()
+
+
+def test_a_deck_has_the_nose_and_the_springs_of_its_bearings(
+    assembly: tuple[LevelModel, Model, Response],
+) -> None:
+    """Its equations and springs hold what the solution of the assembly does."""
+    _, model, response = assembly
+    plan = plan_deck(model, ["hub.Fz"])
+    (joint,) = (3 * plan.references["downwind.joint"][0],)
+    assert dict(plan.springs)[joint + 1] == dict(plan.springs)[joint + 2] == 2e10
+    force = 2e10 * response.motions["downwind.joint"][2, 2]
+    assert force == pytest.approx(response.reactions["downwind"][2, 2], rel=1e-9)
+    root = 3 * plan.references["nose.root"][0]
+    assert set(range(root, root + 6)) <= set(plan.held.tolist())
+
+
+def test_what_a_level_takes_is_known_for_shaft_and_nose(
+    assembly: tuple[LevelModel, Model, Response],
+) -> None:
+    found = forecast(assembly[1])
+    assert [level.level for level in found] == [0, 1, 2, 3, 4]
+    assert found[-1].unknowns == assembly[2].diagnostics.n_unknowns
+    assert all(level.fits and level.seconds > 0 for level in found)
 
 
 def test_a_heavier_nose_sags_and_shares_the_shaft_otherwise() -> None:
@@ -131,11 +221,18 @@ def test_the_adviser_knows_its_bearings() -> None:
 
 
 def test_what_has_no_nose_says_so() -> None:
-    scene = scene_of(ALL, None)
-    with pytest.raises(InputError, match="has a nose, which the assembly of solids"):
-        mesh_scene(scene)
     with pytest.raises(InputError, match="has a nose"):
-        scene_body(scene, 1)
+        scene_body(COUPLED, 1)
+
+
+def test_a_wall_of_the_nose_bounds_the_mesh_as_that_of_the_shaft_does() -> None:
+    thin = [{"outer_diameter": 2.2, "inner_diameter": 2.14, "length": 0.3 + ROOT}]
+    nose = COUPLED.model_dump(mode="json")["nose"] | {"body": {"front": -0.3, "sections": thin}}
+
+    scene = COUPLED.model_copy(update={"nose": Nose.model_validate(nose)})
+    with pytest.raises(InputError, match=r"nose, .* thinnest wall of 0\.03 m"):
+        mesh_scene(scene)
+    assert coarser_scene(scene, 1.0, 8).mesh.shaft <= 3 * 0.03 + 1e-9
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,8 @@ _SOLVED_TWICE = 1e-6
 def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) -> None:
     """Write the free shaft and the bearings on the ground, read them again, and build on them.
 
+    Bearings on a nose are springs of the scene; what holds them is not written.
+
     Parameters
     ----------
     page : Page
@@ -51,7 +53,8 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
     quantity : Quantity
         The quantity that a model made of the files must give as the level itself does.
     """
-    written = {what: superelement_of(scene, what) for what in (SHAFT, SEATS)}
+    kinds = (SHAFT, SEATS) if scene.bearing_units else (SHAFT,)
+    written = {what: superelement_of(scene, what) for what in kinds}
     rows, read = [], {}
     for what, element in written.items():
         names = []
@@ -85,7 +88,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
         source="a free body",
     )
     (level_two,) = [level for level in page.figures["levels"] if level["level"] == LEVEL]
-    found = _rebuilt(scene, quantity, read[SHAFT], read[SEATS])
+    found = _rebuilt(scene, quantity, read[SHAFT], read.get(SEATS))
     page.vanishes(
         f"{quantity.name} of a model made of the files, less that of level {LEVEL}, relative",
         float(np.linalg.norm(found - level_two["values"]) / np.linalg.norm(level_two["values"])),
@@ -97,7 +100,8 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
     page.text(
         "Files beside these results, for other programs: the free shaft at its reference "
         "points, with the rings that stand on it, and every bearing with its housing on the "
-        "ground. Put together, with the gearbox's springs, they are level 2 of the ladder: "
+        "ground (the nose, where there is one, stays in the scene). Put together, with the "
+        "gearbox's springs, they are level 2 of the ladder: "
         f"{100 * level_two['error']:.2g} % from its top for {quantity.name}. fe-drivetrain export "
         "writes them in further formats, and with fixed-interface modes."
     )
@@ -111,7 +115,7 @@ def stiffness_files(page: Page, folder: Path, scene: Scene, quantity: Quantity) 
     )
     page.table(
         "Some of its numbers; other motions of the same bearing held",
-        _numbers(read[SHAFT], read[SEATS]),
+        _numbers(read[SHAFT], read.get(SEATS)),
         ["stiffness", "value", "unit"],
     )
 
@@ -128,8 +132,10 @@ def _row(names: list[str], element: Superelement) -> list[Cell]:
     ]
 
 
-def _rebuilt(scene: Scene, quantity: Quantity, shaft: Superelement, seats: Superelement) -> Floats:
-    """The quantity, of a model that knows the files and the gearbox's springs alone."""
+def _rebuilt(
+    scene: Scene, quantity: Quantity, shaft: Superelement, seats: Superelement | None
+) -> Floats:
+    """The quantity, of a model that knows the files, the gearbox's springs and the nose alone."""
     body = Condensed(
         shaft.points,
         shaft.positions,
@@ -137,14 +143,14 @@ def _rebuilt(scene: Scene, quantity: Quantity, shaft: Superelement, seats: Super
         np.zeros((len(shaft.stiffness), 3)),
         shaft.mass,
     )
-    blocks = {
-        name: seats.stiffness[6 * k : 6 * k + 6, 6 * k : 6 * k + 6]
-        for k, name in enumerate(seats.points)
-    }
+    blocks = {}
+    if seats is not None:
+        for k, name in enumerate(seats.points):
+            blocks[name] = seats.stiffness[6 * k : 6 * k + 6, 6 * k : 6 * k + 6]
     return quantity.of(shaft_level(scene, LEVEL, blocks, body), scene.shaft.length)
 
 
-def _numbers(shaft: Superelement, seats: Superelement) -> list[list[Cell]]:
+def _numbers(shaft: Superelement, seats: Superelement | None) -> list[list[Cell]]:
     """The few that beam and multibody models ask for."""
     rows: list[list[Cell]] = []
     for component, what in ((0, "tension"), (3, "torsion")):
@@ -155,6 +161,8 @@ def _numbers(shaft: Superelement, seats: Superelement) -> list[list[Cell]]:
         ("along x", "along y", "along z", "", "about y (tilt)", "about z (yaw)"),
         ("N/m", "N/m", "N/m", "", "N m/rad", "N m/rad"),
     )
+    if seats is None:
+        return rows
     for k, name in enumerate(seats.points):
         for c, (motion, unit) in enumerate(zip(*names, strict=True)):
             value = float(seats.stiffness[6 * k + c, 6 * k + c])

@@ -17,7 +17,7 @@ from fe_drivetrain.compare import GridConvergence, grid_convergence
 from fe_drivetrain.mesh import mean_size
 from fe_drivetrain.response import PLANES, Response, bearing_unit_stiffness
 from fe_drivetrain.scene import Scene
-from fe_drivetrain.solve import recovery_estimate
+from fe_drivetrain.solve import SAFETY, recovery_estimate
 from fe_drivetrain.suite import Jobs, Run, RunJob
 
 #: Factors on the sizes of a case's own mesh, coarse first; a third apart, as Celik et al. ask.
@@ -36,14 +36,16 @@ NOTE = (
     f"{FACTORS[0]:g}, over the mean sizes that their elements really have. The band reaches from "
     "the value to its limit at the order observed and, since meshes are not nested and stress is "
     f"singular, to that of order {LEAST_ORDER:g}, whichever is farther, and farther still where "
-    "the three show no order. That of K_R is at least what recovered stresses of this mesh alone "
-    "say of bearing and housing."
+    "the three show no order."
 )
+
+_RECOVERED = "recovered "  # before the name of the figures that the errors are of
 
 Figures = Mapping[str, Floats]
 """Arrays of figures by name: "reaction NAME" (6, 10), "motion POINT" (6, 10), "energy PART"
 (10, 10), "checks" (errors of equilibrium and of superposition), "size" (mean size of the elements
-[m]); and of a tilt solution "K_R" (planes, estimators), "recovered" (planes, band of K_R by
+[m]), "recovered reaction NAME" (6, 10, their errors by recovered stresses, of a case's own mesh);
+and of a tilt solution "K_R" (planes, estimators), "recovered" (planes, band of K_R by
 recovered stresses, relative), "stiffness" (6, 6), and the former of the solution without
 gearbox, their names beginning with "free "."""
 
@@ -69,6 +71,7 @@ def of_solved(solved: Solved) -> dict[str, Floats]:
     """Figures of a scene with its gearbox, and "stiffness" (6, 6) of a spherical bearing's unit."""
     found = of_response(solved.response)
     found["size"] = np.array(mean_size(solved.model.mesh))
+    found |= {f"{_RECOVERED}reaction {name}": error for name, error in solved.recovered.items()}
     if solved.scene.bearing_units[0].interface != "bonded":
         found["stiffness"] = bearing_unit_stiffness(solved.response, solved.bearing)
     return found
@@ -189,18 +192,33 @@ class Series:
     def band(self, figure: Figure) -> float | None:
         """Half width of a figure's band, in its unit; None where nothing says how wide it is.
 
-        Of figures that K_R is in, the larger of what the series and recovered stresses say.
+        Of figures that K_R or reactions are in, the larger of what the series and recovered
+        stresses say.
         """
-        by_stress = self._recovered(figure) if "recovered" in self.levels[-1] else 0.0
+        by_stress = self._recovered(figure)
         if self.complete:
             return max(self.convergence(figure).uncertainty, by_stress)
         return by_stress or None
 
     def _recovered(self, figure: Figure) -> float:
-        """What a figure becomes at the end of K_R's band by recovered stresses."""
+        """What a figure becomes where K_R and reactions are at the ends of their bands.
+
+        These come from recovered stresses. Errors of reactions have no sign: the figure is taken
+        with all of them larger, and with all smaller.
+        """
         own = self.levels[-1]
-        improved = {**own, "K_R": own["K_R"] / (1.0 + own["recovered"][:, None])}
-        return abs(figure(own) - figure(improved))
+        errors = {
+            name.removeprefix(_RECOVERED): SAFETY * error
+            for name, error in own.items()
+            if name.startswith(_RECOVERED)
+        }
+        found = 0.0
+        for sense in (1.0, -1.0):
+            moved = {n: own[n] + sense * np.copysign(e, own[n]) for n, e in errors.items()}
+            if "recovered" in own:
+                moved["K_R"] = own["K_R"] / (1.0 + own["recovered"][:, None])
+            found = max(found, abs(figure(own) - figure({**own, **moved})))
+        return found
 
     def percent(self, figure: Figure) -> float | None:
         """The same, relative to the figure [%]."""
@@ -227,11 +245,18 @@ class Series:
 
     def note(self) -> str:
         """How bands come about, for the page."""
+        own = self.levels[-1]
+        estimated = ["K_R"] if "recovered" in own else []
+        if any(name.startswith(_RECOVERED) for name in own):
+            estimated.append("reactions")
+        words = " and of ".join(estimated)
         if self.complete:
-            return NOTE
+            more = f" Those of {words} are at least what recovered stresses of this mesh alone say."
+            return NOTE + (more if words else "")
+        but = f" but of {words}" if words else ""
         return (
-            "No bands but of K_R: elements larger than this mesh's would not fill the walls of the "
-            "parts, or fold over, so there is no series of meshes."
+            f"No bands{but}: elements larger than this mesh's would "
+            "not fill the walls of the parts, or fold over, so there is no series of meshes."
         )
 
     def largest(self, name: str) -> str:
@@ -243,6 +268,6 @@ class Series:
         shares = []
         for i, j in np.ndindex(own.shape):
             if np.abs(own[i, j]) > 1e-4 * size[j]:  # the rest is nothing but the mesh's asymmetry
-                band = self.convergence(lambda f, i=i, j=j: float(f[name][i, j])).uncertainty
-                shares.append(band / size[j])
+                band = self.band(lambda f, i=i, j=j: float(f[name][i, j]))
+                shares.append((band or 0.0) / size[j])
         return f"bands are at most {100.0 * max(shares):.2g} % of their column's largest"

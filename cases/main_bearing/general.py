@@ -14,8 +14,10 @@ from fe_drivetrain.beam import main_bearing_beam
 from fe_drivetrain.cases.main_bearing import shown, study
 from fe_drivetrain.cases.main_bearing.secants import Cases
 from fe_drivetrain.cases.main_bearing.study import Solved
+from fe_drivetrain.commands import entering
 from fe_drivetrain.common import FORCES, Floats, InputError
 from fe_drivetrain.compare import resultant
+from fe_drivetrain.coupled import factors_of
 from fe_drivetrain.fidelity import (
     Levels,
     UnitBounds,
@@ -81,6 +83,8 @@ def general_scene(
 
 def _reason(scene: Scene, uniform: bool) -> str:
     """Why no closed form stands for a scene; empty where one does."""
+    if scene.load_points:
+        return f"loads enter at {', '.join(scene.bands)}, too"
     if len(scene.bearing_units) > 1:
         return f"the scene has {len(scene.bearing_units)} bearing units and not one"
     if uniform:
@@ -124,17 +128,20 @@ def unit_load_page(run: Run, page: Page, scene: Scene, forms: Sequence[str] = ()
         shown.check_solution(page, one, label)
     check_levels(page, scene, levels)
     check_statics(page, scene, solved)
-    rows = reaction_rows(levels)
+    rows = reaction_rows(scene, levels)
     page.answer(_nearest(rows))
     page.section("Reactions")
     page.text(
         "Between the stiff and the soft beam lies what the housings' own stiffness leaves open; "
         "± FE is what a coarser mesh changes, continued at first order."
     )
-    page.table("Reactions in bending per unit load at the hub: FE, and Timoshenko beams", rows)
+    page.table("Reactions in bending per unit load: FE, and Timoshenko beams", rows)
     for name in levels.reference.reaction_matrices:
         shown.reaction_table(
-            page, f"Load on {name} for unit loads", solved.response.reactions[name]
+            page,
+            f"Load on {name} for unit loads",
+            solved.response.reactions[name],
+            solved.model.loads,
         )
     page.section("Deflection and slope of the hub")
     page.table("Motion of the hub for unit loads there", hub_rows(levels, others))
@@ -180,12 +187,19 @@ def check_statics(page: Page, scene: Scene, solved: Solved) -> None:
         )
 
 
-def reaction_rows(levels: Levels) -> list[Record]:
+def reaction_rows(scene: Scene, levels: Levels) -> list[Record]:
     """Reactions in bending, FE with its band, and beams."""
     rows: list[Record] = []
     for name, matrix in levels.reference.reaction_matrices.items():
-        size = np.abs(matrix[:, :6]).max(axis=0)
-        for component, load in BENDING:
+        size = np.abs(matrix).max(axis=0)
+        pairs = [
+            (component, place, load)
+            for place in range(1 + len(scene.load_points))
+            for component, load in BENDING
+        ]
+        for component, place, load_at in pairs:
+            # loads at points follow those of every scene, six by six
+            load = load_at if place == 0 else len(LOADS) + 6 * (place - 1) + load_at
             value = float(matrix[component, load])
             if abs(value) < _SMALL * size[load]:
                 continue
@@ -195,7 +209,8 @@ def reaction_rows(levels: Levels) -> list[Record]:
             }
             rows.append(
                 {
-                    "reaction": f"{name} {FORCES[component]} per {FORCES[load]} at the hub",
+                    "reaction": f"{name} {FORCES[component]} per {FORCES[load_at]} at "
+                    + ("the hub", *scene.bands)[place],
                     "FE": value,
                     "± FE": _band(levels, name, component, load),
                     **beams,
@@ -259,7 +274,7 @@ def _nearest(rows: list[Record]) -> str:
     }
     best = min(worst, key=lambda label: worst[label])
     return (
-        f"Reactions in bending to unit hub loads: of three Timoshenko beams the one on "
+        f"Reactions in bending to unit loads: of three Timoshenko beams the one on "
         f"{best.split(', ')[1]} is nearest to FE, within {worst[best]:.2g} % of the largest of its "
         "kind; " + "; ".join(f"{label} {error:.2g} %" for label, error in worst.items()) + "."
     )
@@ -300,6 +315,7 @@ def wall_page(run: Run, page: Page, scenes: Mapping[int, Scene]) -> None:
                 for label, which in ((STIFF, "stiff"), (SOFT, "soft"))
             },
         }
+        factors = factors_of(entering(scene, history), scene.gearbox.weight)
         for unit in scene.bearing_units:
             name = unit.bearing.name
             row: Record = {
@@ -308,8 +324,7 @@ def wall_page(run: Run, page: Page, scenes: Mapping[int, Scene]) -> None:
                 "bore [m]": scene.shaft.sections[0].inner_diameter,
             }
             for label, matrices in models.items():
-                found = history.loads @ matrices[name][:, :6].T
-                found = found + scene.gearbox.weight * matrices[name][:, 9]
+                found = factors @ matrices[name].T
                 force = np.asarray(resultant(found[:, 1], found[:, 2]))
                 reference = references.setdefault((name, label), force)
                 change = np.abs(force - reference).mean() / reference.mean()
@@ -342,15 +357,14 @@ def secant_page(run: Run, page: Page, scene: Scene, cases: Cases) -> None:
     Parameters
     ----------
     cases : Cases
-        Load cases at the hub.
+        Load cases at the hub and at the scene's load points.
     """
     hub, weights = cases.hub, cases.weights
     solved = study.solve_scene(run, scene, "scene")
     with run.step("bearing units, two bounds"):
         bounds = bounds_of(scene)
     shown.check_solution(page, solved, "scene")
-    factors = np.zeros((len(hub), len(LOADS)))
-    factors[:, :6], factors[:, 9] = hub, scene.gearbox.weight
+    factors = factors_of(hub, scene.gearbox.weight)
     page.section("The secant over load cases")
     page.text(cases.statement)
     rows: list[Record] = []
@@ -358,7 +372,7 @@ def secant_page(run: Run, page: Page, scene: Scene, cases: Cases) -> None:
     for name, bound in bounds.items():
         loads = factors @ solved.response.reactions[name].T
         motions = factors @ solved.response.motions[f"{name}.seat"].T
-        if np.abs(loads[:, 4:]).max() < _SMALL * np.abs(hub[:, 3:]).max():
+        if np.abs(loads[:, 4:]).max() < _SMALL * np.abs(hub[:, 3:6]).max():
             page.text(f"{name} carries no moment in bending: its K_R is zero in all load cases.")
             continue
         fit = secant_stiffness.fitted_spring(loads, motions, weights)

@@ -13,10 +13,12 @@ from fe_drivetrain.cases.main_bearing import (
     loads,
     study,
 )
+from fe_drivetrain.commands import entering
 from fe_drivetrain.common import FORCES, Floats, InputError, stiffness_transport
 from fe_drivetrain.compare import sample_weights, weighted_rms
-from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, hub_load_set
-from fe_drivetrain.response import LOADS, bearing_unit_stiffness, secant_stiffness, without_gearbox
+from fe_drivetrain.coupled import factors_of
+from fe_drivetrain.hub_loads import SHEARS, WIND_SPEEDS, Condition, LoadHistory, hub_load_set
+from fe_drivetrain.response import bearing_unit_stiffness, secant_stiffness, without_gearbox
 from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.suite import Run
 
@@ -68,7 +70,7 @@ class Cases:
     Attributes
     ----------
     hub : Floats
-        (m, 6) at the hub [N, N m].
+        (m, 6) at the hub, then six columns more for each load point, with its weight [N, N m].
     weights : Floats or None
         (m,) share of each in the whole time; None where all are equal.
     statement : str
@@ -92,14 +94,16 @@ def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
         steps = [history.step for history in histories]
         unlike = np.ptp(steps) > 1e-9 * max(steps)
         weights = sample_weights([len(h) for h in histories], steps) if unlike else None
-        return Cases(np.concatenate([h.loads for h in histories]), weights, statement)
+        hub = np.concatenate([entering(scene, history) for history in histories])
+        return Cases(hub, weights, statement)
     speeds = WIND_SPEEDS[1:2] if run.quick else WIND_SPEEDS
     conditions = [Condition(speed, "medium", shear, 1) for speed in speeds for shear in SHEARS]
     with run.step("hub loads"):
         history = hub_load_set(conditions)
     chosen = history.loads[:, ::every].reshape(-1, 6)
+    samples = LoadHistory("samples", np.arange(float(len(chosen))), chosen)
     return Cases(
-        chosen,
+        entering(scene, samples),
         None,
         f"Load cases: {len(chosen):,} samples of {len(conditions)} made ten-minute histories (wind "
         f"of {', '.join(f'{s:g}' for s in speeds)} m/s, medium turbulence, both shear exponents, "
@@ -117,9 +121,7 @@ def reacted(run: Run, scene: Scene, factor: float, hub: Floats) -> tuple[Floats,
     scene = bands.coarser(scene, factor)
     label = f"{scene.bearing_units[0].interface}, sizes x {factor:g}"
     solved = study.solve_scene(run, scene, label)
-    factors = np.zeros((len(hub), len(LOADS)))
-    factors[:, :6] = hub
-    factors[:, 9] = scene.gearbox.weight
+    factors = factors_of(hub, scene.gearbox.weight)
     response = solved.response
     return (
         factors @ response.reactions[solved.bearing].T,

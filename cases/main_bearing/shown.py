@@ -90,8 +90,10 @@ def matrix_table(page: Page, caption: str, matrix: Floats) -> None:
     )
 
 
-def reaction_table(page: Page, caption: str, reaction: Floats) -> None:
-    """A (6, 10) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
+def reaction_table(
+    page: Page, caption: str, reaction: Floats, loads: Sequence[str] = LOADS
+) -> None:
+    """A (6, n) reaction matrix; what is nothing but the mesh's asymmetry is shown as zero."""
     size = np.abs(reaction).max(axis=0)
     # A column may hold nothing but round-off: the bearing feels no torque, no gearbox weight.
     shown = np.where(np.abs(reaction) < np.maximum(1e-4 * size, 1e-6), 0.0, reaction)
@@ -101,14 +103,14 @@ def reaction_table(page: Page, caption: str, reaction: Floats) -> None:
             [f"{c} [{'N' if c[0] == 'F' else 'N m'}]", *row]
             for c, row in zip(FORCES, shown.tolist(), strict=True)
         ],
-        ["reaction", *(f"{load} [per {_unit(load)}]" for load in LOADS)],
+        ["reaction", *(f"{load} [per {_unit(load)}]" for load in loads)],
     )
 
 
 def _unit(load: str) -> str:
     if load.startswith("gravity"):
         return "m/s²"
-    return "N m" if load.startswith("hub.M") else "N"
+    return "N m" if load.rpartition(".")[2].startswith("M") else "N"
 
 
 def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:

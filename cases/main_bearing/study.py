@@ -1,12 +1,14 @@
 """What the main-bearing cases share: their scene and its solution."""
 
 import warnings
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.fidelity import reaction_error
 from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
 from fe_drivetrain.response import (
     LOADS,
@@ -33,12 +35,19 @@ QUICK = (2.0, 8)
 
 @dataclass(frozen=True)
 class Solved:
-    """A scene with its model and its response to unit loads."""
+    """A scene with its model and its response to unit loads.
+
+    Attributes
+    ----------
+    recovered : Mapping[str, Floats]
+        (6, 10) error of each reaction, estimated from recovered stresses, where asked for.
+    """
 
     scene: Scene
     model: Model
     response: Response
     quality: MeshQuality
+    recovered: Mapping[str, Floats] = field(default_factory=dict)
 
     @property
     def bearing(self) -> str:
@@ -49,7 +58,8 @@ class Solved:
 def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
     """The library's scene, or the user's own, with the user's changes, and a bearing of a kind.
 
-    Where the scene has another bearing, that is exchanged, and the page says so first.
+    Where the scene has another bearing, that is exchanged, and load points are left out; the page
+    says so first.
 
     Parameters
     ----------
@@ -66,6 +76,12 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
         The scene has not exactly one bearing unit, as the closed forms need.
     """
     given = given_scene(run, kind)
+    if given.load_points:
+        page.note(
+            f"Without the loads and weights at {', '.join(given.bands)}: this case loads the hub "
+            "and the gearbox alone, and a stiffness does not depend on loads."
+        )
+        given = given.model_copy(update={"load_points": ()})
     if "scene" in run.settings:
         page.subject = given.title
         page.source = f"scene {run.settings['scene']}"
@@ -97,12 +113,6 @@ def any_scene(run: Run, kind: str) -> Scene:
         raise InputError(
             f"scene {scene.title!r} has a nose: the main-bearing cases compare solids on bearing "
             "units; run fe-drivetrain advise, which takes both"
-        )
-    if scene.load_points:
-        raise InputError(
-            f"scene {scene.title!r} has loads at {', '.join(scene.bands)}: the main-bearing cases "
-            "load the hub and the gearbox alone; leave load_points out, or run fe-drivetrain "
-            "study, which takes any"
         )
     return scene
 
@@ -162,7 +172,9 @@ def mesh_of(run: Run, scene: Scene, label: str) -> Meshed:
     return mesh, mesh_quality
 
 
-def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None) -> Solved:
+def solve_scene(
+    run: Run, scene: Scene, label: str, meshed: Meshed | None = None, recovered: bool = False
+) -> Solved:
     """Mesh, assemble and solve a scene, or take its solution from the cache, timing each step.
 
     The operators of the parts, by far the largest of the results, are not kept: what is solved
@@ -172,6 +184,8 @@ def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None
     ----------
     meshed : Meshed or None
         The mesh, where there is one already.
+    recovered : bool
+        Whether errors of its reactions are estimated, which takes a solution for each support.
     """
     mesh, mesh_quality = mesh_of(run, scene, label) if meshed is None else meshed
     with run.step(f"assembly ({label})"):
@@ -183,12 +197,18 @@ def solve_scene(run: Run, scene: Scene, label: str, meshed: Meshed | None = None
         if response.kept:
             step.name += ", from the cache"
     run.report(f"{label}: {response.diagnostics.method}, {response.diagnostics.reason}")
-    return Solved(scene, replace(model, part_stiffness={}), response, mesh_quality)
+    errors = {}
+    if recovered:
+        with run.step(f"errors of reactions from recovered stresses ({label})"):
+            each = np.eye(len(model.loads))
+            for name in (*scene.bearing_names, "gearbox"):
+                errors[name] = reaction_error(model, response, name, range(6), each)
+    return Solved(scene, replace(model, part_stiffness={}), response, mesh_quality, errors)
 
 
 def solve_and_write(run: Run, scene: Scene, label: str, meshed: Meshed | None, file: str) -> Solved:
-    """`solve_scene` and `write_mesh_files`."""
-    solved = solve_scene(run, scene, label, meshed)
+    """`solve_scene`, with errors of reactions, and `write_mesh_files`."""
+    solved = solve_scene(run, scene, label, meshed, recovered=True)
     write_mesh_files(run, solved, file)
     return solved
 

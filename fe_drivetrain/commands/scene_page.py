@@ -8,6 +8,7 @@ from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.pictures.model import with_prefix
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Springs
+from fe_drivetrain.scene.nose import NoseBearing
 from fe_drivetrain.scene.scene import Scene, coarser_scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -80,7 +81,7 @@ def describe(page: Page, model: Model) -> None:
     parts: list[Record] = [
         {
             "part": part,
-            "material": _material_name(scene, part),
+            "material": scene.material_name(part),
             "E [GPa]": scene.material_of(part).youngs_modulus / 1e9,
             "density [kg/m³]": scene.material_of(part).density,
             "mass [kg]": float(mass.sum()),
@@ -89,10 +90,17 @@ def describe(page: Page, model: Model) -> None:
         for part, mass in model.part_mass.items()
     ]
     page.table("Parts; masses are those of the mesh", parts)
-    page.table(
-        "Bearings",
-        [_bearing_row(unit) for unit in scene.bearing_units],
-    )
+    if scene.bearing_units:
+        page.table(
+            "Bearings",
+            [_bearing_row(unit) for unit in scene.bearing_units],
+        )
+    if scene.nose is not None:
+        page.table(
+            "Bearings between the shaft and its nose: springs between the mean motions of both "
+            "faces",
+            [_nose_bearing_row(scene, bearing) for bearing in scene.nose_bearings],
+        )
     points: list[Record] = [
         {
             "point": "hub (front face), where the hub loads act",
@@ -126,17 +134,9 @@ def describe(page: Page, model: Model) -> None:
     )
 
 
-def _material_name(scene: Scene, part: str) -> str:
-    if part == "shaft":
-        return scene.shaft.material
-    name, _, housing = part.partition(".")
-    unit = scene.bearing_unit(name)
-    return unit.housing.material if housing else unit.bearing.material
-
-
 def _size(scene: Scene, part: str) -> str:
-    if part == "shaft":
-        shaft = scene.shaft
+    if part in ("shaft", "nose"):
+        shaft = scene.shaft if scene.nose is None or part == "shaft" else scene.nose.body
         widest = max(max(piece.outer_diameter, piece.end_diameter) for piece in shaft.pieces)
         bores = {piece.inner_diameter for piece in shaft.pieces} - {0.0}
         bored = f", bore {_range(bores)} m" if bores else ", no bore"
@@ -171,6 +171,18 @@ def _bearing_row(unit: BearingUnit) -> Record:
         if unit.interface == "bonded"
         else "as its stiffness says",
         "stands on": "the ground" if unit.bedplate is None else _springs(unit.bedplate),
+    }
+
+
+def _nose_bearing_row(scene: Scene, bearing: NoseBearing) -> Record:
+    assert scene.nose is not None
+    return {
+        "bearing": bearing.name,
+        "x [m]": bearing.x,
+        "width [m]": bearing.width,
+        "diameter on the nose [m]": 2 * scene.nose.body.outer_radius(bearing.x),
+        "diameter in the shaft [m]": 2 * scene.shaft.inner_radius(bearing.x),
+        "holds": _springs(bearing.stiffness),
     }
 
 
@@ -210,9 +222,15 @@ def cost_table(page: Page, model: Model) -> None:
     page.table("What each level costs: unknowns of its largest system, time, memory", rows)
     page.text(
         "Predicted times are those of the solver, fitted on two cores, without mesh and assembly, "
-        "whose times stand below; a mesh comes from the cache the next time. Housings as springs "
-        "are solved for two bounds, all bearing units; the shaft on them was run. advise solves "
-        "coarser meshes, too, for the band of the assembly."
+        "whose times stand below; a mesh comes from the cache the next time. "
+        + (
+            "Housings as springs are solved for two bounds, all bearing units; the shaft on them "
+            "was run. "
+            if model.scene.bearing_units
+            else "The bearings on the nose have no solids: as far as the mesh is the same, the "
+            "assembly (4) answers as solid shaft and solid nose (3) do. "
+        )
+        + "advise solves coarser meshes, too, for the band of the assembly."
     )
     page.data("levels", rows)
 
@@ -236,11 +254,18 @@ def checked(run: Run, page: Page, scene: Scene) -> None:
     """
     model = checked_model(run, scene)
     mass = float(model.mass.sum())
-    units = len(scene.bearing_units)
+    count = len(scene.bearing_names)
+    on_nose = (
+        ""
+        if scene.nose is None
+        else " round a nose"
+        if not scene.bearing_units
+        else (", some of them on a nose")
+    )
     page.seed = None
     page.answer(
-        f"{scene.title}: a shaft of {scene.shaft.length:g} m on {units} "
-        f"bearing{'s' if units > 1 else ''}, {mass:,.0f} kg in all, "
+        f"{scene.title}: a shaft of {scene.shaft.length:g} m on {count} "
+        f"bearing{'s' if count > 1 else ''}{on_nose}, {mass:,.0f} kg in all, "
         f"{model.n_dofs:,} degrees of freedom; it is held, and can be solved.",
         *model.warnings,
     )

@@ -158,14 +158,15 @@ def study_command(
 def advise_command(
     scene: _Scene,
     quantity: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--quantity",
             metavar="NAME",
             help="The quantity that must be accurate: a reaction, as in main_bearing.My or "
-            "gearbox.Fz, or a stiffness, hub.stiffness.ux to hub.stiffness.rz.",
+            "gearbox.Fz, or a stiffness, hub.stiffness.ux to hub.stiffness.rz. Default: Fz of the "
+            "first bearing.",
         ),
-    ],
+    ] = None,
     tolerance: Tolerance = "1%",
     load: Loads = None,
     to_the_top: Annotated[
@@ -193,13 +194,14 @@ def advise_command(
         from fe_drivetrain.fidelity.adviser import Quantity
         from fe_drivetrain.response.model import scene_loads
 
-        asked = Quantity(quantity, parse_loads(load or (), scene_loads(found)))
+        name = quantity or f"{found.bearing_names[0]}.Fz"
+        asked = Quantity(name, parse_loads(load or (), scene_loads(found)))
         asked.check(found)
         share = parse_tolerance(tolerance)
         return _run_on_scene(
             "advise",
             scene,
-            f"{found.title}: the model level that {quantity} needs",
+            f"{found.title}: the model level that {name} needs",
             out,
             lambda run, page: advised(run, page, found, asked, share, to_the_top),
         )

@@ -27,12 +27,6 @@ ENOUGH = 0.05
 """Of the root mean square: what the study takes for accurate enough."""
 
 _SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
-#: Levels from cheap to expensive, each with the models of its two bounds.
-_LEVELS = {
-    "1 beam, rigid housings": ("beam, rigid housings",),
-    "1 beam, housings as springs": ("beam, stiff housings", "beam, soft housings"),
-    "2 meridian, housings as springs": ("meridian, stiff housings", "meridian, soft housings"),
-}
 
 
 def errors(
@@ -98,7 +92,9 @@ def errors(
         rows,
     )
     page.table("RMSE of each component against the assembly over all load steps", absolute)
-    note = "Stiff and soft housings are the two bounds of the bearing units. "
+    note = ""
+    if levels.stiff:
+        note = "Stiff and soft housings are the two bounds of the bearing units. "
     if COARSER_ASSEMBLY in levels.models:
         note += (
             f"The assembly on a mesh {COARSER:g} times coarser shows what the mesh does to the "
@@ -110,16 +106,14 @@ def errors(
     page.data("error_percent", rows)
     page.data("rmse_kN", absolute)
     worst = {label: max(of[label] for of in shares.values()) for label in others}
-    page.answer(_enough(worst))
+    page.answer(_enough(worst, levels.bounds))
     _advice(page, levels, shares)
-    measures(page, scene, levels, loads, slopes, _LEVELS, ENOUGH)
-    errors_of = {n: max(worst[m] for m in _LEVELS[label]) for n, label in _SAMPLED.items()}
+    measures(page, scene, levels, loads, slopes, ENOUGH)
+    # the last of each number has housings as springs, where there are housings
+    sampled = {int(label[0]): label for label in levels.bounds}
+    errors_of = {n: max(worst[m] for m in levels.bounds[label]) for n, label in sampled.items()}
     enough = [level for level, error in errors_of.items() if error <= ENOUGH]
     return enough[0] if enough else min(errors_of, key=lambda level: errors_of[level])
-
-
-#: Levels with housings as springs.
-_SAMPLED = {1: "1 beam, housings as springs", 2: "2 meridian, housings as springs"}
 
 
 def _advice(page: Page, levels: Levels, shares: Mapping[str, Mapping[str, float]]) -> None:
@@ -129,7 +123,9 @@ def _advice(page: Page, levels: Levels, shares: Mapping[str, Mapping[str, float]
         band = 0.0
         if levels.coarser is not None:
             band = float(levels.band(np.array(of[COARSER_ASSEMBLY])))
-        found = {label: max(of[model] for model in models) for label, models in _LEVELS.items()}
+        found = {
+            label: max(of[model] for model in models) for label, models in levels.bounds.items()
+        }
         enough = [label for label, error in found.items() if error + band <= ENOUGH]
         needed = enough[0] if enough else "4 assembly of solids"
         if not enough and band > ENOUGH:
@@ -143,8 +139,8 @@ def _advice(page: Page, levels: Levels, shares: Mapping[str, Mapping[str, float]
             }
         )
     page.table(
-        f"The cheapest level that has each reaction within {100 * ENOUGH:g} % over these loads, "
-        "for either bound of the housings",
+        f"The cheapest level that has each reaction within {100 * ENOUGH:g} % over these loads"
+        + (", for either bound of the housings" if levels.stiff else ""),
         rows,
     )
     page.text(
@@ -154,10 +150,10 @@ def _advice(page: Page, levels: Levels, shares: Mapping[str, Mapping[str, float]
     page.data("advice", rows)
 
 
-def _enough(worst: Mapping[str, float]) -> str:
+def _enough(worst: Mapping[str, float], bounds: Mapping[str, Sequence[str]]) -> str:
     """The cheapest level whose reactions are all within the tolerance, for either bound."""
     share = f"{100 * ENOUGH:g} %"
-    for labels in _LEVELS.values():
+    for labels in bounds.values():
         largest = max(worst[label] for label in labels)
         if largest <= ENOUGH:
             return (
@@ -167,9 +163,9 @@ def _enough(worst: Mapping[str, float]) -> str:
                 f"{100 * largest:.2g} %)."
             )
     # a level is as good as the worse of its bounds
-    by_level = {labels: max(worst[label] for label in labels) for labels in _LEVELS.values()}
-    best = min(by_level, key=lambda labels: by_level[labels])
+    by_level = {level: max(worst[label] for label in labels) for level, labels in bounds.items()}
+    best = min(by_level, key=lambda level: by_level[level])
     return (
         f"Over these loads no level below the assembly has every reaction within {share} of it; "
-        f"the nearest, {' and '.join(best)}, is within {100 * by_level[best]:.2g} %."
+        f"the nearest, {' and '.join(bounds[best])}, is within {100 * by_level[best]:.2g} %."
     )

@@ -37,7 +37,6 @@ def measures(
     levels: Levels,
     loads: StudyLoads,
     slopes: Sequence[float],
-    bounds: Mapping[str, Sequence[str]],
     within: float,
 ) -> None:
     """Add a table of errors by measure, and which level is good enough for what.
@@ -54,12 +53,10 @@ def measures(
         Hub loads.
     slopes : sequence of float
         Of S-N curves.
-    bounds : mapping
-        Levels from cheap to expensive, each with its models.
     within : float
         What is good enough, as a share.
     """
-    count = len(loads.histories)
+    bounds, count = levels.bounds, len(loads.histories)
     places = np.unique(np.linspace(0, count - 1, min(count, _MOST)).astype(int))
     chosen = [loads.histories[k] for k in places]
     weight = scene.gearbox.weight
@@ -104,9 +101,10 @@ def measures(
                     }
                 )
     of_all = "" if len(chosen) == count else f" in {len(chosen)} of the {count} histories"
+    worse = ", the worse of both bounds of the housings" if levels.stiff else ""
     page.table(
         f"Error of each level by what a part is designed for{of_all}: the component across the "
-        "shaft that varies most, the worse of both bounds of the housings. Mean and load duration "
+        f"shaft that varies most{worse}. Mean and load duration "
         "over the mean size; extreme, and damage-equivalent load (DEL), over the assembly's",
         rows,
     )

@@ -101,8 +101,9 @@ def studied(
     page.section("Scene")
     _pictures(run, page, model, response, factors)
     describe(page, model)
-    page.section("Stiffness of the bearing units")
-    _stiffness(run, page, model, response, levels)
+    if scene.bearing_units:
+        page.section("Stiffness of the bearing units")
+        _stiffness(run, page, model, response, levels)
     with run.step("reactions of all load steps"):
         reactions(run, page, model, loads, levels, slopes)
     with run.step("beams against FE"):
@@ -118,7 +119,7 @@ def studied(
 
 def _uncertainty(run: Run, page: Page, scene: Scene, level: int, load: Floats) -> None:
     """What the spreads that the scene states do to stiffnesses and bearing forces."""
-    asked = [f"{unit.bearing.name}.Fz" for unit in scene.bearing_units]
+    asked = [f"{name}.Fz" for name in scene.bearing_names]
     with run.step("uncertainty"):
         found = study(
             scene,
@@ -153,7 +154,11 @@ def _files(
             for name, content in (
                 (STATISTICS, "reactions of each history: statistics, bands, equivalent loads"),
                 *([("reactions_*.csv", "reactions over time")] if loads.own else []),
-                ("stiffness.json", "6x6 stiffness of each bearing unit, two bounds"),
+                *(
+                    [("stiffness.json", "6x6 stiffness of each bearing unit, two bounds")]
+                    if levels.stiff
+                    else []
+                ),
                 ("summary.json", "shaft, bearing units, reactions, masses of a drivetrain model"),
                 ("mesh.vtu", "the assembly with its unit-load displacements, for ParaView"),
             )
@@ -264,12 +269,12 @@ def _series(page: Page, scene: Scene, loads: StudyLoads, levels: Levels) -> None
     page.section("Over time")
     history = loads.histories[len(loads.histories) // 2]
     shown = history.time - history.time[0] <= _SHOWN
-    labels = ["assembly", "beam, stiff housings", "beam, soft housings"]
+    (*_, beams) = [models for level, models in levels.bounds.items() if level.startswith("1")]
+    labels = ["assembly", *beams]
     with_weights = " with all weights" if loads.gravity else ""
-    for unit in scene.bearing_units:
-        name = unit.bearing.name
+    for name in scene.bearing_names:
         traces = []
-        for label, dash in zip(labels, ("solid", "dash", "dot"), strict=True):
+        for label, dash in zip(labels, ("solid", "dash", "dot"), strict=False):
             reaction = reaction_history(
                 levels.models[label],
                 name,

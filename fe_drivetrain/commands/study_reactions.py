@@ -217,16 +217,30 @@ def _weights(model: Model, gravity: float) -> str:
     parts = ", ".join(
         f"{part} {GRAVITY * float(mass.sum()) / 1e3:.4g} kN"
         for part, mass in model.part_mass.items()
+        if part != "nose"
     )
     points = "".join(f", {p.name} {p.weight / 1e3:.4g} kN" for p in model.scene.load_points)
     return (
         f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN{points}; "
-        "that of the rotor as far as the hub loads have it"
+        "that of the rotor as far as the hub loads have it" + _of_nose(model)
+    )
+
+
+def _of_nose(model: Model) -> str:
+    """Where the weight of a nose goes."""
+    if "nose" not in model.part_mass:
+        return ""
+    weight = GRAVITY * float(model.part_mass["nose"].sum())
+    return (
+        f"; that of the nose, {weight / 1e3:.4g} kN, goes into what holds it, and its sag alone is "
+        "felt by the bearings"
     )
 
 
 def _origins(model: Model) -> str:
-    places = [f"{u.bearing.name} at x = {u.bearing.x:g} m" for u in model.scene.bearing_units]
+    at = {unit.bearing.name: unit.bearing.x for unit in model.scene.bearing_units}
+    at |= {bearing.name: bearing.x for bearing in model.scene.nose_bearings}
+    places = [f"{name} at x = {x:g} m" for name, x in at.items()]
     places.append(f"gearbox at x = {model.scene.shaft.rear:g} m")
     return f"on the shaft's axis: {', '.join(places)}"
 

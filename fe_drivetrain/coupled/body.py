@@ -41,7 +41,8 @@ class LinearBody:
         (5 k, 5 k) of the body on its linear supports, over the bearings' deflections
         [N/m, N, N m/rad].
     loads : Floats
-        (5 k, 10) what a unit of each load of `response.LOADS` puts on clamped bearings [N, N m].
+        (5 k, 10) what a unit of each load of `response.LOADS` puts on clamped bearings [N, N m];
+        six columns more for each load point.
     body : Condensed
         The free body.
     supports : Mapping
@@ -51,6 +52,8 @@ class LinearBody:
         centres held, and for unit motions of these.
     housings : Floats
         (5 k, 5 k) compliance between the bearings' outer rings and the ground.
+    load_points : tuple of str
+        Points where other loads enter.
     """
 
     bearings: tuple[str, ...]
@@ -61,6 +64,7 @@ class LinearBody:
     motions_of_loads: Floats
     motions_of_bearings: Floats
     housings: Floats
+    load_points: tuple[str, ...] = ()
 
     def forces(self, factors: Floats, deflections: Floats) -> Floats:
         """Loads (n, k, 5) on the bearings, from the body's side.
@@ -110,7 +114,7 @@ class LinearBody:
             At the supports' own points.
         """
         u = self.motions(factors, forces, deflections).reshape(len(factors), -1)
-        carried = factors @ applied(self.body).T - u @ self.body.stiffness
+        carried = factors @ applied(self.body, self.load_points).T - u @ self.body.stiffness
         return {name: carried[:, self.body.rows(name)] for name in self.supports}
 
     def imbalance(self, factors: Floats, forces: Floats, deflections: Floats) -> Floats:
@@ -132,7 +136,7 @@ class LinearBody:
             name: wrench_transport(place - about)
             for name, place in zip(body.names, body.positions, strict=True)
         }
-        whole = applied(body).reshape(len(body.names), 6, -1)
+        whole = applied(body, self.load_points).reshape(len(body.names), 6, -1)
         moved = [T[name] @ part for name, part in zip(body.names, whole, strict=True)]
         total = np.asarray(factors @ np.sum(moved, axis=0).T)
         for name, reaction in self.reactions(factors, forces, deflections).items():
@@ -143,7 +147,10 @@ class LinearBody:
 
 
 def linear_body(
-    body: Condensed, bearings: Sequence[str], supports: Mapping[str, ArrayLike]
+    body: Condensed,
+    bearings: Sequence[str],
+    supports: Mapping[str, ArrayLike],
+    load_points: Sequence[str] = (),
 ) -> LinearBody:
     """A condensed body at its bearings, in housings that do not give.
 
@@ -155,6 +162,8 @@ def linear_body(
         Points where bearings hold it.
     supports : Mapping
         (6,) or (6, 6) linear stiffness to ground of other points by name; inf is rigid.
+    load_points : Sequence[str]
+        Points where other loads enter.
 
     Returns
     -------
@@ -166,7 +175,7 @@ def linear_body(
     InputError
         A point is unknown, or nothing but bearings holds the torque.
     """
-    for name in (*bearings, "hub", "gearbox"):
+    for name in (*bearings, *load_points, "hub", "gearbox"):
         if name not in body.names:
             raise InputError(
                 f"point {name!r} is unknown: the body has {', '.join(body.names)}; name one of them"
@@ -185,7 +194,7 @@ def linear_body(
             "the shaft turns freely about its axis: bearings hold no torque, so give the gearbox "
             "a stiffness against rotation about x"
         )
-    F = applied(body)
+    F = applied(body, load_points)
     inside = scaled_solve(inner, np.hstack([K[np.ix_(others, at)], F[left[others]]]))
     k = len(kept)
     reduced = K[np.ix_(at, at)] - K[np.ix_(at, others)] @ inside[:, :k]
@@ -203,6 +212,7 @@ def linear_body(
         of_loads,
         of_bearings,
         np.zeros((k, k)),
+        tuple(load_points),
     )
 
 
@@ -256,20 +266,25 @@ def in_housings(body: LinearBody, housings: Mapping[str, ArrayLike]) -> LinearBo
     )
 
 
-def applied(body: Condensed) -> Floats:
-    """(6 n, 10) forces and moments at the points of a body, of the unit loads of `response.LOADS`.
+def applied(body: Condensed, load_points: Sequence[str] = ()) -> Floats:
+    """Forces and moments at the points of a body, of the unit loads of `response.scene_loads`.
 
     Parameters
     ----------
     body : Condensed
         With the points "hub" and "gearbox".
+    load_points : Sequence[str]
+        Other points where loads enter.
 
     Returns
     -------
     loads : Floats
-        (6 n, 10) [N, N m].
+        (6 n, 10 + 6 m) [N, N m].
     """
-    F = np.zeros((len(body.stiffness), len(LOADS)))
+    F = np.zeros((len(body.stiffness), len(LOADS) + 6 * len(load_points)))
+    for k, name in enumerate(load_points):
+        first = len(LOADS) + 6 * k
+        F[body.rows(name), first : first + 6] = np.eye(6)
     F[body.rows("hub"), :6] = np.eye(6)
     F[:, 6:9] = body.gravity
     F[6 * body.names.index("gearbox") + 2, 9] = -1.0
@@ -277,19 +292,20 @@ def applied(body: Condensed) -> Floats:
 
 
 def factors_of(hub_loads: ArrayLike, gearbox_weight: float = 0.0, gravity: float = 0.0) -> Floats:
-    """Factors of the loads of `response.LOADS`.
+    """Factors of the loads of `response.scene_loads`.
 
     Parameters
     ----------
     hub_loads : array_like
-        (n, 6) or (6,): Fx, Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub.
+        (n, 6) or (6,): Fx, Fy, Fz [N], Mx, My, Mz [N m] on the shaft at the hub; then, six more
+        each, at the load points of a body that has such, with their weights.
     gearbox_weight, gravity : float
         [N] and [m/s^2], both along -z.
 
     Returns
     -------
     factors : Floats
-        (n, 10).
+        (n, 10), or (n, 10 + 6 m) for m load points.
 
     Raises
     ------
@@ -297,18 +313,22 @@ def factors_of(hub_loads: ArrayLike, gearbox_weight: float = 0.0, gravity: float
         The loads have another shape, or one is no number.
     """
     hub = np.atleast_2d(np.asarray(hub_loads, dtype=float))
-    if hub.ndim != 2 or hub.shape[1] != 6:
+    if hub.ndim != 2 or hub.shape[1] == 0 or hub.shape[1] % 6:
         raise InputError(
             f"hub loads have the shape {np.shape(hub_loads)}: give (n, 6), the columns being "
-            "Fx, Fy, Fz, Mx, My, Mz"
+            "Fx, Fy, Fz, Mx, My, Mz, and six more for each load point"
         )
     if not np.isfinite(hub).all():
         case, column = np.argwhere(~np.isfinite(hub))[0]
+        point, component = divmod(int(column), 6)
+        where = f"load point {point}: " if point else ""
         raise InputError(
-            f"{LOADS[column]} of load case {case} is {hub[case, column]}: give finite numbers"
+            f"{where}{LOADS[component].removeprefix('hub.' if point else '')} of load case {case} "
+            f"is {hub[case, column]}: give finite numbers"
         )
-    factors = np.zeros((len(hub), len(LOADS)))
-    factors[:, :6] = hub
+    factors = np.zeros((len(hub), len(LOADS) + hub.shape[1] - 6))
+    factors[:, :6] = hub[:, :6]
+    factors[:, len(LOADS) :] = hub[:, 6:]
     factors[:, 8] = -gravity
     factors[:, 9] = gearbox_weight
     return factors

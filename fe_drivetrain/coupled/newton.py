@@ -17,7 +17,6 @@ from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.common.arrays import Bools, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.coupled.body import LinearBody
-from fe_drivetrain.response.model import LOADS
 
 #: Load cases that are iterated together.
 CHUNK = 4096
@@ -120,7 +119,8 @@ def coupled_equilibrium(
         Bearing by name, one for each of the body's. One that does not resist a motion, as a
         toroidal one along the axis, leaves it to its neighbours.
     factors : Floats
-        (n, 10) of the loads of `response.LOADS`, see `factors_of`.
+        (n, 10) of the loads of `response.LOADS`, six more for each load point of the body, see
+        `factors_of`.
     tolerance : float
         Largest residual over the load.
 
@@ -136,10 +136,12 @@ def coupled_equilibrium(
     """
     given = _in_order(body, bearings)
     p = np.atleast_2d(np.asarray(factors, dtype=float))
-    if p.ndim != 2 or p.shape[1] != len(LOADS) or not np.isfinite(p).all():
+    columns = body.loads.shape[1]
+    if p.ndim != 2 or p.shape[1] != columns or not np.isfinite(p).all():
+        at = f" of loads at hub, {', '.join(body.load_points)}" if body.load_points else ""
         raise InputError(
-            f"factors of loads must be finite numbers of the shape (n, {len(LOADS)}): make them "
-            "with factors_of"
+            f"factors of loads must be finite numbers of the shape (n, {columns}): make them "
+            f"with factors_of{at}"
         )
     arm = max(bearing.arm for bearing in given)
     scale = np.tile([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm], len(given))

@@ -31,24 +31,20 @@ def scene_body(
     Returns
     -------
     body : LinearBody
-        The shaft, its weight, and the gearbox's springs.
+        The shaft, its weight, and the gearbox's springs; with the scene's load points.
 
     Raises
     ------
     InputError
-        The scene has load points or a nose.
+        The scene has a nose.
     """
     if scene.nose is not None:
         raise InputError(
             f"scene {scene.title!r} has a nose, which a shaft on rolling bearings does not: give a "
             "scene with bearing units alone"
         )
-    if scene.load_points:
-        raise InputError(
-            f"scene {scene.title!r} has loads at {', '.join(scene.bands)}, which a shaft on "
-            "rolling bearings does not take: leave load_points out"
-        )
     names = [unit.bearing.name for unit in scene.bearing_units]
     gearbox = as_numbers(scene.gearbox.stiffness)
     supports = {"gearbox": gearbox} if gearbox.any() else {}
-    return in_housings(linear_body(condensed_shaft(scene, level), names, supports), housings or {})
+    body = linear_body(condensed_shaft(scene, level), names, supports, list(scene.bands))
+    return in_housings(body, housings or {})

@@ -93,7 +93,7 @@ def plan_deck(model: Model, loads: Sequence[str]) -> DeckPlan:
             constraints.append(replace(constraint, rows=_widened(constraint.rows, n_dofs)))
     for point in averaged:
         free = [c for c in range(6) if c not in model.held.get(point.name, ())]
-        own = first[point.name] + np.array(free)
+        own = first[point.name] + np.array(free, dtype=np.int64)
         rows = Constraint(f"{point.name}: mean motion of its face", point.motion[free], own)
         constraints.append(_tied(rows, own, n_dofs))
     springs = [s for point, k in model.springs for s in _axial(k, first[point.name])]
@@ -177,9 +177,9 @@ def _extra_nodes(
             if node >= n_mesh and not names[node - n_mesh]:
                 names[node - n_mesh] = f"auxiliary, of {constraint.name}"
                 owners = [
-                    unit.bearing.name
-                    for unit in model.scene.bearing_units
-                    if re.match(rf"{re.escape(unit.bearing.name)}[ .]", constraint.name)
+                    name
+                    for name in model.scene.bearing_names
+                    if re.match(rf"{re.escape(name)}[ .]", constraint.name)
                 ]
                 positions[node - n_mesh] = model.points[f"{owners[0]}.seat"].position
     return [name or "auxiliary, of springs" for name in names], positions

@@ -163,6 +163,8 @@ def read_response(
             arm = model.points[f"{name}.base"].position - centre
             carried = _carried_at(model, plan, f"{name}.base", motions, flat)
             reactions[name] = wrench_transport(arm) @ carried
+    for bearing in model.scene.nose_bearings:
+        reactions[bearing.name] = _carried_at(model, plan, f"{bearing.name}.joint", motions, flat)
     reactions["gearbox"] = _carried_at(model, plan, "gearbox", motions, flat)
     return DeckResponse(U[: len(model.mesh.points)], motions, reactions, base_forces, energy)
 

@@ -3,6 +3,7 @@ from .adviser import Quantity as Quantity
 from .adviser import advise as advise
 from .adviser import banded_assembly as banded_assembly
 from .assembly_bands import LEAST_ORDER as LEAST_ORDER
+from .assembly_bands import reaction_error as reaction_error
 from .bearing_units import UnitBounds as UnitBounds
 from .bearing_units import banded_unit as banded_unit
 from .bearing_units import scene_supports as scene_supports

@@ -221,8 +221,7 @@ def advise(
     tolerance : float
         Allowed error, relative.
     to_the_top : bool
-        Whether to go on to the assembly where a cheaper level is known to be enough. With a nose
-        the ladder ends at the solid shaft.
+        Whether to go on to the assembly where a cheaper level is known to be enough.
     report : callable
         Called with what is being done.
 
@@ -260,7 +259,7 @@ def advise(
     springs: Mapping[str, Floats] = {}
     if not done:
         springs, done = _run_on_springs(scene, quantity, to_the_top, add, report)
-    if not done and scene.nose is None:
+    if not done:
         model, seconds, (band,) = banded_assembly(scene, [quantity], report)
         add(model, seconds, band.half_width, band)
     return _judged(quantity, tolerance, results, springs)
@@ -284,9 +283,9 @@ def _run_on_springs(
     report("housings, faces on average")
     soft = housing_springs(scene, coupling="averaged", cache=UNCACHED)[0]
     previous = None
-    # with a nose there is no assembly above the solid shaft
-    for level in (1, 2, 3) if to_the_top or scene.nose is not None else (1, 2):
-        report(f"level {level}: {TITLES[level]}, housings as springs")
+    on_springs = ", housings as springs" if scene.bearing_units else ""
+    for level in (1, 2, 3) if to_the_top else (1, 2):
+        report(f"level {level}: {TITLES[level]}{on_springs}")
         start = time.perf_counter()
         body = condensed_shaft(scene, level)
         condensing = time.perf_counter() - start

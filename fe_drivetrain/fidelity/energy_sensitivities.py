@@ -39,8 +39,8 @@ def energy_slopes(model: Model, response: Response) -> dict[str, Floats]:
     Returns
     -------
     slopes
-        (10, 10) by dotted key of the scene: moduli of materials, springs of the gearbox and of
-        bedplates one by one, a 6x6 joint and rollers as a whole.
+        (10, 10) by dotted key of the scene: moduli of materials, springs of the gearbox, of
+        bedplates and of bearings on a nose one by one, a 6x6 joint and rollers as a whole.
     """
     found: dict[str, Floats] = {}
 
@@ -49,17 +49,15 @@ def energy_slopes(model: Model, response: Response) -> dict[str, Floats]:
 
     scene = model.scene
     for part, energy in response.strain_energy.items():
-        if part == "shaft":
-            name = scene.shaft.material
-        else:
-            unit = scene.bearing_unit(part.partition(".")[0])
-            name = unit.housing.material if part.endswith(".housing") else unit.bearing.material
-        add(f"materials.{name}.youngs_modulus", energy)
+        add(f"materials.{scene.material_name(part)}.youngs_modulus", energy)
+    on_nose = [bearing.name for bearing in scene.nose_bearings]
     for point, k in model.springs:
         moved = response.motions[point.name]
         name, _, kind = point.name.partition(".")
-        if kind in ("", "base"):
+        if kind in ("", "base") or name in on_nose:
             where = f"bearing_units.{name}.bedplate" if kind else "gearbox.stiffness"
+            if name in on_nose:
+                where = f"nose.bearings.{on_nose.index(name)}.stiffness"
             for c in np.flatnonzero(k.diagonal()).tolist():
                 add(f"{where}.{c}", k[c, c] * np.outer(moved[c], moved[c]))
         else:

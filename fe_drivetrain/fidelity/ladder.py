@@ -245,7 +245,7 @@ def solved_assembly(scene: Scene, cache: Cache | None = None) -> tuple[LevelMode
 
 def level_of_response(scene: Scene, response: Response, seconds: float) -> LevelModel:
     """Level 4 of a scene that was solved, and the wall time that took [s]."""
-    names = (*(unit.bearing.name for unit in scene.bearing_units), "gearbox")
+    names = (*scene.bearing_names, "gearbox")
     reactions = {name: response.reactions[name] for name in names}
     cost = Cost(seconds, response.diagnostics.n_unknowns)
     return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])

@@ -79,37 +79,63 @@ def forecast(model: Model) -> list[Forecast]:
     statics, beam = statics_level(scene), shaft_level(scene, 1)
     start = time.perf_counter()
     body = condensed_shaft(scene, 2)
-    meridian = time.perf_counter() - start
+    meridian = shaft_level(scene, 2, body=body)
+    seconds = time.perf_counter() - start
     units = []
     for unit in scene.bearing_units:
         name = unit.bearing.name
         parts = [name, f"{name}.housing"] if unit.ring_on_housing else [f"{name}.housing"]
         system = _of_parts(model, parts, model.mesh.face_nodes(f"{name}.housing.base"))
         units.append(_predicted(1, TITLES[1], system, _OF_A_POINT))
-    largest = max(units, key=lambda unit: unit.unknowns)
-    on_springs = [
-        Forecast(
-            level,
-            f"{TITLES[level]}, housings as springs between two bounds",
-            largest.unknowns,
-            _BOUNDS * sum(unit.seconds for unit in units) + seconds,
-            largest.bytes,
-            largest.solver,
-            all(unit.fits for unit in units),
-        )
-        for level, seconds in ((1, beam.cost.seconds), (2, meridian))
-    ]
+    if units:
+        on_springs = [
+            _together(
+                level,
+                f"{TITLES[level]}, housings as springs between two bounds",
+                units,
+                own,
+                _BOUNDS,
+            )
+            for level, own in ((1, beam.cost.seconds), (2, seconds))
+        ]
+    else:
+        on_springs = [Forecast(2, meridian.title, meridian.cost.unknowns, seconds, None, "", True)]
     rings = [u.bearing.name for u in scene.bearing_units]
-    shaft = _of_parts(model, ["shaft", *rings], model.mesh.face_nodes("shaft.rear"))
+    solids = {"shaft": ["shaft", *rings]} | ({} if scene.nose is None else {"nose": ["nose"]})
+    alone = [
+        _predicted(
+            3,
+            f"solid {part}",
+            _of_parts(model, parts, model.mesh.face_nodes(f"{part}.rear")),
+            _OF_A_POINT * len(body.names),
+        )
+        for part, parts in solids.items()
+    ]
     elimination = eliminate(model.constraints, model.n_dofs)
     whole = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
     return [
         Forecast(0, statics.title, statics.cost.unknowns, statics.cost.seconds, None, "", True),
         Forecast(1, beam.title, beam.cost.unknowns, beam.cost.seconds, None, "", True),
         *on_springs,
-        _predicted(3, f"{TITLES[3]} alone", shaft, _OF_A_POINT * len(body.names)),
+        _together(3, f"{' and '.join(one.title for one in alone)} alone", alone),
         _predicted(4, TITLES[4], whole, len(model.loads) + 1),
     ]
+
+
+def _together(
+    level: int, title: str, solved: Sequence[Forecast], more: float = 0.0, times: int = 1
+) -> Forecast:
+    """What several systems take, one after the other, each so many times; and more seconds."""
+    largest = max(solved, key=lambda one: one.unknowns)
+    return Forecast(
+        level,
+        title,
+        largest.unknowns,
+        times * sum(one.seconds for one in solved) + more,
+        largest.bytes,
+        largest.solver,
+        all(one.fits for one in solved),
+    )
 
 
 def _predicted(level: int, title: str, system: System, n_rhs: int) -> Forecast:

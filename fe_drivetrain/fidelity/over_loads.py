@@ -5,7 +5,7 @@ Reactions of all levels come from unit loads, so that a million load steps cost 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +50,9 @@ class Levels:
         By how much the mesh may make each unit too stiff, relative.
     mesh_ratio : float
         Mean element size of the coarser assembly over that of the other; NaN where there is none.
+    bounds : Mapping[str, Sequence[str]]
+        Levels below the assembly from cheap to expensive, beginning with their numbers, each with
+        the names of its models: two where bearing units are between two bounds.
     """
 
     stiff: Mapping[str, Floats]
@@ -57,6 +60,7 @@ class Levels:
     models: Mapping[str, LevelModel]
     unit_mesh: Mapping[str, float]
     mesh_ratio: float
+    bounds: Mapping[str, Sequence[str]]
 
     @property
     def coarser(self) -> LevelModel | None:
@@ -98,7 +102,10 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
     InputError
         A level refuses the scene.
     """
-    models = {"beam, rigid housings": shaft_level(scene, 1)}
+    models, names = dict[str, LevelModel](), dict[str, Sequence[str]]()
+    if scene.bearing_units:
+        names["1 beam, rigid housings"] = ["beam, rigid housings"]
+        models["beam, rigid housings"] = shaft_level(scene, 1)
     report("levels 1 and 2 (1 of 4)")
     bounds = {
         unit.bearing.name: unit_bounds(scene, unit.bearing.name) for unit in scene.bearing_units
@@ -108,6 +115,14 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
     for level, word in ((1, "beam"), (2, "meridian")):
         report(f"levels 1 and 2 ({level + 1} of 4)")
         body = condensed_shaft(scene, level)
+        if not scene.bearing_units:  # a nose alone: nothing stands between two bounds
+            names[f"{level} {word}"] = [word]
+            models[word] = shaft_level(scene, level, body=body)
+            continue
+        names[f"{level} {word}, housings as springs"] = [
+            f"{word}, stiff housings",
+            f"{word}, soft housings",
+        ]
         for name, springs in (("stiff", stiff), ("soft", soft)):
             models[f"{word}, {name} housings"] = shaft_level(scene, level, springs, body)
     report("levels 1 and 2 (4 of 4)")
@@ -122,7 +137,7 @@ def levels_of(scene: Scene, response: Response, report: Progress = silent) -> Le
     seconds = found.setup_seconds + found.solve_seconds
     models["assembly"] = level_of_response(scene, response, seconds)
     unit_mesh = {name: found.mesh for name, found in bounds.items()}
-    return Levels(stiff, soft, models, unit_mesh, ratio)
+    return Levels(stiff, soft, models, unit_mesh, ratio, names)
 
 
 def reaction_history(

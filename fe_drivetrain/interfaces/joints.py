@@ -14,13 +14,14 @@ from itertools import pairwise
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
 from fe_drivetrain.mesh.facets import MEANS, face_weights, facet_points
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.scene.bearing_unit import BearingUnit
 from fe_drivetrain.scene.joint_springs import roller_contacts, rollers_of, spring_matrix
+from fe_drivetrain.scene.nose import NoseBearing
 
 SECTORS = 8
 """A mean over a face is the sum of its shares over so many sectors, else each node met each other.
@@ -90,15 +91,8 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> 
         point = constraints.averaged_point(name, on, weights, mesh.points, centre, n_dofs)
         nodes.append(on)
         rows.append(sign * point.motion)
-    both = np.concatenate(nodes)
-    angle = np.arctan2(mesh.points[both, 2], mesh.points[both, 1]) / (2.0 * np.pi) + 0.5
-    sector = np.floor(angle * SECTORS).astype(np.int64) % SECTORS
     shares, point = constraints.shared_motion(
-        name,
-        centre,
-        rows[0] + rows[1],
-        [both[sector == number] for number in range(SECTORS)],
-        first_dof,
+        name, centre, rows[0] + rows[1], _in_sectors(mesh, np.concatenate(nodes)), first_dof
     )
     k = spring_matrix(unit)
     rigid = np.flatnonzero(np.isinf(k.diagonal()))
@@ -106,6 +100,49 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> 
     if rigid.size:
         conditions.append(constraints.held(f"{name} held", point, rigid.tolist()))
     return Joint(tuple(conditions), ((point, np.where(np.isinf(k), 0.0, k)),))
+
+
+def nose_joint(
+    bearing: NoseBearing, mesh: Mesh, first_dof: int, n_dofs: int
+) -> tuple[Constraint, ReferencePoint]:
+    """How the shaft moves against its nose at a bearing: the mean motions of the two faces.
+
+    Parameters
+    ----------
+    bearing : NoseBearing
+        The bearing.
+    mesh : Mesh
+        With shaft and nose.
+    first_dof : int
+        First of 6 `SECTORS` degrees of freedom, the sectors' shares of the relative motion.
+    n_dofs : int
+        Of the model.
+
+    Returns
+    -------
+    Constraint
+        What the shares are.
+    ReferencePoint
+        "NAME.joint", for the bearing's springs and holds.
+    """
+    name, centre = f"{bearing.name}.joint", np.array([bearing.x, 0.0, 0.0])
+    motion, nodes = sparse.csr_array((6, n_dofs)), []
+    for part, sign in (("shaft", 1.0), ("nose", -1.0)):
+        face = f"{part}.band.{bearing.name}"
+        on = mesh.face_nodes(face)
+        weights = face_weights(mesh.points, mesh.faces[face], len(mesh.points), MEANS)[on]
+        point = constraints.averaged_point(name, on, weights, mesh.points, centre, n_dofs)
+        motion = motion + sign * point.motion
+        nodes.append(on)
+    sectors = _in_sectors(mesh, np.concatenate(nodes))
+    return constraints.shared_motion(name, centre, motion.tocsr(), sectors, first_dof)
+
+
+def _in_sectors(mesh: Mesh, nodes: Ints) -> list[Ints]:
+    """Nodes by their sector round the shaft."""
+    angle = np.arctan2(mesh.points[nodes, 2], mesh.points[nodes, 1]) / (2.0 * np.pi) + 0.5
+    sector = np.floor(angle * SECTORS).astype(np.int64) % SECTORS
+    return [nodes[sector == number] for number in range(SECTORS)]
 
 
 def roller_joint(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> Joint:

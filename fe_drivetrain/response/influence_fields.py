@@ -29,7 +29,8 @@ def reaction_influences(
     model : Model
         The model.
     name : str
-        Of a bearing, whose housing or bedplate stands on that ground; or "gearbox".
+        Of a bearing, whose housing or bedplate stands on that ground, or which moves so against a
+        nose; or "gearbox".
     components : Sequence[int]
         Which motions: 0 to 2 displacements [m], 3 to 5 rotations about the bearing's centre [rad].
     method : str
@@ -44,7 +45,9 @@ def reaction_influences(
     chosen = np.eye(6)[:, list(components)]
     loads = np.zeros((model.n_dofs, chosen.shape[1]))
     moved: dict[str, Floats] = {}
+    on_nose = {bearing.name for bearing in model.scene.nose_bearings}
     stands_on = "gearbox" if name == "gearbox" else f"{name}.base"
+    stands_on = f"{name}.joint" if name in on_nose else stands_on
     if stands_on in model.points:
         point = model.points[stands_on]
         centre = model.points["gearbox" if name == "gearbox" else f"{name}.seat"].position

@@ -10,14 +10,16 @@ from scipy.spatial import cKDTree
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.geometry import Band
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
-from fe_drivetrain.interfaces.joints import SECTORS, roller_joint, spring_joint
+from fe_drivetrain.interfaces.joints import SECTORS, nose_joint, roller_joint, spring_joint
 from fe_drivetrain.interfaces.mechanisms import refuse_mechanisms, warn_of_weak_restraints
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.checks import refuse_unsound
 from fe_drivetrain.mesh.facets import MEANS, face_weights, volume_weights
 from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.mesh.side_by_side import beside, renamed
 from fe_drivetrain.operator.incompressible import assemble_unlocked, warn_of_averaging
 from fe_drivetrain.scene.bearing_unit import BearingUnit, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
@@ -60,8 +62,9 @@ class Model:
     points : Mapping[str, ReferencePoint]
         Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing, the load points by
         their names; where there are
-        such, "NAME.base" (on a bedplate that gives), and "NAME.joint" or "NAME.roller K", whose
-        motion is that of the bearing against its housing.
+        such, "NAME.base" (on a bedplate that gives), "NAME.joint" or "NAME.roller K", whose
+        motion is that of the bearing against its housing, or of the shaft against its nose; and
+        "nose.root", the nose's rear face.
     constraints : tuple[Constraint, ...]
         All interfaces, couplings and supports.
     springs : tuple[tuple[ReferencePoint, Floats], ...]
@@ -136,22 +139,24 @@ def mesh_scene(scene: Scene) -> Mesh:
     Raises
     ------
     InputError
-        The scene has a nose, whose bearings have no solids.
+        A mesh size is too large for a wall.
     """
-    if scene.nose is not None:
-        raise InputError(
-            f"scene {scene.title!r} has a nose, which the assembly of solids (level 4) does not: "
-            "use levels 0 to 3 (fe-drivetrain advise, uncertainty --level 2, export --level 3), "
-            "which have shaft and nose"
-        )
-    return cached_mesh(
+    mesh = cached_mesh(
         scene.shaft,
         [unit.bearing for unit in scene.bearing_units],
         {unit.bearing.name: unit.housing for unit in scene.bearing_units},
         scene.mesh,
         frozenset(u.bearing.name for u in scene.bearing_units if u.interface == "bonded"),
-        bands=scene.bands,
+        bands=scene.seats,
     )
+    if scene.nose is None:
+        return mesh
+    bands = {b.name: Band(*b.span) for b in scene.nose_bearings}
+    try:
+        nose = cached_mesh(scene.nose.body, [], {}, scene.mesh, frozenset(), bands=bands)
+    except InputError as error:
+        raise InputError(f"nose, which is meshed as a shaft: {error}") from error
+    return beside(mesh, renamed(nose, "shaft", "nose"))
 
 
 def build_model(scene: Scene, mesh: Mesh) -> Model:
@@ -181,6 +186,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             extra[f"{name}.joint"] = 6 * SECTORS
         if unit.bedplate is not None:
             extra[f"{name}.base"] = 6
+    extra |= {f"{bearing.name}.joint": 6 * SECTORS for bearing in scene.nose_bearings}
     ends = 3 * n + np.cumsum([0, *extra.values()])
     first_dof = dict(zip(extra, ends[:-1].tolist(), strict=True))
     n_dofs = int(ends[-1])
@@ -232,6 +238,18 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             under = centre - [0.0, 0.0, unit.housing.centre_height]
             points[f"{name}.base"] = couple(f"{name}.base", base, under)
             _stand(points[f"{name}.base"], unit.bedplate, conditions, springs, held)
+    for bearing in scene.nose_bearings:
+        name = bearing.name
+        at = np.array([bearing.x, 0.0, 0.0])
+        points[f"{name}.seat"] = couple(f"{name}.seat", f"shaft.band.{name}", at)
+        shares, between = nose_joint(bearing, mesh, first_dof[f"{name}.joint"], n_dofs)
+        conditions.append(shares)
+        points[between.name] = between
+        _stand(between, bearing.stiffness, conditions, springs, held)
+    if scene.nose is not None:
+        root = np.array([scene.nose.body.rear, 0.0, 0.0])
+        points["nose.root"] = couple("nose.root", "nose.rear", root)
+        _stand(points["nose.root"], ("rigid",) * 6, conditions, springs, held)
     _stand(points["gearbox"], scene.gearbox.stiffness, conditions, springs, held)
 
     refuse_mechanisms(mesh, conditions, springs)
@@ -266,7 +284,7 @@ def _stand(
     springs: list[tuple[ReferencePoint, Floats]],
     held: dict[str, Sequence[int]],
 ) -> None:
-    """Put a reference point on the ground."""
+    """Put a reference point on the ground, or hold a relative motion."""
     numbers = as_numbers(stiffness)
     rigid = np.flatnonzero(np.isinf(numbers)).tolist()
     if rigid:
@@ -279,7 +297,9 @@ def _stand(
 
 def needed_faces(scene: Scene) -> list[str]:
     """Names of the faces of a mesh that the loads, supports and interfaces of a scene need."""
-    names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.bands)]
+    names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.seats)]
+    if scene.nose is not None:
+        names += ["nose.rear", *(f"nose.band.{bearing.name}" for bearing in scene.nose_bearings)]
     for unit in scene.bearing_units:
         name = unit.bearing.name
         names += [f"shaft.seat.{name}", f"{name}.housing.base"]

@@ -25,9 +25,9 @@ class Response:
     ----------
     reactions : Mapping[str, Floats]
         (6, n) by name: what the drivetrain puts on its surroundings or on the next part.
-        "NAME" (housing base, moments about the bearing's centre) for each bearing, "gearbox"
-        (springs and torque reaction), and the interfaces "NAME.seat" (shaft on bearing) and
-        "NAME.outer" (bearing on housing).
+        "NAME" (housing base, or nose, moments about the bearing's centre) for each bearing,
+        "gearbox" (springs and torque reaction), and, of bearing units, the interfaces "NAME.seat"
+        (shaft on bearing) and "NAME.outer" (bearing on housing).
     positions : Mapping[str, Floats]
         (3,) by the same names: the point that the moments are about [m]; and "hub" and the load
         points.
@@ -204,12 +204,14 @@ def _reactions(
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             nodes = mesh.face_nodes(face)
             reactions[key] = resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
+    for bearing in model.scene.nose_bearings:
+        reactions[bearing.name] = _carried_at(model, f"{bearing.name}.joint", multipliers, U)
     reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)
     return reactions
 
 
 def _carried_at(model: Model, point: str, multipliers: Mapping[str, Floats], U: Floats) -> Floats:
-    """(6, n_loads) what springs to ground and rigid holds carry at a reference point."""
+    """(6, n_loads) what springs and rigid holds carry at a reference point."""
     total = np.zeros((6, U.shape[1]))
     for at, k in model.springs:
         if at.name == point:
@@ -222,14 +224,17 @@ def _carried_at(model: Model, point: str, multipliers: Mapping[str, Floats], U: 
 def _equilibrium_error(
     model: Model, reactions: Mapping[str, Floats], positions: Mapping[str, Floats]
 ) -> float:
-    """Largest component of (applied - reacted) about the origin, relative to each load's size."""
+    """Largest component of (applied - reacted) about the origin, relative to each load's size.
+
+    A nose is no part of the body that is in balance: it is one of its supports.
+    """
     mesh = model.mesh
     applied = np.zeros((6, len(model.loads)))
     applied[:, :6] = wrench_transport(model.points["hub"].position)
     for k, name in enumerate(model.scene.bands):
         first = len(LOADS) + 6 * k
         applied[:, first : first + 6] = wrench_transport(model.points[name].position)
-    mass = model.mass
+    mass = model.mass - model.part_mass.get("nose", 0.0)
     first_moment = mass @ mesh.points
     for axis in range(3):
         e = np.eye(3)[axis]
@@ -239,6 +244,6 @@ def _equilibrium_error(
     weight[2] = -1.0
     applied[:, [9]] = wrench_transport(model.points["gearbox"].position) @ weight
     reacted = np.zeros_like(applied)
-    for name in (*(unit.bearing.name for unit in model.scene.bearing_units), "gearbox"):
+    for name in (*model.scene.bearing_names, "gearbox"):
         reacted += wrench_transport(positions[name]) @ reactions[name]
     return float((np.abs(applied - reacted).max(axis=0) / np.abs(applied).max(axis=0)).max())

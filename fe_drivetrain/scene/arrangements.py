@@ -50,6 +50,9 @@ ARRANGEMENTS: Mapping[str, Arrangement] = MappingProxyType(
         "direct-drive": Arrangement(
             "a wide tube on two bearings without a gearbox", "iea_15mw_main_shaft"
         ),
+        "nose": Arrangement(
+            "a direct drive whose shaft turns round a standing nose", "iea_15mw_shaft_on_nose"
+        ),
     }
 )
 """The arrangements by name; the first one is the default."""

@@ -193,14 +193,17 @@ class Scene(Keys):
 
     def material_of(self, part: str) -> Material:
         """The material of a part, by the part's name in the mesh."""
-        known = known_materials(self.materials)
+        return known_materials(self.materials)[self.material_name(part)]
+
+    def material_name(self, part: str) -> str:
+        """The name of a part's material, by the part's name in the mesh."""
         if part == "shaft":
-            return known[self.shaft.material]
+            return self.shaft.material
         if part == "nose" and self.nose is not None:
-            return known[self.nose.body.material]
+            return self.nose.body.material
         name, _, housing = part.partition(".")
         unit = self.bearing_unit(name)
-        return known[unit.housing.material if housing else unit.bearing.material]
+        return unit.housing.material if housing else unit.bearing.material
 
     @property
     def bands(self) -> dict[str, Band]:
@@ -254,4 +257,6 @@ def coarser_scene(scene: Scene, factor: float, elements_per_turn: int) -> Scene:
         [unit.bearing for unit in units],
         {unit.bearing.name: unit.housing for unit in units},
     )
+    if scene.nose is not None:
+        sizes = within_walls(sizes, scene.nose.body, [], {})
     return scene.model_copy(update={"mesh": sizes})

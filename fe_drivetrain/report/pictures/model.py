@@ -30,10 +30,11 @@ from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, STRIP, View
 if TYPE_CHECKING:
     from fe_drivetrain.response.model import Model
 
-PARTS = {"shaft": "#9fb4c7", "bearing": "#e8a33d", "housing": "#6ba292"}
+PARTS = {"shaft": "#9fb4c7", "bearing": "#e8a33d", "housing": "#6ba292", "nose": "#b3bf72"}
 """Colour of each kind of part."""
 
 _SYMBOL = 0.11  # length of an arrow, of the length of the shaft
+_STROKES = 5  # for the springs of a bearing that has no solid
 _INTERFACES = {
     "bonded": "bonded",
     "spring": "6x6 spring",
@@ -69,6 +70,7 @@ def picture_of_model(model: Model, path: Path) -> None:
         rear + np.array([[0, 0, radius + 1.2 * a]]),
     ]
     between = [unit.bearing.x for unit in scene.bearing_units]
+    between += [bearing.x for bearing in scene.nose_bearings]
     between += [point.x for point in scene.load_points]
     stations = [hub[0], *sorted(between), rear[0]]
     under = _line_under(mesh, stations)
@@ -98,7 +100,9 @@ def picture_of_model(model: Model, path: Path) -> None:
 
 
 def _kind(part: str) -> str:
-    return "shaft" if part == "shaft" else "housing" if part.endswith(".housing") else "bearing"
+    if part in ("shaft", "nose"):
+        return part
+    return "housing" if part.endswith(".housing") else "bearing"
 
 
 def _line_under(mesh: Mesh, stations: Sequence[float]) -> Floats:
@@ -149,6 +153,16 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
     for point in model.scene.load_points:
         top = [point.x, 0.0, model.scene.shaft.outer_radius(point.x)]
         sheet.note(top, point.name.replace("_", " "), (40, 110))
+    for bearing in model.scene.nose_bearings:
+        # between the two faces, where the cut is upright
+        faces = (f"shaft.band.{bearing.name}", f"nose.band.{bearing.name}")
+        top, bottom = (mesh.points[mesh.face_nodes(face)][:, 2].max() for face in faces)
+        for x in np.linspace(*bearing.span, _STROKES):
+            sheet.line(sheet.view.project([[x, 0.0, top], [x, 0.0, bottom]]), SPRING, 2.5)
+        height = (top + bottom) / 2
+        sheet.note([bearing.x, 0.0, height], bearing.name.replace("_", " "), (-60, 190))
+    if model.scene.nose is not None:
+        sheet.note(model.points["nose.root"].position, "nose, held", (60, -150), GROUND)
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         # the upright face of the cut shows the bearing at y = 0, between seat and outer face
@@ -172,14 +186,17 @@ def _legend(model: Model) -> list[list[tuple[str, str | None]]]:
     materials: dict[tuple[str, str], None] = {}
     for part in model.mesh.part_names:
         kind = _kind(part)
-        unit = None if kind == "shaft" else scene.bearing_unit(part.partition(".")[0])
-        owner = scene.shaft if unit is None else unit.housing if kind == "housing" else unit.bearing
+        name = scene.material_name(part).replace("_", " ")
         modulus = with_prefix(scene.material_of(part).youngs_modulus, "Pa")
-        materials[kind, f"{kind}: {owner.material.replace('_', ' ')}, E = {modulus}"] = None
+        materials[kind, f"{kind}: {name}, E = {modulus}"] = None
     parts = [(text, PARTS[kind]) for kind, text in materials]
-    interfaces = [
+    interfaces: list[tuple[str, str | None]] = [
         (f"{unit.bearing.name.replace('_', ' ')}: {_INTERFACES[unit.interface]}", None)
         for unit in scene.bearing_units
+    ]
+    interfaces += [
+        (f"{bearing.name.replace('_', ' ')}: springs, shaft on nose", SPRING)
+        for bearing in scene.nose_bearings
     ]
     gearbox: list[tuple[str, str | None]] = []
     for name, k in zip(("x", "y", "z", "rx", "ry", "rz"), scene.gearbox.stiffness, strict=True):
