@@ -183,7 +183,7 @@ class RollerRing:
 
         def outwards(x: Floats, _: Floats) -> Floats:
             radial = np.column_stack([0 * x[:, 0], x[:, 1], x[:, 2]])
-            return radial / (np.hypot(x[:, 1], x[:, 2])[:, None] * 4 * area)
+            return np.asarray(radial / (np.hypot(x[:, 1], x[:, 2])[:, None] * 4 * area))
 
         def push(at: float) -> Floats:
             centres = block.points[block.faces["x0"]].mean(axis=1)
