@@ -212,13 +212,36 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
     InputError
         No such entry, or values that do not fit.
     """
+    return catalogue_entry(name, *more, **changes).bearing(name)
+
+
+def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
+    """What a catalogue says of a bearing; see `catalogue_bearing`.
+
+    Parameters
+    ----------
+    name : str
+        Of the entry.
+    *more : str or Path
+        Catalogue files beside the package's.
+    **changes : Any
+        Fields of `Entry`.
+
+    Returns
+    -------
+    entry : Entry
+        With its changes, checked.
+
+    Raises
+    ------
+    InputError
+        No such entry, or values that do not fit.
+    """
     entries = read_catalogue(*more)
     if name not in entries:
         raise InputError(f"bearing {name!r} is in no catalogue: use one of {', '.join(entries)}")
     entry = entries[name]
-    if changes:
-        entry = validated(Entry, entry.model_dump() | changes, f"bearing {name}")
-    return entry.bearing(name)
+    return validated(Entry, entry.model_dump() | changes, f"bearing {name}") if changes else entry
 
 
 @cache

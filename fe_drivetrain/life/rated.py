@@ -15,12 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
+from fe_drivetrain.bearing.catalogue import catalogue_entry
 from fe_drivetrain.bearing.geometry import BallRow, Bearing
 from fe_drivetrain.bearing.rating import ball_dynamic_rating, ratings
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.reading import validated
 
 BALL_RATIO = (0.172, 0.345, 0.689, 1.03, 1.38, 2.07, 3.45, 5.17, 6.89)
 """f_0 F_a / C_0 of deep grooves, for e and Y below (ISO 281, table 3, and catalogues)."""
@@ -292,12 +291,7 @@ def rated_from_catalogue(name: str, *more: str | Path, **changes: Any) -> RatedB
     InputError
         No such entry, or values that do not fit.
     """
-    entries = read_catalogue(*more)
-    if name not in entries:
-        raise InputError(f"bearing {name!r} is in no catalogue: use one of {', '.join(entries)}")
-    entry = entries[name]
-    if changes:
-        entry = validated(Entry, entry.model_dump() | changes, f"bearing {name}")
+    entry = catalogue_entry(name, *more, **changes)
     printed = entry.ratings.model_dump() if entry.ratings else {}
     b_m = 1.15 if entry.kind == "spherical_roller" else 1.1
     rated = rated_bearing(
