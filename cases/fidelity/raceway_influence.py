@@ -282,7 +282,8 @@ def _check_rigid_rings(page: Page, compliance: Floats, pressed: dict[str, Presse
     page.vanishes(
         "rollers' forces less the load, relative, the worst",
         max(
-            np.abs(one.forces @ np.sin(ANGLES)) / LOAD + abs(one.forces @ np.cos(ANGLES) / LOAD - 1)
+            float(abs(one.forces @ np.sin(ANGLES)) / LOAD)
+            + float(abs(one.forces @ np.cos(ANGLES) / LOAD - 1))
             for one in pressed.values()
         ),
         within=1e-9,

@@ -82,7 +82,7 @@ class RollerRing:
     @property
     def angles(self) -> Floats:
         """(rollers,) from the load [rad]."""
-        return 2 * np.pi / self.rollers * np.arange(self.rollers)
+        return 2 * np.pi / self.rollers * np.arange(self.rollers, dtype=np.float64)
 
     @property
     def half(self) -> float:
