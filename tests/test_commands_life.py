@@ -1,6 +1,7 @@
 """``life`` on anyone's scene and files: lives of known histories, mistakes, stop and go on."""
 
 import csv
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from fe_drivetrain.life.roller_damage import LifeRules, step_lives
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import library_scene
 
+REAL_FOLDER = Path(os.environ.get("FE_DRIVETRAIN_OPENFAST", "no folder is given"))
 SCENE = "main_bearing_bonded"
 CHOICES = Choices({}, (), True, "rollers", "rigid", True)
 LOADS = {8.0: (2e5, 0.0, -3e5, 9e5, -1e5, 0.0), 14.0: (1e5, 2e4, -3e5, 9e5, 6e5, 2e5)}
@@ -173,6 +175,9 @@ def test_what_files_and_scenes_do_not_say_is_asked_for(
     status, _, error = invoke(*words, SCENE)
     assert status == 2
     assert "--rotor-speed" in error
+    status, _, error = invoke("life", SCENE, "--loads", str(tmp_path / "none.outb"))
+    assert status == 2
+    assert "none.outb" in error
     status, _, error = invoke(*words, SCENE, "--rotor-speed", "12", "--site", "II")
     assert status == 2
     assert "two winds" in error
@@ -180,6 +185,63 @@ def test_what_files_and_scenes_do_not_say_is_asked_for(
     assert status == 2
     assert "--bearing front=ENTRY" in error
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(
+    not REAL_FOLDER.is_dir(), reason="FE_DRIVETRAIN_OPENFAST names no folder with real files"
+)
+def test_real_files_have_lives_that_fall_with_the_load_on_the_row(
+    invoke: Callable[..., Result], tmp_path: Path
+) -> None:
+    status, printed, error = invoke(
+        *("life", "iea_15mw_main_shaft", "--loads", str(REAL_FOLDER / "nrel5mw_*.outb")),
+        *("--site", "class-II", "--every", "200", "--out", str(tmp_path / "out")),
+    )
+    assert status == 0, printed + error
+    files = rows_of(tmp_path / "out" / "files.csv")
+    assert [round(float(row["mean wind [m/s]"])) for row in files[:2]] == [11, 17]
+    places = rows_of(tmp_path / "out" / "places.csv")
+    # the downwind bearing carries down: damage of its standing ring is below, not on top
+    below = [r for r in places if r["bearing"] == "downwind" and float(r["place [deg]"]) > 180]
+    above = [r for r in places if r["bearing"] == "downwind" and float(r["place [deg]"]) < 180]
+    of_outer = [
+        sum(float(r["outer ring, damage by L10r"]) for r in part) for part in (below, above)
+    ]
+    assert of_outer[0] > 100 * of_outer[1]
+
+
+OWN = """
+big_ball:
+  title: A large deep-groove ball bearing
+  kind: ball
+  elements: 20
+  element_diameter: 0.06
+  pitch_diameter: 0.6
+  contact_angle: 0
+  ratings: {C: 8.0e+5, C0: 1.2e+6, Cu: 4.0e+4}
+  sources:
+    elements: assumed
+    element_diameter: assumed
+    pitch_diameter: assumed
+    contact_angle: a deep groove
+    ratings: assumed
+"""
+
+
+def test_balls_of_an_own_catalogue_in_oil(invoke: Callable[..., Result], histories: Path) -> None:
+    (histories / "own.yaml").write_text(OWN)
+    out = histories.parent / "out"
+    status, printed, error = invoke(
+        *("life", SCENE, "--loads", str(histories / "v14.csv"), "--out", str(out)),
+        *("--catalogue", str(histories / "own.yaml"), "--bearing", "main_bearing=big_ball"),
+        *("--lubricant", "100,11", "--supply", "oil bath", "--cleanliness=-/17/14"),
+    )
+    assert status == 0, printed + error
+    (lives,) = rows_of(out / "lives.csv")
+    ratio = float(lives["C [kN]"]) / float(lives["P_ref [kN]"])
+    assert ratio**3 == pytest.approx(float(lives["L10r [Mrev]"]), rel=1e-6)
+    assert len(rows_of(out / "places.csv")) == 20
+    assert not (out / "laminae.csv").exists()
 
 
 def test_ends_of_rollers_are_stated_with_profile_and_riser() -> None:

@@ -271,3 +271,13 @@ def test_histories_count_by_the_time_they_last(rng: np.random.Generator) -> None
     np.testing.assert_allclose(statistics[0][:, 1], (coarse.mean(axis=0) + other.mean(axis=0)) / 2)
     equal = weighted_statistics(coarse, sample_weights([100], [0.1]))
     np.testing.assert_allclose(equal[:, 3], coarse.std(axis=0))
+
+
+def test_a_repeated_history_that_ends_where_it_began_has_no_cycle_of_rounding() -> None:
+    rng = np.random.default_rng(2)
+    for _ in range(50):
+        signal = np.concatenate([[0.8], rng.normal(0.8, 0.1, 40), [0.8]])
+        found = rainflow_cycles(signal, "repeated")
+        assert found.ranges.min() > 1e-9
+        turning = reversals(np.append(signal[:-1], signal))
+        assert found.counts.sum() == len(turning) // 2 // 2

@@ -17,6 +17,7 @@ from fe_drivetrain.hub_loads.surrogate import (
     HubLoadSet,
     hub_load_set,
     hub_loads,
+    operating_grid,
     surrogate_grid,
 )
 from fe_drivetrain.hub_loads.wind import turbulence_sigma
@@ -43,6 +44,23 @@ def test_grid_is_that_of_the_thesis() -> None:
     assert len(groups) == 4 * 3 * 2
     assert set(groups.values()) == {6}
     assert len({c.name for c in grid}) == 144
+
+
+def test_grid_of_the_operating_range_is_that_of_the_thesis() -> None:
+    grid = operating_grid()
+    assert len(grid) == len(set(grid)) == 330
+    assert {c.wind_speed for c in grid} == set(range(4, 25, 2))
+    groups = Counter((c.turbulence, c.shear) for c in grid)
+    assert set(groups.values()) == {66}
+    assert sorted(groups) == [
+        ("high", 0.2),
+        ("low", 0.2),
+        ("medium", 0.1),
+        ("medium", 0.2),
+        ("medium", 0.4),
+    ]
+    speeds = [c.wind_speed for c in grid]
+    assert speeds == sorted(speeds)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from fe_drivetrain.report.typeset import typeset
         ("kg m^2", "kg m²"),
         ("N/mm^1.5", "N/mm¹·⁵"),
         ("x^-1", "x⁻¹"),
+        ("5% of it", "5\u00a0% of it"),
         ("x^(1/2)", "x^(1/2)"),
         ("converged to 1e-8", "converged to 10⁻⁸"),
         ("5.4e-07 of it", "5.4\u00a0×\u00a010⁻⁷ of it"),
@@ -22,7 +23,14 @@ def test_powers_and_signs_are_printed_as_such(text: str, printed: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["--set gearbox.weight=4e5", "--set x=-2", "2026-11-23 03:01 UTC", "Eq 4.36-4.37", "vm25_1e6"],
+    [
+        "--set gearbox.weight=4e5",
+        "--set x=-2",
+        "2026-11-23 03:01 UTC",
+        "Eq 4.36-4.37",
+        "vm25_1e6",
+        "#009e73",
+    ],
 )
 def test_commands_dates_ranges_and_names_stay(text: str) -> None:
     assert typeset(text) == text

@@ -1,6 +1,7 @@
 """The surrogate of hub loads beside aeroelastic simulations of the same turbines and winds."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,26 +10,41 @@ import yaml
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.commands import Options, digest, features
-from fe_drivetrain.histories import differences
+from fe_drivetrain.histories import Difference, differences
 from fe_drivetrain.hub_loads import (
+    RIGID,
     Condition,
+    Physics,
     Recorded,
     Rotor,
+    Tuning,
+    designed_controller,
     hub_loads,
     read_recorded,
     recorded_files,
+    similar_turbine,
+    turbine_histories,
 )
 from fe_drivetrain.suite import Page, Record, Run
 
 OPTIONS = Options({}, 0.0, (3.0, 4.0, 10.0), "half", 0.0, None)
 TABLE = Path(__file__).with_name("openfast.yaml")
+#: Models of the turbine, each with what the one before has.
+MODELS = {
+    "default: speed and pitch of the mean wind": None,
+    "controller, and a wake with delays": RIGID,
+    "and blade modes": replace(RIGID, blades=True),
+    "and tower modes": replace(RIGID, blades=True, tower=True),
+    "and torsion of the shaft": replace(RIGID, blades=True, tower=True, torsion=True),
+    "all, with tower shadow": Physics(),
+}
+DEFAULT, *_, ALL = MODELS
 MISSING = (
-    ("Mx at 3P and 6P", "the rotor turns at one speed: its inertia takes no aerodynamic torque"),
-    ("Mx and Fx, slow", "no controller: gusts pass at the pitch and speed of the mean wind"),
-    ("Fy and Fz, cycles and 6P", "tower and blades are rigid, so that no inertia forces act"),
-    ("Fx at 1P", "no tower that moves fore and aft near it, and no imbalance"),
-    ("My, mean", "no cone of the blades, whose weight acts upwind of the hub"),
-    ("My and Mz, 3P and more", "no blades that yield, and no individual pitch"),
+    ("all loads, 9P", "the second flapwise mode, near 2 Hz for the 5 MW turbine"),
+    ("Fy and Fz, cycles", "wind across and up; unsteady aerofoils, by which edge modes damp less"),
+    ("Mx and Fx, 1P and cycles", "the very controller: ROSCO with peak shaving and set points"),
+    ("means of My and Mz, Fx", "the very aerofoils, chord and twist; wake skew"),
+    ("2.8 MW: all", "its own structure: it is the 5 MW turbine brought to its size"),
 )
 
 
@@ -43,39 +59,111 @@ def run(run: Run, page: Page) -> None:
     real = read_again(run, page, given) if "loads" in run.settings else stored(given)
     names = list(real)[: 1 if run.quick else None]
     seeds = range(1, 4 if run.quick else 7)
-    rows: list[Record] = []
+    chosen = (DEFAULT, ALL) if run.quick else tuple(MODELS)
+    counts: list[Record] = []
+    of_model: dict[tuple[str, str], list[dict[str, float]]] = {}
     for name in names:
         row = given["histories"][name]
-        rotor = Rotor(**given["rotors"][row["rotor"]])
-        with run.step(f"surrogate of {name}"):
-            made = [surrogate(rotor, row["wind"], seed) for seed in seeds]
-        rows += beside(page, name, real[name], made)
-        halves = differences(made[::2], made[1::2])
-        page.at_most(
-            f"{name}: share of quantities in which seeds differ from other seeds",
-            sum(d.beyond for d in halves) / len(halves),
-            0.1,
-            why="1 % by chance where quantities are independent; they come in families of ten",
-            source="both sets are one surrogate",
+        for model in chosen:
+            with run.step(f"{name}: {model}"):
+                made = surrogates(given, row, MODELS[model], seeds)
+            found = differences([real[name]], made)
+            counts.append(
+                {
+                    "history": name,
+                    "model": model,
+                    **{family: beyond(found, starts) for family, starts in FAMILIES.items()},
+                    "all": beyond(found, ("",)),
+                    "of": len(found),
+                }
+            )
+            of_model[name, model] = made
+    for name in names:
+        before, after = (
+            next(c for c in counts if (c["history"], c["model"]) == (name, model))
+            for model in (DEFAULT, ALL)
         )
-    page.section("What the surrogate leaves out")
+        most = max(FAMILIES, key=lambda family: int(after[family]))
+        page.answer(
+            f"{name}: {before['all']} of {before['of']} quantities of OpenFAST are beyond what "
+            f"{len(seeds)} seeds of the default surrogate scatter, and {after['all']} with "
+            "controller, blade and tower modes, torsion and tower shadow, most of them "
+            f"({after[most]}) of {most}."
+        )
+    page.section("What each part of the turbine adds")
+    page.table(
+        f"Quantities of OpenFAST beyond what {len(seeds)} seeds of a model scatter, by load; each "
+        "model has what stands above it, too",
+        counts,
+    )
+    page.data("counts", counts)
+    page.text(
+        "A model that scatters less from seed to seed has more beyond its scatter at an equal "
+        "error. The turbine is the NREL 5 MW by its public definition, but for its aerofoils, "
+        "chord and twist, which are those of the default rotor, and the 2.8 MW turbine is similar "
+        "to it, on a tower that stands, as its file says. The controller is that of the 5 MW "
+        "turbine's definition, its gains made for this rotor, with constant torque above rated "
+        "wind (ROSCO's default). Nothing was fitted to the files."
+    )
+    rows: list[Record] = []
+    for (name, model), made in of_model.items():
+        if model in (DEFAULT, ALL):
+            rows += beside(page, name, model, real[name], made)
+            halves = differences(made[::2], made[1::2])
+            page.at_most(
+                f"{name}, {model}: share of quantities in which seeds differ from other seeds",
+                sum(d.beyond for d in halves) / len(halves),
+                0.1,
+                why="1 % by chance where quantities are independent; they come in families of ten",
+                source="both sets are one surrogate",
+            )
+    page.section("What is still left out")
     page.table("Where it may show; no reason was isolated", MISSING, ["quantity", "left out"])
     page.data("differences", rows)
 
 
-def surrogate(rotor: Rotor, wind: float, seed: int) -> dict[str, float]:
-    """Quantities of one made history of ten minutes at 20 Hz."""
-    history = hub_loads(Condition(wind, "medium", 0.2, seed), rotor=rotor)
-    speed = np.full(len(history), rotor.rotor_speed(wind))
-    return features(digest(Recorded(history, speed), OPTIONS), OPTIONS.slopes)
+FAMILIES = {
+    "Fx": ("Fx",),
+    "Fy, Fz, radial": ("Fy", "Fz", "radial"),
+    "Mx": ("Mx",),
+    "My, Mz, bending": ("My", "Mz", "bending"),
+    "loops": ("loops",),
+}
+
+
+def beyond(found: Sequence[Difference], starts: tuple[str, ...]) -> int:
+    """How many of a family differ."""
+    return sum(d.beyond and d.quantity.startswith(starts) for d in found)
+
+
+def surrogates(
+    given: Mapping[str, Any], row: Mapping[str, Any], physics: Physics | None, seeds: Sequence[int]
+) -> list[dict[str, float]]:
+    """Quantities of made histories of ten minutes at 20 Hz."""
+    rotor = Rotor(**given["rotors"][row["rotor"]])
+    conditions = [Condition(row["wind"], "medium", 0.2, seed) for seed in seeds]
+    if physics is None:
+        speed = rotor.rotor_speed(row["wind"])
+        histories = [hub_loads(condition, rotor=rotor) for condition in conditions]
+        recorded = [Recorded(h, np.full(len(h), speed)) for h in histories]
+    else:
+        turbine = similar_turbine(rotor)
+        controller = designed_controller(turbine, Tuning(constant_power=False))
+        moves = replace(physics, tower=physics.tower and row["rotor"] not in given["stands"])
+        recorded = [h.recorded for h in turbine_histories(conditions, turbine, controller, moves)]
+    return [features(digest(one, OPTIONS), OPTIONS.slopes) for one in recorded]
 
 
 def beside(
-    page: Page, name: str, real: Mapping[str, float], made: Sequence[Mapping[str, float]]
+    page: Page,
+    name: str,
+    model: str,
+    real: Mapping[str, float],
+    made: Sequence[Mapping[str, float]],
 ) -> list[Record]:
-    """Table and answer of one turbine and wind; every quantity."""
+    """Tables and answer of one turbine, wind and model; every quantity."""
     found = differences([real], made)
-    beyond = [d for d in found if d.beyond]
+    differing = [d for d in found if d.beyond]
     rows: list[Record] = [
         {
             "quantity": d.quantity,
@@ -87,11 +175,7 @@ def beside(
         }
         for d in found
     ]
-    page.answer(
-        f"{name}: {len(beyond)} of {len(found)} quantities of OpenFAST are beyond what "
-        f"{len(made)} seeds of the surrogate scatter."
-    )
-    page.section(name)
+    page.section(f"{name}: {model}")
     chosen = (
         "My, standard",
         "My, DEL of m = 4",
@@ -110,12 +194,12 @@ def beside(
         "Quantities that load a main bearing, and whether they differ by more than the seeds do",
         [row for row in rows if str(row["quantity"]).startswith(chosen)],
     )
-    farthest = sorted(beyond, key=lambda d: -abs(d.one - d.other) / d.allowed)[:15]
+    farthest = sorted(differing, key=lambda d: -abs(d.one - d.other) / d.allowed)[:15]
     kept = {d.quantity for d in farthest}
     page.table("Farthest beyond the seeds", [row for row in rows if row["quantity"] in kept])
     weight = next(d for d in found if d.quantity.startswith("Fz, mean"))
     page.equals(
-        f"{name}: mean of Fz, the rotor's weight across the shaft",
+        f"{name}, {model}: mean of Fz, the rotor's weight across the shaft",
         weight.other,
         weight.one,
         within=0.015,
@@ -124,7 +208,7 @@ def beside(
         unit="kN",
         measure="reaction",
     )
-    return [{"history": name, **row} for row in rows]
+    return [{"history": name, "model": model, **row} for row in rows]
 
 
 def stored(given: Mapping[str, Any]) -> dict[str, dict[str, float]]:

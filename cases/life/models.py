@@ -47,10 +47,13 @@ FLEXIBLE = "beam on flexible rings"
 SOFTEST = "shaft and housing as solids, softest shapes"
 SOLIDS = "shaft and housing as solids"
 
-#: What the ground below the foot of the housing gives [m/N, rad/(N m)].
+SOFT = "soft ground"
+
+#: What the ground below the foot of the housing gives [m/N, rad/(N m)]; the soft one has the
+#: thesis's K_R of 145 and 392 MN m/rad.
 GROUNDS = {
     "fixed foot": np.zeros((5, 5)),
-    "ground of 145 and 392 MN m/rad": np.diag(1.0 / np.array([*[HOUSING_RADIAL] * 3, *HOUSING])),
+    SOFT: np.diag(1.0 / np.array([*[HOUSING_RADIAL] * 3, *HOUSING])),
 }
 
 

@@ -185,7 +185,7 @@ def by_model(lives: Lives, quick: bool) -> dict[str, float]:
     setup = replace(lives.setup(NOMINAL), body=lives.beam)
     scene = housed_scene((3.6, 8))
     races = housing_races(scene, scene.bearing_units[0].bearing.name, setup.bearing)
-    ground = models.GROUNDS["ground of 145 and 392 MN m/rad"]
+    ground = models.GROUNDS[models.SOFT]
     world = models.World(setup, races, None, ground)
     known: dict[str, Callable[[models.World, Floats], models.Laminae]] = {
         name: one

@@ -134,7 +134,7 @@ def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
         f"Hub loads are a surrogate: {len(grid)} ten-minute histories at 20 Hz of a 2 MW, 80 m, "
         f"three-bladed rotor, quasi-steady blade elements in Kaimal turbulence, over {grid_of} "
         f"grid of wind speed, turbulence and shear.{stand_in} The same comparison on your own "
-        "histories: --set loads=FOLDER.",
+        "histories: `--set loads=FOLDER`.",
         list(assumptions()),
         1,
     )

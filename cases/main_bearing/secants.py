@@ -107,7 +107,7 @@ def hub_loads(run: Run, every: int, scene: Scene) -> Cases:
         None,
         f"Load cases: {len(chosen):,} samples of {len(conditions)} made ten-minute histories (wind "
         f"of {', '.join(f'{s:g}' for s in speeds)} m/s, medium turbulence, both shear exponents, "
-        "one seed), each with the gearbox's weight. Your own: --set loads=FILE.",
+        "one seed), each with the gearbox's weight. Your own: `--set loads=FILE`.",
     )
 
 

@@ -117,8 +117,7 @@ def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
     """A section with mesh, solver and diagnostics of each solution."""
     page.section("Mesh and solution")
     page.table(
-        "Meshes of curved ten-node tetrahedra, and what ten unit loads took to solve. "
-        f"Solver {_choices(solutions)}{_warnings(solutions)}",
+        f"Meshes of curved ten-node tetrahedra, and what ten unit loads took{_warnings(solutions)}",
         [
             {
                 "model": label,
@@ -129,22 +128,32 @@ def mesh_section(page: Page, solutions: Mapping[str, Solved]) -> None:
                 "solver": s.response.diagnostics.method,
                 "iterations": s.response.diagnostics.iterations or None,
                 "set-up and solve [s]": s.response.diagnostics.seconds,
-                "relative residual": s.response.diagnostics.residual,
-                "energy error": s.response.diagnostics.energy_error,
-                "equilibrium error": s.response.equilibrium_error,
-                "superposition error": s.response.superposition_error,
             }
             for label, s in solutions.items()
         ],
     )
+    page.table(
+        "Relative errors of the solutions",
+        [
+            {
+                "model": label,
+                "residual [-]": s.response.diagnostics.residual,
+                "energy [-]": s.response.diagnostics.energy_error,
+                "equilibrium [-]": s.response.equilibrium_error,
+                "superposition [-]": s.response.superposition_error,
+            }
+            for label, s in solutions.items()
+        ],
+    )
+    page.table("Why that solver", _choices(solutions), ["model", "solvers, best first"])
 
 
-def _choices(solutions: Mapping[str, Solved]) -> str:
-    """Which solver, and why, of each model that gives another reason."""
+def _choices(solutions: Mapping[str, Solved]) -> list[tuple[str, str]]:
+    """Each model that gives another reason for its solver, and the reason."""
     reasons: dict[str, str] = {}
     for label, s in solutions.items():
         reasons.setdefault(s.response.diagnostics.reason, label)
-    return "; ".join(f"({label}): {reason}" for reason, label in reasons.items())
+    return [(label, reason) for reason, label in reasons.items()]
 
 
 def _warnings(solutions: Mapping[str, Solved]) -> str:
@@ -185,7 +194,10 @@ def pictures_of(run: Run, solved: Solved, loads: Floats, what: str) -> Sequence[
             return [Text(text=f"No picture: {reason}")]
     return [
         Image(caption=f"{solved.scene.title}: parts, loads and supports", file="model.png"),
-        Image(caption=f"Deformed {factor:,.0f} times too large, under {what}", file="deformed.png"),
+        Image(
+            caption=f"Deformed shape, displacements times {factor:,.0f}, under {what}",
+            file="deformed.png",
+        ),
     ]
 
 

@@ -76,8 +76,8 @@ def run(run: Run, page: Page) -> None:
         page.meets(observed, Target(title, order, 0.3, lost, source, "", False, "order"), of=of)
         if nodes in SECOND_ORDER:
             exact, title = EXACT["cantilever"], "strain energy per width"
-            energy = Target(ENERGY, exact, 1e-4, quadratic, FLEXURE, title, order=order)
-            page.finest(series, energy, of=of)
+            target = Target(ENERGY, exact, 1e-4, quadratic, FLEXURE, title, order=order)
+            page.finest(series, target, of=of)
     above = sum(energy > EXACT["cantilever"] * (1.0 + 1e-9) for energy in column(rows, ENERGY))
     title = "cantilever: meshes whose energy is above the exact one"
     strict = "the bound is strict for elements that conform and loads that are integrated exactly: "

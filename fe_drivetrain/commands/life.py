@@ -144,6 +144,15 @@ def life_command(
             "or wind speed. May be repeated.",
         ),
     ] = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            "--mapping",
+            metavar="YAML",
+            help="Names, units, frame and origin of channels, for files of other programs "
+            "(docs/loads.md); --channel goes before it.",
+        ),
+    ] = None,
     rotor_speed: Annotated[
         float | None,
         typer.Option(
@@ -197,7 +206,8 @@ def life_command(
         from fe_drivetrain.commands.life_page import lived
         from fe_drivetrain.commands.loads_words import parse_channels, parse_site
         from fe_drivetrain.commands.study_loads import weightless
-        from fe_drivetrain.hub_loads.recorded import recorded_files
+        from fe_drivetrain.hub_loads.channel_map import read_channel_map
+        from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
         from fe_drivetrain.life.roller_damage import LifeRules
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.result_folders import run_case
@@ -209,7 +219,9 @@ def life_command(
             turning=turning,  # type: ignore[arg-type]
             reliability=_a_1(reliability),
         )
-        reading = Reading(parse_channels(channel or ()), skip, every, rotor_speed)
+        names = OWN_NAMES if mapping is None else read_channel_map(mapping)
+        names = names.with_columns(parse_channels(channel or ()))
+        reading = Reading(names, skip, every, rotor_speed)
         choices = Choices(
             _pairs(bearing or ()), tuple(catalogue or ()), profile, support, rings, weight, only
         )

@@ -16,9 +16,11 @@ from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.recorded import read_recorded
-from fe_drivetrain.life.roller_damage import Damage, LifeRules, Limits, Steps, damage_of_steps
+from fe_drivetrain.life.limits import Limits
+from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
 from fe_drivetrain.scene.scene import Scene
 
 VERSION = 1
@@ -37,8 +39,8 @@ class Reading:
 
     Attributes
     ----------
-    columns : Mapping
-        What a channel is, and how files call it.
+    names : ChannelMap
+        How files call their channels, and their frame and origin.
     skip : float
         Left out at the beginning of each [s].
     every : int
@@ -47,7 +49,7 @@ class Reading:
         Of files that have none [1/min].
     """
 
-    columns: Mapping[str, str]
+    names: ChannelMap
     skip: float
     every: int
     rotor_speed: float | None
@@ -122,7 +124,8 @@ def content(
         "rated": repr(one.rated),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
         "rules": repr(rules),
-        "reading": repr(reading),
+        "mapping": reading.names.content(),
+        "reading": [reading.skip, reading.every, reading.rotor_speed],
         "scene": scene.model_dump_json(),
         "choices": repr(choices),
     }
@@ -163,7 +166,7 @@ def digest(
     InputError
         The file cannot be read, or has no rotor speed.
     """
-    found = read_recorded(file, reading.columns, reading.skip)
+    found = read_recorded(file, reading.names, reading.skip)
     history = found.history.moved(scene.loads_at, scene.shaft.front)
     require_points([history], list(scene.bands))
     if found.rotor_speed is not None:

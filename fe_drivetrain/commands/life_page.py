@@ -314,6 +314,8 @@ def _assumptions(
     for life in found:
         one = life.one
         for field in one.entry.assumed:
+            if field == "ratings":  # those that are given stand in a table with their source
+                continue
             value = getattr(one.entry, field)
             unit = {"elements": "-", "contact_angle": "deg"}.get(field, "m")
             page.assume(

@@ -8,11 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_drivetrain.bearing.geometry import angles
 from fe_drivetrain.commands.life_bearings import OneBearing, rollers_in_words
 from fe_drivetrain.commands.life_charts import along_rollers, damage_map, load_zone, row_names
 from fe_drivetrain.commands.life_digest import LifeDigest, worse
 from fe_drivetrain.life.at_site import SiteLife
-from fe_drivetrain.life.roller_damage import KINDS, RINGS, Damage, Limits
+from fe_drivetrain.life.limits import Limits
+from fe_drivetrain.life.roller_damage import KINDS, RINGS, Damage
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -165,12 +167,13 @@ def places(page: Page, life: BearingLife, files: Sequence[Path]) -> list[Record]
     table: list[Record] = []
     for r, word in enumerate(words):
         basic, modified = (life.damage.of_positions(r, m) for m in (False, True))
+        at = np.degrees(angles(rows_of_bearing[r])) % 360.0
         for j in range(basic.shape[1]):
             table.append(
                 {
                     "bearing": name,
                     "row": word,
-                    "place [deg]": 360.0 * j / basic.shape[1] % 360.0,
+                    "place [deg]": float(at[j]),
                     "mean load [kN]": 1e-3 * float(mean[r, j]),
                     "largest load [kN]": 1e-3 * float(peak[r, j]),
                     **{

@@ -101,8 +101,7 @@ class Options:
     @property
     def names(self) -> ChannelMap:
         """The mapping, with the columns."""
-        channels = {**self.mapping.channels, **self.columns}
-        return self.mapping.model_copy(update={"channels": channels})
+        return self.mapping.with_columns(self.columns)
 
     def content(self, file: Path) -> dict[str, Any]:
         """All that the digest of a file depends on."""

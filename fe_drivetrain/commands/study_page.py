@@ -203,7 +203,7 @@ def _pictures(run: Run, page: Page, model: Model, response: Response, factors: F
     page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
     weights = " and all weights" if factors[8] else ""
     page.image(
-        f"Deformed {times:,.0f} times too large, under the mean load{weights}",
+        f"Deformed shape, displacements times {times:,.0f}, under the mean load{weights}",
         "deformed.png",
     )
 

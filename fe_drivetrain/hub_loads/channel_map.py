@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -93,6 +94,10 @@ class ChannelMap(BaseModel):
         """The name of OpenFAST, in lower case, that a mapped load is read under."""
         standard = LOAD_NAMES[name]
         return f"{standard[:-1]}a" if self.rotating and name in _ACROSS else standard
+
+    def with_columns(self, columns: Mapping[str, str]) -> ChannelMap:
+        """The same, but for what some channels are called."""
+        return self.model_copy(update={"channels": {**self.channels, **columns}})
 
     def content(self) -> dict[str, object]:
         """All of it, as plain data."""

@@ -7,7 +7,7 @@ import math
 import os
 import re
 from array import array
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -132,8 +132,21 @@ def _channels(
     return channels, rows
 
 
-def write_csv(history: LoadHistory, path: str | os.PathLike[str]) -> None:
+def write_csv(
+    history: LoadHistory,
+    path: str | os.PathLike[str],
+    beside: Mapping[str, Floats] | None = None,
+) -> None:
     """Write a history as ``read_csv`` reads it, exactly, and whole or not at all.
+
+    Parameters
+    ----------
+    history : LoadHistory
+        The loads.
+    path : str or path-like
+        The file.
+    beside : mapping, optional
+        Other columns (n,) by title, as in "rotor speed [rad/s]".
 
     Raises
     ------
@@ -141,10 +154,12 @@ def write_csv(history: LoadHistory, path: str | os.PathLike[str]) -> None:
         If the file cannot be written.
     """
     file = Path(path)
-    table = np.column_stack((history.time, history.loads, *history.at.values()))
+    more = dict(beside or {})
+    columns = [values[:, None] for values in more.values()]
+    table = np.column_stack((history.time, history.loads, *history.at.values(), *columns))
     others = [f"{p}.{c} [{u}]" for p in history.at for c, u in zip(FORCES, UNITS, strict=True)]
     lines = [f"# {key} = {value}" for key, value in history.attributes.items()]
-    lines.append(",".join([_CSV_EXAMPLE, *others]))
+    lines.append(",".join([_CSV_EXAMPLE, *others, *more]))
     lines += [",".join(map(repr, row)) for row in table.tolist()]
     try:
         with atomic_path(file) as temporary:

@@ -66,9 +66,20 @@ class Recorded:
 
 
 def recorded_files(patterns: list[str]) -> list[Path]:
-    """Files that several patterns find, each once; see `hub_load_files`."""
+    """Files that several patterns find, each once.
+
+    Parameters
+    ----------
+    patterns : list of str
+        See `hub_load_files`.
+
+    Raises
+    ------
+    InputError
+        None is found, or a file that is named does not exist.
+    """
     found = [file for pattern in patterns for file in hub_load_files(pattern)]
-    return list(dict.fromkeys(found))
+    return [existing_file(file) for file in dict.fromkeys(found)]
 
 
 def read_recorded(

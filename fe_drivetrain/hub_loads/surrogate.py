@@ -138,6 +138,17 @@ def surrogate_grid() -> list[Condition]:
     return [Condition(*c) for c in product(WIND_SPEEDS, TURBULENCES, SHEARS, SEEDS)]
 
 
+def operating_grid() -> list[Condition]:
+    """The 330 conditions of Stirling 2023, section 5.1, winds of one speed side by side.
+
+    Mean winds 4 to 24 m/s in steps of 2; medium turbulence with shear 0.1, 0.2 and 0.4, high and
+    low with shear 0.2; six seeds each.
+    """
+    sets = (("medium", 0.1), ("medium", 0.2), ("medium", 0.4), ("high", 0.2), ("low", 0.2))
+    winds = [float(speed) for speed in range(4, 25, 2)]
+    return [Condition(v, *own, seed) for v, own, seed in product(winds, sets, SEEDS)]
+
+
 @dataclass(frozen=True, eq=False)
 class HubLoadSet(Sequence[LoadHistory]):
     """Histories that share their time, stacked so that a study is one matrix product.

@@ -327,8 +327,8 @@ def read_hawc2(
     if not wind_speed > 0.0 or not min(spacing) > 0.0:
         raise InputError(f"wind '{file}': wind speed and spacing must be above 0")
     fluctuation = np.fromfile(file, "<f4").reshape(n, ny, nz)[:, ::-1]
-    y = spacing[1] * (np.arange(ny) - 0.5 * (ny - 1))
-    z = hub_height + spacing[2] * (np.arange(nz) - 0.5 * (nz - 1))
+    y = spacing[1] * (np.arange(ny, dtype=np.float64) - 0.5 * (ny - 1))
+    z = hub_height + spacing[2] * (np.arange(nz, dtype=np.float64) - 0.5 * (nz - 1))
     if not z[0] > 0.0:
         raise InputError(
             f"wind '{file}': the box reaches {-z[0]:g} m below the ground: raise hub_height"

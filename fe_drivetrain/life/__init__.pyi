@@ -1,5 +1,6 @@
 from .at_site import SiteLife as SiteLife
 from .at_site import site_lives as site_lives
+from .limits import Limits as Limits
 from .load_series import equivalent_life as equivalent_life
 from .load_series import miner_load as miner_load
 from .load_series import years as years
@@ -37,7 +38,6 @@ from .roller_damage import RELIABILITY as RELIABILITY
 from .roller_damage import RINGS as RINGS
 from .roller_damage import Damage as Damage
 from .roller_damage import LifeRules as LifeRules
-from .roller_damage import Limits as Limits
 from .roller_damage import Steps as Steps
 from .roller_damage import damage_of_history as damage_of_history
 from .roller_damage import damage_of_steps as damage_of_steps

@@ -12,7 +12,7 @@ Steps come in chunks and only sums are kept: memory does not grow with the lengt
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -22,6 +22,7 @@ from fe_drivetrain.bearing.geometry import BallRow
 from fe_drivetrain.bearing.rating import LAMBDA
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.life.limits import Limits
 from fe_drivetrain.life.lubricants import Lubricant
 from fe_drivetrain.life.modified_life import BRANCHES, LAST_KAPPA, MIX, life_factor
 from fe_drivetrain.life.rated import RatedBearing
@@ -129,41 +130,6 @@ class Steps:
     speed: Floats
     seconds: Floats
     converged: Bools
-
-
-@dataclass(frozen=True, eq=False)
-class Limits:
-    """Seconds that the methods' limits were passed, and the extremes.
-
-    Attributes
-    ----------
-    standing, thin, thick, heavy, weak, lost : float
-        Time [s]: below the speed of standing; with kappa below 0.1, and above 4; with P above C/2;
-        with P_0 above C_0; without equilibrium.
-    reversals : float
-        How often the direction of rotation changed, within each chunk of steps.
-    largest_load, largest_static, largest_roller : float
-        Of P, P_0 and one rolling element [N].
-    """
-
-    standing: float = 0.0
-    thin: float = 0.0
-    thick: float = 0.0
-    heavy: float = 0.0
-    weak: float = 0.0
-    lost: float = 0.0
-    reversals: float = 0.0
-    largest_load: float = 0.0
-    largest_static: float = 0.0
-    largest_roller: float = 0.0
-
-    def __add__(self, other: Limits) -> Limits:
-        """Times add up, extremes stay."""
-        values = {}
-        for field in fields(self):
-            mine, its = getattr(self, field.name), getattr(other, field.name)
-            values[field.name] = max(mine, its) if field.name.startswith("largest") else mine + its
-        return Limits(**values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -415,8 +381,17 @@ def damage_of_history(chunks: Iterable[Steps], rated: RatedBearing, rules: LifeR
 
 @dataclass(frozen=True, eq=False)
 class _Row:
-    """Of a row: P (n, laminae); for both rings the powers of loads (n, elements, laminae) by which
-    places share a risk, and one over their sums (n, laminae)."""
+    """Equivalent loads of a row, and how its places share a risk.
+
+    Attributes
+    ----------
+    P : Floats
+        (n, laminae) [N].
+    powers : tuple of Floats
+        For both rings (n, elements, laminae), in proportion to which places share.
+    over_sums : tuple of Floats
+        For both rings (n, laminae) one over the sums of these; 0 without a load.
+    """
 
     P: Floats
     powers: tuple[Floats, Floats]
@@ -442,9 +417,10 @@ def _row_risks(
             q = q * stress_riser(count)
         inner, outer = race_capacities(row, rated.dynamic, rows, rules.reduction)
         inner, outer = (c * count ** (-7.0 / 9.0) for c in (inner, outer))
-    fourth = q**3 if isinstance(row, BallRow) else np.square(np.square(q))
-    half = fourth * (np.cbrt(q) if isinstance(row, BallRow) else np.sqrt(q))
-    by_ring = (fourth, half) if rules.turning == "inner" else (half, fourth)
+    # powers of q where the ring turns, and where it stands
+    moving: Floats = np.power(q, 3.0) if isinstance(row, BallRow) else np.square(np.square(q))
+    still: Floats = moving * (np.cbrt(q) if isinstance(row, BallRow) else np.sqrt(q))
+    by_ring = (moving, still) if rules.turning == "inner" else (still, moving)
     exponents = (turning, standing) if rules.turning == "inner" else (standing, turning)
     loads, risks, over_sums = [], [], []
     for powers, p, capacity in zip(by_ring, exponents, (inner, outer), strict=True):

@@ -9,8 +9,8 @@ THIN_SPACE = "\u202f"
 """The narrow no-break one: a number never breaks over two lines."""
 
 _SUPERSCRIPTS = str.maketrans("-0123456789.", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹\u00b7")
-# 1e-8, 3.4e+05; not x1e5 of a name, nor key=4e5 of a command
-_SCIENTIFIC = re.compile(r"(?<![\w.=])(-?\d+(?:\.\d+)?)e([+-]?\d+)\b")
+# 1e-8, 3.4e+05; not x1e5 of a name, #009e73 of a colour, nor key=4e5 of a command
+_SCIENTIFIC = re.compile(r"(?<![\w.=#])(-?\d+(?:\.\d+)?)e([+-]?\d+)\b")
 _FACTOR = re.compile(r"(?<=\d\))e([+-]?\d+)\b")
 _POWER = re.compile(r"\^(-?\d+(?:\.\d+)?)(?![\d/])")
 _NEGATIVE = re.compile(r"(?<![\w.=\"'\])-])-(?=\d)")
@@ -29,7 +29,7 @@ def typeset(text: str) -> str:
     """
     text = _SCIENTIFIC.sub(_power_of_ten, text)
     text = _FACTOR.sub(lambda found: f"\u00a0×\u00a010{superscript(int(found[1]))}", text)
-    text = re.sub(r"(?<=\d) %", "\u00a0%", text)
+    text = re.sub(r"(?<=\d) ?%", "\u00a0%", text)
     text = _POWER.sub(lambda found: superscript(found[1]), text)
     return _NEGATIVE.sub(MINUS, text)
 

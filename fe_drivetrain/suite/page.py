@@ -27,6 +27,8 @@ from fe_drivetrain.suite.records import (
     Record,
     as_json,
     column,
+    counted,
+    group_name,
     grouped,
     plain_cells,
 )
@@ -391,7 +393,7 @@ class Page:
             shown = f"{target.name} [{unit}" if target.name and unit else target.name
             rows.append((shown or target.key, target.key, target.value))
         meshes, by = series.rows, series.by
-        columns = ["quantity", *(f"{mesh[by]} {by}" for mesh in meshes), heading]
+        columns = ["quantity", *(counted(mesh[by], by) for mesh in meshes), heading]
         cells = [[shown, *column(meshes, key), value] for shown, key, value in rows]
         self.table(caption, cells, columns)
         keys = [by, *dict.fromkeys(target.key for target in targets)]
@@ -447,7 +449,8 @@ class Page:
             for key, name in keys.items():
                 # a record without that value has no point
                 at = [row for row in of if row[key] is not None]
-                title = ", ".join(str(part) for part in (group, name) if part != "") or key
+                parts = (group_name(by, group) if by else "", name)
+                title = ", ".join(part for part in parts if part) or key
                 traces.append(trace(title, column(at, x), column(at, key), mode=mode))
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from fe_drivetrain.report.results import Cell
+from fe_drivetrain.suite.targets import split_unit
 
 Record = dict[str, Any]
 """One point of a sweep: its parameters and what was found there."""
@@ -22,6 +23,19 @@ def grouped(rows: Sequence[Record], by: str) -> list[tuple[Any, list[Record]]]:
     for row in rows:
         groups.setdefault(row[by], []).append(row)
     return list(groups.items())
+
+
+def group_name(by: str, value: Any) -> str:
+    """The name of a group's curve: a number with the quantity and unit of its key."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value)
+    quantity, unit = split_unit(by)
+    return f"{quantity} {value:g} {unit}".rstrip()
+
+
+def counted(n: Any, what: str) -> str:
+    """A number and what it counts: "4 elements round", "1 element round"."""
+    return f"{n} {what.replace('elements', 'element', 1) if n == 1 else what}"
 
 
 class MeshSeries(NamedTuple):

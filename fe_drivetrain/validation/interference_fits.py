@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy import sparse
@@ -41,8 +40,8 @@ class Profile:
         """Mean hoop stress of the nodes at a radius [Pa]."""
         return float(self.hoop[np.abs(self.r - r) < 1e-9].mean())
 
-    def along(self, stress: Literal["hoop", "radial"]) -> tuple[Floats, Floats]:
-        """Radii of the nodes, each once, and one of the stresses there [m, Pa]."""
+    def along(self, stress: str) -> tuple[Floats, Floats]:
+        """Radii of the nodes, each once, and the stress "hoop" or "radial" there [m, Pa]."""
         at, first = np.unique(self.r.round(9), return_index=True)
         return at, getattr(self, stress)[first]
 

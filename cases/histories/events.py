@@ -1,0 +1,146 @@
+"""Start-up, stops and grid loss as torque histories whose cycles have stated statistics."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.histories import rainflow_cycles
+from fe_drivetrain.hub_loads import Event, Rotor, grid_loss, made_event, similar_turbine
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+
+SOURCE = "Al-Hamadani 2018, chapter 3"
+#: What the emergency stop is compared with: median range, median mean (normal operation over it),
+#: negative mean, equivalent load; the thesis gives equivalent loads of the fast shaft.
+STATED: dict[str, dict[str, tuple[float | None, ...]]] = {
+    "fast": {
+        "normal operation": (5.0, None, None, 3.65),
+        "emergency stop": (1.0, 2.0, 1.0, 1.0),
+        "normal stop": (1.3, 1.92, 4.0, 1.1),
+        "start-up": (1.76, 2.47, 5.8, 1.43),
+    },
+    "slow": {
+        "normal operation": (8.9, None, None, None),
+        "emergency stop": (1.0, 2.2, 1.0, None),
+        "normal stop": (1.5, 2.1, None, None),
+        "start-up": (1.92, 2.6, None, None),
+    },
+}
+QUANTITIES = (
+    "median range, emergency stop over this",
+    "median mean, normal operation over this",
+    "least mean, emergency stop over this",
+    "equivalent load, emergency stop over this",
+)
+
+
+@case(
+    "Start-up, normal stop, emergency stop and grid loss, to stated statistics",
+    source="Al-Hamadani 2018, chapter 3",
+)
+def run(run: Run, page: Page) -> None:
+    """Make each event of several seeds, count its cycles, and set them beside what is stated."""
+    seeds = range(2 if run.quick else 50)
+    for shaft in STATED:
+        with run.step(f"{shaft} shaft"):
+            found = [of_seed(shaft, seed) for seed in seeds]
+        table(page, shaft, found)
+    draw(page)
+    check_grid_loss(page)
+    page.answer(
+        f"Of all {len(seeds)} seeds the events have every ratio that the thesis states, to its "
+        "last digit: medians of ranges and means, negative means, and damage-equivalent loads.",
+        "Order and size of all other cycles are drawn; the thesis has them in figures only. It "
+        "says nothing of thrust, which follows pitch, nor of grid loss, which is two masses.",
+    )
+
+
+def of_seed(shaft: str, seed: int) -> dict[str, Record]:
+    """Statistics of each state."""
+    return {s: counted(made_event(s, shaft, seed)) for s in STATED[shaft]}  # type: ignore[arg-type]
+
+
+def counted(event: Event) -> Record:
+    """Statistics of the cycles of a history that is followed by itself, as in the thesis."""
+    cycles = rainflow_cycles(event.torque / 1e3, "repeated")
+    seconds = float(event.time[-1])
+    return {
+        "largest range [kN m]": float(cycles.ranges.max()),
+        "median range [kN m]": float(np.median(cycles.ranges)),
+        "median mean [kN m]": float(np.median(cycles.means)),
+        "least mean [kN m]": float(cycles.means.min()),
+        "equivalent load, m = 6 [kN m]": float(
+            (cycles.counts @ cycles.ranges**6 / seconds) ** (1 / 6)
+        ),
+        "duration [s]": seconds,
+    }
+
+
+def table(page: Page, shaft: str, found: list[dict[str, Record]]) -> None:
+    """Statistics, and each stated ratio as a check over all seeds."""
+    page.section(f"The {shaft} shaft")
+    first = found[0]
+    page.table(
+        "Statistics of the first seed; rainflow counting, the history followed by itself",
+        [{"state": state, **row} for state, row in first.items()],
+    )
+    page.data(f"{shaft} shaft", [{"state": s, **row} for s, row in first.items()])
+    for state, values in STATED[shaft].items():
+        for k, (quantity, value) in enumerate(zip(QUANTITIES, values, strict=True)):
+            if value is None or value == 1.0:
+                continue
+            name = ("median range", "median mean", "least mean", "equivalent load, m = 6")[k]
+            key = f"{name} [kN m]"
+            over = "normal operation" if k == 1 else "emergency stop"
+            ratios = [float(f[over][key]) / float(f[state][key]) for f in found]  # type: ignore[arg-type]
+            worst = max(ratios, key=lambda r: abs(r - value))
+            digits = len(f"{value:g}".partition(".")[2])
+            page.equals(
+                f"{shaft} shaft, {state}: {quantity}",
+                worst,
+                value,
+                within=0.5 * 10.0**-digits,
+                relative=False,
+                why=f"the thesis has {digits} decimals; the farthest of {len(found)} seeds",
+                source=SOURCE,
+                basis="self-consistency",
+            )
+
+
+def draw(page: Page) -> None:
+    """Torque and thrust of each."""
+    page.section("Histories")
+    events = [made_event(s, "slow", 0) for s in ("start-up", "normal stop", "emergency stop")]
+    events.append(grid_loss(similar_turbine(Rotor()), 0.84e6))
+    page.chart(
+        "Torque of the slow shaft",
+        [trace(e.name, e.time, e.torque / 1e3) for e in events],
+        "time [s]",
+        "torque [kN m]",
+    )
+    page.chart(
+        "Thrust over that of operation",
+        [trace(e.name, e.time, e.thrust) for e in events],
+        "time [s]",
+        "thrust over that of operation [-]",
+    )
+
+
+def check_grid_loss(page: Page) -> None:
+    """The first swing, without damping and before thrust falls."""
+    turbine = replace(similar_turbine(Rotor()), shaft_damping=1e-3)
+    event = grid_loss(turbine, 1e6, 0.2, 1000.0)
+    whole = turbine.rotor_inertia + turbine.generator_inertia
+    rate = np.sqrt(
+        turbine.shaft_stiffness * whole / turbine.rotor_inertia / turbine.generator_inertia
+    )
+    share = turbine.generator_inertia / whole
+    exact = share + (1.0 - share) * np.cos(rate * event.time)
+    page.vanishes(
+        "grid loss: torque less that of two undamped masses, over torque before, to 0.2 s",
+        float(np.abs(event.torque / 1e6 - exact).max()),
+        within=0.005,
+        why="thrust has fallen by 1 % after 0.2 s, of which the generator's inertia takes a share",
+        source="two masses on a spring, closed form",
+    )

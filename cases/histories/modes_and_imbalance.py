@@ -1,0 +1,162 @@
+"""What imbalance, blade modes and the tower put into the spectra of hub loads."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.histories import MULTIPLES, Spectrum, multiples, spectrum
+from fe_drivetrain.hub_loads import (
+    RIGID,
+    Condition,
+    Controller,
+    Physics,
+    Rotor,
+    Turbine,
+    designed_controller,
+    even_inflow,
+    natural_frequencies,
+    similar_turbine,
+    simulate,
+    turbine_histories,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+
+WIND = 16.0
+#: Eccentricity times speed of a quality grade G16 at 1.75 rad/s, times the rotor's mass [kg m].
+GRADE = 0.016 / 1.75 * 38.3e3
+COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+
+
+@case(
+    "Imbalance, blade modes and tower shadow in the spectra of hub loads",
+    source="Stirling 2023, appendix B; ISO 21940-11 (balance quality grade G16); Jonkman, "
+    "Butterfield, Musial and Scott 2009, NREL/TP-500-38060",
+)
+def run(run: Run, page: Page) -> None:
+    """One wind, with what may move added one by one."""
+    turbine = similar_turbine(Rotor())
+    controller = designed_controller(turbine)
+    with run.step("a rotor that keeps its speed"):
+        check_imbalance(page, turbine, controller)
+    length = 120.0 if run.quick else 600.0
+    grid = [Condition(WIND, "medium", 0.2, seed) for seed in range(1, 2 if run.quick else 7)]
+    errors = (math.radians(0.3), 0.0, 0.0)
+    variants: dict[str, tuple[Turbine, Physics]] = {
+        "rigid": (turbine, RIGID),
+        "and tower shadow": (turbine, replace(RIGID, shadow=True)),
+        "and blade modes": (turbine, replace(RIGID, shadow=True, blades=True)),
+        "and tower modes and shaft": (turbine, Physics()),
+        "and mass imbalance": (replace(turbine, mass_imbalance=GRADE), Physics()),
+        "and one blade 0.3 deg off": (
+            replace(turbine, mass_imbalance=GRADE, pitch_errors=errors),
+            Physics(),
+        ),
+    }
+    spectra: dict[str, list[Spectrum]] = {}
+    speed = 0.0
+    for name, (own, physics) in variants.items():
+        with run.step(name):
+            made = list(turbine_histories(grid, own, controller, physics, length))
+        speed = float(np.mean([m.rotor_speed.mean() for m in made]))
+        parts = [[spectrum(c, m.history.step) for c in m.history.loads.T] for m in made]
+        spectra[name] = [
+            Spectrum(one[0].frequency, mean_of([s.density for s in one]), len(one))
+            for one in zip(*parts, strict=True)
+        ]
+    show(page, spectra, speed, natural_frequencies(turbine, speed))
+    check_modes(page, spectra["and blade modes"][1], speed, turbine)
+
+
+def mean_of(values: list[Floats]) -> Floats:
+    """Of arrays."""
+    return np.asarray(np.mean(values, axis=0))
+
+
+def show(
+    page: Page, spectra: dict[str, list[Spectrum]], speed: float, modes: dict[str, float]
+) -> None:
+    """Spectra of two components, and amplitudes at multiples of the rotor's speed."""
+    rows: list[Record] = []
+    for name, own in spectra.items():
+        row: Record = {"turbine": name}
+        for k in (0, 1, 3, 4):
+            unit = "kN" if k < 3 else "kN m"
+            for found in multiples(own[k], speed, MULTIPLES[:3]):
+                row[f"{COMPONENTS[k]}, {found.name} [{unit}]"] = (found.amplitude or 0.0) / 1e3
+        rows.append(row)
+    page.section("What each adds")
+    page.table(f"Amplitudes at multiples of the rotor's speed, {WIND:g} m/s, mean of seeds", rows)
+    page.data("amplitudes", rows)
+    turn = speed / (2.0 * np.pi)
+    for k, unit in ((1, "kN^2/Hz"), (4, "(kN m)^2/Hz"), (0, "kN^2/Hz")):
+        page.chart(
+            f"Spectrum of {COMPONENTS[k]}; 1P is {turn:.3f} Hz, blades flap at "
+            f"{modes['flap']:.2f} Hz and bend edgewise at {modes['edge']:.2f} Hz as they turn",
+            [
+                trace(name, own[k].frequency[1:180], own[k].density[1:180] / 1e6)
+                for name, own in spectra.items()
+            ],
+            "frequency [Hz]",
+            f"density [{unit}]",
+            logarithmic=("y",),
+        )
+    first, last = rows[0], rows[-1]
+    page.answer(
+        f"A balanced rigid rotor has {first['Fy, 1P [kN]']:.2f} kN at 1P in the side force; an "
+        f"imbalance of G16 and a blade 0.3 deg off bring it to {last['Fy, 1P [kN]']:.1f} kN. Edge "
+        "modes stand one turn below and above their own frequency, as a standing frame sees them.",
+    )
+
+
+def check_imbalance(page: Page, turbine: Turbine, controller: Controller) -> None:
+    """1P of a rotor so heavy that it keeps its speed, in an even wind."""
+    heavy = replace(turbine, rotor_inertia=3e12, generator_inertia=1e12)
+    spoilt = replace(heavy, mass_imbalance=GRADE)
+    wind = even_inflow(turbine, WIND, np.zeros(1200), 20.0)
+    physics = replace(RIGID, wake="frozen")
+    runs = [simulate(t, controller, wind, physics, held=True) for t in (heavy, spoilt)]
+    azimuth, speed = runs[0][1][:, 4], float(runs[0][1][0, 5])
+    base = np.column_stack([np.ones_like(azimuth), np.cos(azimuth), np.sin(azimuth)])
+    fit = np.linalg.lstsq(base, runs[1][0] - runs[0][0], rcond=None)[0]
+    found = np.hypot(fit[1], fit[2])
+    weight = GRADE * turbine.rotor.gravity
+    tilt = turbine.rotor.shaft_tilt
+    known = (
+        ("Fy", 1, "kN", GRADE * speed**2, "centrifugal force m r w^2"),
+        ("Fz", 2, "kN", GRADE * speed**2, "centrifugal force m r w^2"),
+        ("Mx", 3, "kN m", 0.25 * weight * np.cos(tilt), "m g r; the generator has 1/4 of inertia"),
+        ("My", 4, "kN m", weight * np.sin(tilt), "m g r times the sine of tilt"),
+    )
+    for name, k, unit, exact, source in known:
+        page.equals(
+            f"1P of {name} from a mass imbalance of {GRADE:.0f} kg m",
+            float(found[k]) / 1e3,
+            exact / 1e3,
+            within=1e-6,
+            why="round-off of forces of the rest of the rotor",
+            source=source,
+            unit=unit,
+            measure="reaction",
+        )
+
+
+def check_modes(page: Page, found: Spectrum, speed: float, turbine: Turbine) -> None:
+    """Peaks of the side force one turn below and above the edge mode."""
+    edge, turn = natural_frequencies(turbine, speed)["edge"], speed / (2.0 * np.pi)
+    for name, expected in (("below", edge - turn), ("above", edge + turn)):
+        near = np.abs(found.frequency - expected) < 0.06
+        peak = float(found.frequency[near][np.argmax(found.density[near])])
+        page.equals(
+            f"peak of the side force one turn {name} the edge mode",
+            peak,
+            expected,
+            within=1.5 * found.spacing / expected,
+            why="lines are 1/60 Hz apart, and air damps and loads the blade a little",
+            source="frequency of a turning blade, closed form, less or plus that of rotation",
+            unit="Hz",
+            measure="frequency",
+        )

@@ -1,0 +1,498 @@
+"""Histories of a turbine whose speed and pitch vary: hub loads with azimuth, speed and pitch.
+
+The wind is that of `surrogate`, with the same random numbers for a condition, and so are the
+aerofoils and the mean state of the rotor.  What is new: the controller (`controller`), the delays
+of the wake, blades that bend, a tower that moves and slows the wind, a shaft that twists
+(`turbine`), each of which can be left out.
+
+Left out: second and higher modes of blades and tower, blades that twist, a nacelle that nods or
+yaws, wind across and up, unsteady aerofoils, wake skew.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.hub_loads.controller import (
+    CUT_IN_SHARE,
+    FULL_SHARE,
+    LEAST_PITCH,
+    SLIP,
+    Controller,
+    designed_controller,
+    steady_operation,
+)
+from fe_drivetrain.hub_loads.csv_table import write_csv
+from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
+from fe_drivetrain.hub_loads.recorded import Recorded
+from fe_drivetrain.hub_loads.surrogate import DURATION, RATE, Condition
+from fe_drivetrain.hub_loads.turbine import (
+    Physics,
+    Turbine,
+    blade_modes,
+)
+from fe_drivetrain.hub_loads.wind import (
+    DiscTurbulence,
+    Singles,
+    disc_turbulence,
+    length_scales,
+    power_law,
+    turbulence_sigma,
+)
+
+VERSION = 2
+"""Raise whenever a change alters the histories: kept ones of another version are not used."""
+
+SETTLING = 60.0
+"""Left out at the beginning [s]: 20 lengths of the speed's answer, 15 of the slowest wake."""
+
+LONGEST_STEP = 0.025
+"""Of the integration [s]: 15 in a period of the fastest mode, which it damps by 2e-4 of it."""
+
+_KEPT = ("loads", "azimuth", "rotor_speed", "pitch", "generator_torque", "power", "wind_speed")
+
+
+@dataclass(frozen=True, eq=False)
+class Inflow:
+    """Wind that a rotor meets.
+
+    Attributes
+    ----------
+    speed : float
+        Mean at hub height [m/s].
+    shear : float
+        Power-law exponent of the mean.
+    harmonics : ndarray, (n, 2 M + 1, r)
+        What is added at each sample, in harmonics of azimuth on the rings of the blade elements
+        [m/s]: the mean around a ring, cosines, sines.
+    rate : float
+        Samples per second [Hz].
+    """
+
+    speed: float
+    shear: float
+    harmonics: Singles
+    rate: float
+
+
+@dataclass(frozen=True, eq=False)
+class TurbineHistory:
+    """What one run gives, each (n,) but for the loads.
+
+    Attributes
+    ----------
+    history : LoadHistory
+        The hub loads.
+    azimuth : ndarray
+        Of blade 1 from upwards [rad], growing.
+    rotor_speed : ndarray
+        [rad/s].
+    pitch : ndarray
+        [rad].
+    generator_torque : ndarray
+        At the slow shaft [N m].
+    power : ndarray
+        That the air gives [W].
+    wind_speed : ndarray
+        Mean over the disc [m/s].
+    """
+
+    history: LoadHistory
+    azimuth: Floats
+    rotor_speed: Floats
+    pitch: Floats
+    generator_torque: Floats
+    power: Floats
+    wind_speed: Floats
+
+    @property
+    def recorded(self) -> Recorded:
+        """The loads with speed and wind, as a file of measurements gives them."""
+        return Recorded(self.history, self.rotor_speed, self.wind_speed)
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write a table that the command ``loads`` and `read_recorded` read.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A file that ends in .csv.
+
+        Raises
+        ------
+        InputError
+            It cannot be written.
+        """
+        beside = {
+            "rotor speed [rad/s]": self.rotor_speed,
+            "wind speed [m/s]": self.wind_speed,
+            "azimuth [rad]": self.azimuth,
+            "pitch [rad]": self.pitch,
+            "generator torque [N m]": self.generator_torque,
+        }
+        write_csv(self.history, path, beside)
+
+
+def even_inflow(
+    turbine: Turbine, speed: float, gust: ArrayLike, rate: float, shear: float = 0.0
+) -> Inflow:
+    """A wind that is equal over the disc but for shear.
+
+    Parameters
+    ----------
+    turbine : Turbine
+        Gives the blade elements.
+    speed : float
+        Mean [m/s].
+    gust : array_like, (n,)
+        Added to it at each sample [m/s].
+    rate : float
+        Samples per second [Hz].
+    shear : float
+        Power-law exponent.
+    """
+    added = np.asarray(gust, dtype=np.float32)
+    rings = turbine.rotor.elements
+    harmonics = np.repeat(added[:, None, None], rings, axis=2)
+    return Inflow(speed, shear, harmonics, rate)
+
+
+def simulate(
+    turbine: Turbine,
+    controller: Controller,
+    inflow: Inflow,
+    physics: Physics | None = None,
+    *,
+    azimuth: float = 0.0,
+    held: bool = False,
+    start: tuple[float, float] | None = None,
+) -> tuple[Floats, Floats]:
+    """Let a turbine turn in a wind.
+
+    Parameters
+    ----------
+    turbine, controller, inflow : Turbine, Controller, Inflow
+        The turbine, its controller, the wind.
+    physics : Physics or None
+        All of it if not given.
+    azimuth : float
+        At the beginning [rad].
+    held : bool
+        Pitch and torque of the generator stay as they are at the beginning.
+    start : tuple of float or None
+        Speed [rad/s] and pitch [rad] at the beginning; those of the mean wind if not given.
+
+    Returns
+    -------
+    ndarray, (n, 6)
+        Hub loads [N, N m].
+    ndarray, (n, 24)
+        Pitch [rad], torque of the generator [N m], power of the air [W], wind [m/s], state.
+
+    Raises
+    ------
+    InputError
+        The rotor stops or runs away.
+    """
+    from fe_drivetrain.hub_loads import turbine_air as air
+    from fe_drivetrain.hub_loads.turbine_kernel import run_turbine
+
+    chosen = physics or Physics()
+    point = steady_operation(turbine, controller, inflow.speed)
+    speed, pitch = start or (point.rotor_speed, point.pitch)
+    parts = _parts(turbine, chosen, inflow)
+    wake = np.empty((4, point.radius.size))
+    wake[::2] = point.axial * inflow.speed * math.cos(turbine.rotor.shaft_tilt)
+    wake[1::2] = point.tangential * point.rotor_speed * point.radius
+    state = np.zeros(air.STATES)
+    state[[air.PSI, air.SPEED, air.GENERATOR]] = azimuth, speed, speed
+    torque = controller.torque(speed, pitch)
+    state[air.TWIST] = torque / turbine.shaft_stiffness if chosen.torsion else 0.0
+    # blades and tower begin bent as the mean thrust bends them
+    mean = even_inflow(turbine, inflow.speed, np.zeros(1), inflow.rate, inflow.shear)
+    sums = np.zeros((5, max(wake.shape[1], 6)))
+    wind = np.zeros((3, point.radius.size))
+    air.met_wind(parts, mean.harmonics[0].astype(float), azimuth, wind, np.zeros(1))
+    air.blade_sums(parts, state, pitch, wind, wake, sums)
+    if chosen.tower:
+        state[air.FORE] = sums[:3, 0].sum() / (turbine.top_mass * parts.tower_rate**2)
+    if chosen.blades:
+        stiffness = parts.stiffness[0] + speed**2 * parts.stiffening[0, 0]
+        own = sums[:3, 4] + turbine.cone * speed**2 * parts.moment[0, 0]
+        state[air.MODES : air.MODES + 3] = own.mean() / stiffness
+    steps = math.ceil(1.0 / (inflow.rate * LONGEST_STEP))
+    made, beside = run_turbine(
+        parts,
+        _control(controller, held),
+        np.ascontiguousarray(inflow.harmonics),
+        _mean_shear(turbine, inflow),
+        state,
+        pitch,
+        wake,
+        1.0 / inflow.rate,
+        steps,
+    )
+    if len(made) < len(inflow.harmonics):
+        raise InputError(
+            f"turbine at {inflow.speed:g} m/s: the rotor stopped or ran away after "
+            f"{len(made) / inflow.rate:g} s; choose a controller whose "
+            "frequency and damping suit it, or a higher wind"
+        )
+    return made, beside
+
+
+def turbine_history(
+    condition: Condition,
+    turbine: Turbine,
+    controller: Controller | None = None,
+    physics: Physics | None = None,
+    duration: float = DURATION,
+    rate: float = RATE,
+) -> TurbineHistory:
+    """Make one history, without looking on disk.
+
+    Parameters
+    ----------
+    condition : Condition
+        The wind.
+    turbine : Turbine
+        The turbine.
+    controller : Controller or None
+        `designed_controller` if not given.
+    physics : Physics or None
+        All of it if not given.
+    duration, rate : float
+        Length [s], and samples per second [Hz].
+
+    Raises
+    ------
+    InputError
+        Duration or rate leave too few samples, or the turbine cannot work in this wind.
+    """
+    field = _field(turbine, condition.wind_speed, duration, rate)
+    chosen = controller or designed_controller(turbine)
+    return _turbine_history(condition, turbine, chosen, physics or Physics(), field)
+
+
+def turbine_histories(
+    conditions: Iterable[Condition],
+    turbine: Turbine,
+    controller: Controller | None = None,
+    physics: Physics | None = None,
+    duration: float = DURATION,
+    rate: float = RATE,
+    *,
+    cache: bool | Cache = True,
+    progress: Callable[[int], None] | None = None,
+) -> Iterator[TurbineHistory]:
+    """Make histories one after the other, or take those that were kept.
+
+    One is in memory at a time, and each is kept as soon as it is made: stopped and begun again, the
+    work goes on where it was.
+
+    Parameters
+    ----------
+    conditions : iterable of Condition
+        The winds; those of one mean speed side by side share what is expensive.
+    turbine, controller, physics : Turbine, Controller or None, Physics or None
+        As for `turbine_history`.
+    duration, rate : float
+        As there.
+    cache : bool or Cache
+        Whether to keep histories in the user's cache, or another.
+    progress : callable or None
+        Called with the number done.
+
+    Raises
+    ------
+    InputError
+        As `turbine_history`.
+    """
+    kept = cache if isinstance(cache, Cache) else user_cache() if cache else Cache(None)
+    chosen, moves = controller or designed_controller(turbine), physics or Physics()
+    field: DiscTurbulence | None = None
+    of_speed = float("nan")
+    for done, condition in enumerate(conditions, 1):
+        content = {
+            "version": VERSION,
+            "what": "moving turbine",
+            "turbine": asdict(turbine),
+            "controller": asdict(chosen),
+            "physics": asdict(moves),
+            "condition": asdict(condition),
+            "duration": float(duration),
+            "rate": float(rate),
+        }
+        made = _load(kept.load("hub-loads", content), condition, rate)
+        if made is None:
+            if field is None or condition.wind_speed != of_speed:
+                field = _field(turbine, condition.wind_speed, duration, rate)
+                of_speed = condition.wind_speed
+            made = _turbine_history(condition, turbine, chosen, moves, field)
+            arrays = {name: getattr(made, name) for name in _KEPT[1:]}
+            kept.keep("hub-loads", content, {"loads": made.history.loads, **arrays})
+        if progress is not None:
+            progress(done)
+        yield made
+
+
+# --- making --------------------------------------------------------------------------------------
+
+
+def _field(turbine: Turbine, wind_speed: float, duration: float, rate: float) -> DiscTurbulence:
+    if not (np.isfinite(duration * rate) and rate > 0.0 and duration * rate >= MIN_SAMPLES):
+        raise InputError(
+            f"turbine: {duration} s at {rate} Hz is no history; give a positive duration and rate "
+            f"with at least {MIN_SAMPLES} samples"
+        )
+    rotor = turbine.rotor
+    scales = length_scales(rotor.hub_height)
+    radius = rotor.element_radius()[0]
+    return disc_turbulence(radius, rotor.harmonics, wind_speed, *scales, duration + SETTLING, rate)
+
+
+def _turbine_history(
+    condition: Condition,
+    turbine: Turbine,
+    controller: Controller,
+    physics: Physics,
+    field: DiscTurbulence,
+) -> TurbineHistory:
+    generator = condition.generator()
+    azimuth = generator.uniform(0.0, 2.0 * np.pi)
+    sigma = turbulence_sigma(condition.wind_speed, condition.turbulence)
+    if sigma > 0.0:
+        drawn = np.moveaxis(field.draw(generator), -1, 0)
+        harmonics = np.ascontiguousarray(np.float32(sigma) * drawn)
+    else:
+        harmonics = np.zeros((field.samples, 1, field.radius.size), dtype=np.float32)
+    inflow = Inflow(condition.wind_speed, condition.shear, harmonics, field.rate)
+    loads, beside = simulate(turbine, controller, inflow, physics, azimuth=azimuth)
+    after = round(SETTLING * field.rate)
+    pitch, torque, power, wind, psi, speed = beside[after:, :6].T
+    arrays = dict(zip(_KEPT, (loads[after:], psi, speed, pitch, torque, power, wind), strict=True))
+    return _history(condition, arrays, field.rate)
+
+
+def _history(condition: Condition, arrays: dict[str, Floats], rate: float) -> TurbineHistory:
+    attributes: dict[str, Attribute] = {**asdict(condition), "source": "moving turbine"}
+    loads = arrays["loads"]
+    history = LoadHistory(condition.name, np.arange(len(loads)) / rate, loads, attributes)
+    return TurbineHistory(history, **{name: arrays[name] for name in _KEPT[1:]})
+
+
+def _load(
+    arrays: dict[str, Floats] | None, condition: Condition, rate: float
+) -> TurbineHistory | None:
+    """A kept history, or None if it is not there or not sound."""
+    if arrays is None or set(arrays) != set(_KEPT):
+        return None
+    if any(len(a) != len(arrays["loads"]) or not np.isfinite(a).all() for a in arrays.values()):
+        return None
+    return _history(condition, arrays, rate)
+
+
+def _mean_shear(turbine: Turbine, inflow: Inflow) -> Floats:
+    """Mean of the steady wind around each ring over that at the hub."""
+    rotor = turbine.rotor
+    angle = 2.0 * np.pi / 36.0 * np.arange(36)
+    above = np.outer(np.cos(angle), rotor.element_radius()[0]) * math.cos(rotor.shaft_tilt)
+    height = rotor.hub_height + above
+    return np.asarray(power_law(1.0, height, rotor.hub_height, inflow.shear).mean(axis=0))
+
+
+def _parts(turbine: Turbine, physics: Physics, inflow: Inflow):  # type: ignore[no-untyped-def]
+    """The turbine as the compiled equations take it (whose module is slow to import)."""
+    from fe_drivetrain.hub_loads.turbine_air import Parts
+
+    rotor = turbine.rotor
+    radius, weight = rotor.element_radius()
+    along = (radius - turbine.blade_root) / (rotor.radius - turbine.blade_root)
+
+    modes = blade_modes(turbine)
+    own = 2.0 * math.pi * np.array([turbine.flap_frequency, turbine.edge_frequency])
+    mass = np.diag(modes.mass)
+    shape = [[np.interp(along, modes.place, f) for f in mode] for mode in modes.shape]
+
+    return Parts(
+        radius=radius,
+        weight=weight,
+        chord=rotor.chord(radius),
+        twist=rotor.twist(radius),
+        shape=np.array(shape),
+        lift_slope=rotor.lift_slope,
+        zero_lift=rotor.zero_lift_angle,
+        stall=rotor.stall_angle,
+        stall_width=rotor.stall_width,
+        drag=rotor.least_drag,
+        density=rotor.air_density,
+        tip_radius=rotor.radius,
+        tilt=rotor.shaft_tilt,
+        cone=turbine.cone,
+        gravity=rotor.gravity,
+        rotor_mass=rotor.rotor_mass,
+        first_moment=modes.first_moment,
+        rotor_inertia=turbine.rotor_inertia,
+        generator_inertia=turbine.generator_inertia,
+        force=modes.force,
+        moment=modes.moment,
+        products=modes.products,
+        stiffening=modes.stiffening,
+        stiffness=mass * own**2,
+        damping=2.0 * turbine.blade_damping * mass * own,
+        shaft_stiffness=turbine.shaft_stiffness,
+        shaft_damping=turbine.shaft_damping,
+        top_mass=turbine.top_mass,
+        tower_rate=2.0 * math.pi * turbine.tower_frequency,
+        tower_damping=turbine.tower_damping,
+        imbalance=turbine.mass_imbalance,
+        pitch_errors=np.array(turbine.pitch_errors, dtype=float),
+        blades_move=physics.blades,
+        tower_moves=physics.tower,
+        torsion=physics.torsion,
+        frozen=physics.wake == "frozen",
+        wind_speed=float(inflow.speed),
+        hub_height=rotor.hub_height,
+        shear=float(inflow.shear),
+        shadow=physics.shadow,
+        overhang=turbine.overhang,
+        tower_height=turbine.tower_height,
+        tower_foot=turbine.tower_foot,
+        tower_head=turbine.tower_head,
+    )
+
+
+def _control(controller: Controller, held: bool):  # type: ignore[no-untyped-def]
+    from fe_drivetrain.hub_loads.turbine_kernel import Control
+
+    tuning = controller.tuning
+    return Control(
+        optimal=controller.optimal,
+        slope=controller.slope,
+        origin=controller.torque_speed / (1.0 + SLIP),
+        cut_in=CUT_IN_SHARE * controller.torque_speed,
+        full=FULL_SHARE * controller.torque_speed,
+        transition=controller.transition,
+        torque_speed=controller.torque_speed,
+        rated_speed=controller.rated_speed,
+        rated_torque=controller.rated_torque,
+        rated_power=controller.rated_power,
+        constant_power=tuning.constant_power,
+        least_pitch=LEAST_PITCH,
+        proportional=controller.proportional,
+        integral=controller.integral,
+        doubling=controller.doubling,
+        filter=tuning.filter,
+        pitch_rate=tuning.pitch_rate,
+        torque_rate=tuning.torque_rate * controller.rated_torque,
+        held=held,
+    )
