@@ -43,7 +43,12 @@ from fe_drivetrain.bearing.distribution import (
     superposed_peak,
 )
 from fe_drivetrain.bearing.geometry import Bearing, angles, pitch_ratio
-from fe_drivetrain.bearing.rating import capacity_factor, ratings
+from fe_drivetrain.bearing.rating import (
+    ball_capacity_factor,
+    ball_dynamic_rating,
+    capacity_factor,
+    ratings,
+)
 from fe_drivetrain.bearing.rolling import equilibrium, three_degrees
 from fe_drivetrain.bearing.tables import reduced_table
 from fe_drivetrain.common.errors import InputError
@@ -504,6 +509,32 @@ def test_deep_groove_displacements_are_those_of_masta(
         # MASTA's tilt takes the pitch radius as arm of the balls, not that of the groove centres
         arm = row.groove_centre[1] / row.radius
         assert_allclose(abs(u[4]) / 1e3 * arm, 2.6872, rtol=1e-4)
+
+
+def test_the_rating_of_balls_follows_lundberg_and_palmgren() -> None:
+    gamma = np.arange(1, 41) / 100.0
+    grooves = (2 * 0.52 / (2 * 0.52 - 1)) ** 0.41
+    opening = ((1 - gamma) / (1 + gamma)) ** 1.72
+    shape = gamma**0.3 * (1 - gamma) ** 1.39 / (1 + gamma) ** (1 / 3) * grooves
+    formula = 39.9 * (1 + (1.04 * opening) ** (10 / 3)) ** -0.3 * shape
+    table = np.array([ball_capacity_factor(g) for g in gamma])
+    # each value is rounded to a tenth: one factor between both fits all of them
+    low, high = ((table + half) / formula for half in (-0.05, 0.05))
+    assert low.max() < high.min()
+
+
+def test_ratings_of_balls_grow_with_their_number_and_size() -> None:
+    def rated(size: float, rows: int = 1, balls: int = 8) -> float:
+        row = ball_row(balls, size, 5.0 * size)
+        return ball_dynamic_rating(Bearing("balls", (row,) * rows))
+
+    assert_allclose(rated(0.02, rows=2) / rated(0.02), 2**0.7)
+    assert_allclose(rated(0.02, balls=10) / rated(0.02, balls=5), 2 ** (2 / 3))
+    assert_allclose(rated(0.0254 * (1 + 1e-9)), rated(0.0254), rtol=2e-4)
+    with pytest.raises(InputError, match=r"0\.01 to 0\.4"):
+        ball_dynamic_rating(Bearing("large balls", (ball_row(3, 0.03, 0.07),)))
+    with pytest.raises(InputError, match="must be balls"):
+        ball_dynamic_rating(size())
 
 
 def test_ratings_are_those_of_masta_and_of_the_catalogue() -> None:

@@ -14,6 +14,7 @@ from fe_drivetrain.validation.plane_rings import (
     harmonics,
     plane_strain,
 )
+from fe_drivetrain.validation.rollers_on_rings import RollerRing
 
 STEEL = MATERIALS["steel"]
 INNER, OUTER, WIDTH = 0.3, 0.36, 0.1
@@ -204,3 +205,12 @@ def test_what_cannot_be_is_refused(mesh):
         carried(np.eye(3), np.ones((3, 2)), [0, 1])
     with pytest.raises(InputError, match=r"exponent 0\.5"):
         roller_forces(np.eye(1), np.ones(1), 1.0, 0.5)
+
+
+def test_rollers_on_a_rigid_ring_carry_as_stribeck_has_it() -> None:
+    """Linear springs on half of the raceway: the most loaded roller carries 4 times the mean."""
+    ring = RollerRing(0.35, 0.4, 0.16, 0.12, 24, MATERIALS["steel"])
+    found = ring.press(np.zeros((24, 24)), 1e6, 2e9, 1.0)
+    assert found.factor == pytest.approx(4.0, rel=1e-9)
+    assert found.forces @ np.sin(ring.angles) == pytest.approx(0.0, abs=1e-6)
+    assert found.down == pytest.approx(found.forces.max() / 2e9)

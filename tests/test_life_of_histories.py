@@ -300,7 +300,7 @@ def test_life_factors_of_balls_meet_between_branches() -> None:
         (lambda: Lubricant(460.0, 30.0, 50.0, "water"), "oil bath"),
         (lambda: Lubricant(460.0, 30.0, 50.0, "oil bath", "normal"), "-/13/10"),
         (lambda: Lubricant(460.0, 30.0, 500.0), "temperature"),
-        (lambda: rated_bearing(Bearing("b", (ball_row(7, 0.01, 0.04),))), "give its C"),
+        (lambda: rated_bearing(Bearing("b", (ball_row(3, 0.03, 0.07),))), "from 0.01 to 0.4"),
         (lambda: rated_bearing(BEARING, -1.0, 1.0, 1.0), "more than 0"),
         (lambda: rated_from_catalogue("nothing"), "bearing_s"),
         (lambda: damage_of_history([], RATED, RULES), "no load step"),

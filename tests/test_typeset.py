@@ -11,6 +11,8 @@ from fe_drivetrain.report.typeset import typeset
         ("x^-1", "x⁻¹"),
         ("5% of it", "5\u00a0% of it"),
         ("x^(1/2)", "x^(1/2)"),
+        ("L/D = 2e+02", "L/D = 200"),
+        ("1.222e+08 N", "1.222\u00a0×\u00a010⁸ N"),
         ("converged to 1e-8", "converged to 10⁻⁸"),
         ("5.4e-07 of it", "5.4\u00a0×\u00a010⁻⁷ of it"),
         ("(3.657 ± 0.016)e7 N", "(3.657 ± 0.016)\u00a0×\u00a010⁷ N"),

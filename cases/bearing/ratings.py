@@ -1,7 +1,8 @@
 """Every bearing of the catalogue: what is assumed, and whether its insides fit its load ratings."""
 
-from fe_drivetrain.bearing import Ratings, RollerRow, ratings, read_catalogue
+from fe_drivetrain.bearing import read_catalogue
 from fe_drivetrain.cases import case
+from fe_drivetrain.life import rated_bearing
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Assumed rollers were sized to fit the printed ratings to this.
@@ -21,9 +22,7 @@ def run(run: Run, page: Page) -> None:
         entries = read_catalogue()
     for name, entry in entries.items():
         bearing = entry.bearing(name)
-        own: Ratings | None = None
-        if all(isinstance(row, RollerRow) for row in bearing.rows):
-            own = ratings(bearing, 1.15 if entry.kind == "spherical_roller" else 1.1)
+        own = rated_bearing(bearing, b_m=1.15 if entry.kind == "spherical_roller" else 1.1)
         record: Record = {
             "bearing": name,
             "kind": entry.kind.replace("_", " "),
@@ -33,9 +32,9 @@ def run(run: Run, page: Page) -> None:
         }
         for key, field in NAMES:
             printed = getattr(entry.ratings, key) if entry.ratings else None
-            record[f"{key}, from rollers [kN]"] = getattr(own, field) / 1e3 if own else None
+            record[f"{key}, from its insides [kN]"] = getattr(own, field) / 1e3
             record[f"{key}, printed [kN]"] = printed / 1e3 if printed else None
-            if printed and own and name != "bearing_s":
+            if printed and name != "bearing_s":
                 page.equals(
                     f"{name}: {key}",
                     getattr(own, field) / 1e3,
@@ -57,7 +56,7 @@ def run(run: Run, page: Page) -> None:
     page.answer(
         "The assumed rollers of bearing S fit its printed C, C0 and C_u to 3 % at 20 deg.",
         "At 38 deg, the angle that gives the thesis's tilting stiffness face to face, C would be "
-        f"{misfit['C, from rollers [kN]']:.0f} kN, not {misfit['C, printed [kN]']:.0f}: that "
+        f"{misfit['C, from its insides [kN]']:.0f} kN, not {misfit['C, printed [kN]']:.0f}: that "
         "angle is a fit, no insight into the bearing.",
     )
     page.section("Catalogue")

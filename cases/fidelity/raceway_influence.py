@@ -3,40 +3,25 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import band_of
-from fe_drivetrain.geometry import Section, Shaft
-from fe_drivetrain.operator import traction_loads
 from fe_drivetrain.report import Cell, trace
-from fe_drivetrain.revolution import (
-    InfluenceFunctions,
-    Meridian,
-    Strip,
-    carried,
-    dofs,
-    influence_functions,
-    meridian,
-    roller_forces,
-)
+from fe_drivetrain.revolution import InfluenceFunctions, Strip, dofs, influence_functions
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import solve_solid
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.plane_rings import Lame, harmonics, plane_strain
-from fe_drivetrain.validation.ring_solids import on_plane, ring_sector, sector_symmetry
+from fe_drivetrain.validation.rollers_on_rings import Pressed, RollerRing, ring_meridian, squeezed
 
 STEEL = MATERIALS["steel"]
 
 #: Raceway and outside of the ring, its width, and the rollers' length [m].
 RACEWAY, OUTSIDE, WIDTH, ROLLER = 0.35, 0.40, 0.16, 0.12
-MARGIN = (WIDTH - ROLLER) / 2
 ROLLERS = 24
 PITCH = 2 * np.pi / ROLLERS
-ANGLES = PITCH * np.arange(ROLLERS)
-#: Half of the angle of a patch: it is as wide as half of the distance between rollers.
-HALF = PITCH / 4
+RING = RollerRing(RACEWAY, OUTSIDE, WIDTH, ROLLER, ROLLERS, STEEL)
+ANGLES, HALF = RING.angles, RING.half
 #: Outer radius of the ring with its housing, where that is part of it [m].
 HOUSINGS = (0.45, 0.55)
 #: Half of the angle between two feet, from the direction of the load [rad].
@@ -52,24 +37,6 @@ ORDERS, QUICK_ORDERS = (6, 8), (5, 6)
 LEVELS, QUICK_LEVELS = (1, 2, 3), (1, 2)
 #: Of the thin ring, mean radius over wall.
 THIN = 40.0
-
-
-def ring(inner: float, outer: float, width: float, size: float, order: int = 6) -> Meridian:
-    """Meridian of a ring of rectangular section."""
-    section = Section(length=width, outer_diameter=2 * outer, inner_diameter=2 * inner)
-    return meridian(Shaft(front=0.0, sections=(section,)), size, order=order, layers=0)
-
-
-def strips(outer: float) -> list[Strip]:
-    """Raceway and outside, as long as a roller."""
-    return [Strip(r, MARGIN, WIDTH - MARGIN) for r in (RACEWAY, outer)]
-
-
-def functions(outer: float, highest: int, anchor: int = 1, order: int = 6) -> InfluenceFunctions:
-    """Of a free ring's raceway and outside, relative to the anchor."""
-    both = strips(outer)
-    mesh = ring(RACEWAY, outer, WIDTH, 0.02 if outer < 0.5 else 0.03, order)
-    return influence_functions(mesh, STEEL, both, highest, HALF, anchor=both[anchor])
 
 
 @dataclass(frozen=True)
@@ -102,19 +69,6 @@ class FreeRing:
         return float(self.found.matrix([0.0])[0, 0])
 
 
-@dataclass(frozen=True)
-class Pressed:
-    """Forces of the rollers [N], and how far the shaft moves [m]."""
-
-    forces: Floats
-    down: float
-
-    @property
-    def factor(self) -> float:
-        """The most loaded roller's force over the mean of the load over all."""
-        return float(ROLLERS * self.forces.max() / LOAD)
-
-
 @case(
     "Raceway that gives way: influence functions of a ring, and the rollers' share",
     source="Michell 1899 in plane strain; curved beam; a solid of hexahedra; Betti 1872; "
@@ -129,18 +83,20 @@ def run(run: Run, page: Page) -> None:
     with run.step("thin ring"):
         _check_thin_ring(page)
     with run.step("free ring, by harmonics"):
-        found = functions(OUTSIDE, count)
-        flat, rough = squeezed(found), squeezed(functions(OUTSIDE, count, order=5))
+        found = RING.functions(count)
+        flat, rough = squeezed(found), squeezed(RING.functions(count, order=5))
     with run.step("free ring, as a solid"):
-        free = FreeRing(found, flat, rough, [solid(level) for level in levels])
+        free = FreeRing(found, flat, rough, [RING.solid(level) for level in levels])
     _check_free_ring(page, free, levels)
     with run.step("reciprocity and equal pushes"):
         _check_sums(page, found, count)
     with run.step("ring on two feet"):
-        compliances = {f"{OUTSIDE:g}": on_feet(found)}
-        compliances |= {f"{outer:g}": on_feet(functions(outer, count)) for outer in HOUSINGS}
+        compliances = {f"{OUTSIDE:g}": RING.on_feet(found, FEET)}
+        for outer in HOUSINGS:
+            ring = replace(RING, outside=outer)
+            compliances[f"{outer:g}"] = ring.on_feet(ring.functions(count), FEET)
         _check_anchors(page)
-        housed = in_rigid_housing(count)
+        housed = RING.in_rigid_housing(count)
     with run.step("rollers"):
         pressed = {
             "rigid ring": press(np.zeros((ROLLERS, ROLLERS))),
@@ -192,7 +148,7 @@ def _check_plane_strain(page: Page, count: int, orders: tuple[int, int]) -> None
     lame = Lame(RACEWAY, OUTSIDE, inside=pressure / 2).displacement(np.array(RACEWAY), plane)
     planes = []
     for order in orders:
-        mesh = ring(RACEWAY, OUTSIDE, WIDTH, 0.02, order)
+        mesh = ring_meridian(RACEWAY, OUTSIDE, WIDTH, 0.02, order)
         still = dofs(np.arange(len(mesh.nodes)), 0)
         found = influence_functions(mesh, STEEL, whole, count, HALF, held=still, anchor=whole[1])
         planes.append(found.harmonic_compliances[:, 0, 0])
@@ -214,7 +170,7 @@ def _check_thin_ring(page: Page) -> None:
     """Pushed apart at two opposite places, and narrow: plane stress."""
     wall = RACEWAY / THIN
     inner, outer, width = RACEWAY - wall / 2, RACEWAY + wall / 2, wall
-    mesh = ring(inner, outer, width, width)
+    mesh = ring_meridian(inner, outer, width, width)
     outside = Strip(outer, 0.0, width)
     # so narrow that the oval does not see its width: a patch takes (2 a)^2 / 3 off it
     narrow = wall / (10 * RACEWAY)
@@ -237,43 +193,6 @@ def _check_thin_ring(page: Page) -> None:
         source="curved beam with tension and shear (Roark's formulas, thin rings, case 1)",
         band=abs(across - short),
     )
-
-
-def squeezed(found: InfluenceFunctions) -> tuple[float, float]:
-    """Radial displacement under two opposite pushes of 1 N, and across them, by harmonics."""
-    C = found.matrix(np.array([0.0, np.pi, np.pi / 2]))[::2, ::2]
-    return C[0, 0] + C[0, 1], C[2, 0] + C[2, 1]
-
-
-def solid(level: int) -> tuple[float, float]:
-    """Mean radial displacement under two opposite pushes of 1 N, and across them, of a solid."""
-    fine = np.arange(0, 3 * level + 1) * HALF / level
-    last = 0.5 * np.pi - fine[::-1]
-    middle = np.linspace(fine[-1], last[0], 9 * level + 1)
-    around = np.concatenate([fine, middle[1:-1], last]) / (0.5 * np.pi)
-    pressed = np.linspace(0.0, ROLLER / WIDTH, 2 * level + 1)
-    along = np.concatenate([pressed, np.linspace(ROLLER / WIDTH, 1.0, level + 1)[1:]])
-    block = ring_sector(
-        RACEWAY, OUTSIDE, WIDTH / 2, 0.5 * np.pi, (2 * level, 1, 1), 27, (None, around, along)
-    )
-    area = RACEWAY * HALF * ROLLER / 2
-
-    def outwards(x: Floats, _: Floats) -> Floats:
-        radial = np.column_stack([0 * x[:, 0], x[:, 1], x[:, 2]])
-        return radial / (np.hypot(x[:, 1], x[:, 2])[:, None] * 4 * area)
-
-    def push(at: float) -> Floats:
-        centres = block.points[block.faces["x0"]].mean(axis=1)
-        angle = np.arctan2(centres[:, 2], centres[:, 1])
-        patch = block.faces["x0"][(np.abs(angle - at) < HALF) & (centres[:, 0] < ROLLER / 2)]
-        return traction_loads(block.points, patch, outwards)
-
-    held = [
-        *sector_symmetry(block, 0.5 * np.pi),
-        on_plane("middle", block.face_nodes("z0"), (1.0, 0.0, 0.0), block.points.size),
-    ]
-    u = solve_solid(block.points, block.cells, STEEL.lame, held, push(0.0)).u[:, 0]
-    return 4 * float(push(0.0) @ u), 4 * float(push(0.5 * np.pi) @ u)
 
 
 def _check_free_ring(page: Page, free: FreeRing, levels: tuple[int, ...]) -> None:
@@ -319,29 +238,8 @@ def _check_sums(page: Page, found: InfluenceFunctions, count: int) -> None:
     )
 
 
-def on_feet(found: InfluenceFunctions) -> Floats:
-    """(rollers, rollers) compliance of the ring that stands on two feet, and is held nowhere else.
-
-    Neither its raceway nor anything else but the feet is fixed.
-    """
-    everywhere = np.concatenate([ANGLES, [FEET, -FEET]])
-    rigid = np.column_stack([np.cos(everywhere), np.sin(everywhere)])
-    chosen = np.concatenate([2 * np.arange(ROLLERS), 2 * np.arange(ROLLERS, ROLLERS + 2) + 1])
-    matrix = found.matrix(everywhere)[np.ix_(chosen, chosen)]
-    return carried(matrix, rigid, [ROLLERS, ROLLERS + 1])
-
-
-def in_rigid_housing(count: int) -> Floats:
-    """(rollers, rollers) compliance of the ring whose outside does not move."""
-    mesh = ring(RACEWAY, OUTSIDE, WIDTH, 0.02)
-    still = np.flatnonzero(np.abs(mesh.nodes[:, 1] - OUTSIDE) < 1e-9)
-    held = np.concatenate([dofs(still, c) for c in range(3)])
-    raceway = strips(OUTSIDE)[:1]
-    return influence_functions(mesh, STEEL, raceway, count, HALF, held=held).matrix(ANGLES)
-
-
 def _check_anchors(page: Page) -> None:
-    one, other = (on_feet(functions(OUTSIDE, 8, anchor)) for anchor in (1, 0))
+    one, other = (RING.on_feet(RING.functions(8, anchor), FEET) for anchor in (1, 0))
     page.vanishes(
         "ring on two feet: compliance by one anchor less that by another, relative",
         np.abs(one - other).max() / np.abs(one).max(),
@@ -353,13 +251,7 @@ def _check_anchors(page: Page) -> None:
 
 def press(compliance: Floats, stiffness: float = STIFFNESS, exponent: float = 1.0) -> Pressed:
     """Forces that carry the load, the shaft rigid, no clearance."""
-
-    def forces(down: float) -> Floats:
-        return roller_forces(compliance, down * np.cos(ANGLES), stiffness, exponent)
-
-    largest = 20 * LOAD * (1 / stiffness + np.abs(compliance).max())
-    down = brentq(lambda d: forces(d) @ np.cos(ANGLES) - LOAD, 0.0, largest, xtol=1e-16)
-    return Pressed(forces(down), down)
+    return RING.press(compliance, LOAD, stiffness, exponent)
 
 
 def _check_rigid_rings(page: Page, compliance: Floats, pressed: dict[str, Pressed]) -> None:

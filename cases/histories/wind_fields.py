@@ -147,9 +147,12 @@ def files(run: Run, page: Page, box: WindBox) -> None:
         write_bts(box, Path(folder) / "waves.bts", hub)
         write_hawc2(box, Path(folder) / "u.bin", SPEED, hub, 0.0)
         spacing = SPEED * box.step, float(np.diff(box.y)[0]), float(np.diff(box.z)[0])
+        planes, points, heights = box.speed.shape
         found = {
             "TurbSim": read_bts(Path(folder) / "waves.bts"),
-            "HAWC2": read_hawc2(Path(folder) / "u.bin", box.speed.shape, spacing, SPEED, hub),
+            "HAWC2": read_hawc2(
+                Path(folder) / "u.bin", (planes, points, heights), spacing, SPEED, hub
+            ),
         }
     exact = box_hub_loads(box).loads
     spread = exact.std(axis=0).max()

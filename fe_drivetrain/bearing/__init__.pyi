@@ -53,6 +53,8 @@ from .races import equilibrium_on_races as equilibrium_on_races
 from .races import rigid_races as rigid_races
 from .races import roller_motions as roller_motions
 from .rating import Ratings as Ratings
+from .rating import ball_capacity_factor as ball_capacity_factor
+from .rating import ball_dynamic_rating as ball_dynamic_rating
 from .rating import capacity_factor as capacity_factor
 from .rating import ratings as ratings
 from .rolling import Equilibrium as Equilibrium

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.commands.options import Channels, Mapping, Resume, RotorSpeed, SceneName, Skip
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.scenes import named_scene
@@ -24,12 +25,7 @@ _KEPT = "files that are done are kept: run again with --resume"
 
 
 def life_command(
-    scene: Annotated[
-        str,
-        typer.Argument(
-            metavar="SCENE", help="A scene file, or a name of the library, as in two_bearings."
-        ),
-    ],
+    scene: SceneName,
     loads: Annotated[
         list[str],
         typer.Option(
@@ -135,39 +131,10 @@ def life_command(
             "--reliability", metavar="PERCENT", help="Of modified lives: 90, 95 to 99, 99.5, 99.9."
         ),
     ] = 90.0,
-    channel: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--channel",
-            metavar="NAME=COLUMN",
-            help="How the files call a channel: NAME is time, Fx, Fy, Fz, Mx, My, Mz, rotor speed "
-            "or wind speed. May be repeated.",
-        ),
-    ] = None,
-    mapping: Annotated[
-        Path | None,
-        typer.Option(
-            "--mapping",
-            metavar="YAML",
-            help="Names, units, frame and origin of channels, for files of other programs "
-            "(docs/loads.md); --channel goes before it.",
-        ),
-    ] = None,
-    rotor_speed: Annotated[
-        float | None,
-        typer.Option(
-            "--rotor-speed", metavar="RPM", min=0.0, help="Of files that have no rotor speed."
-        ),
-    ] = None,
-    skip: Annotated[
-        float,
-        typer.Option(
-            "--skip",
-            metavar="SECONDS",
-            min=0.0,
-            help="What is left out at the beginning of each file.",
-        ),
-    ] = 0.0,
+    channel: Channels = None,
+    mapping: Mapping = None,
+    rotor_speed: RotorSpeed = None,
+    skip: Skip = 0.0,
     every: Annotated[
         int, typer.Option("--every", metavar="COUNT", min=1, help="Take one sample of so many.")
     ] = 1,
@@ -175,14 +142,7 @@ def life_command(
         bool,
         typer.Option("--weight/--no-weight", help="Whether gearbox and shaft have their weight."),
     ] = True,
-    resume: Annotated[
-        bool,
-        typer.Option(
-            "--resume",
-            help="Go on where a run was stopped: files that were done with the same options, and "
-            "have not changed since, are not computed again.",
-        ),
-    ] = False,
+    resume: Resume = False,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/life/SCENE."),

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from fe_drivetrain.commands.options import Channels, Mapping, Resume, RotorSpeed, Skip, Slopes
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
@@ -30,24 +31,8 @@ def loads_command(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Result folder.")] = Path(
         "reports/loads"
     ),
-    channel: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--channel",
-            metavar="NAME=COLUMN",
-            help="How the files call a channel: NAME is time, Fx, Fy, Fz, Mx, My, Mz, rotor speed "
-            "or wind speed, as in --channel 'wind speed=Vhub'. May be repeated.",
-        ),
-    ] = None,
-    mapping: Annotated[
-        Path | None,
-        typer.Option(
-            "--mapping",
-            metavar="YAML",
-            help="Names, units, frame and origin of channels, for files of other programs "
-            "(docs/loads.md); --channel goes before it.",
-        ),
-    ] = None,
+    channel: Channels = None,
+    mapping: Mapping = None,
     also: Annotated[
         list[str] | None,
         typer.Option(
@@ -57,30 +42,9 @@ def loads_command(
             "multiples of it, too. May be repeated.",
         ),
     ] = None,
-    rotor_speed: Annotated[
-        float | None,
-        typer.Option(
-            "--rotor-speed", metavar="RPM", min=0.0, help="Of files that have no rotor speed."
-        ),
-    ] = None,
-    skip: Annotated[
-        float,
-        typer.Option(
-            "--skip",
-            metavar="SECONDS",
-            min=0.0,
-            help="What is left out at the beginning of each file.",
-        ),
-    ] = 0.0,
-    slope: Annotated[
-        list[float] | None,
-        typer.Option(
-            "--slope",
-            metavar="M",
-            help="Exponent of an S-N curve, for damage-equivalent loads. May be repeated. "
-            "Default: 3, 4 and 10.",
-        ),
-    ] = None,
+    rotor_speed: RotorSpeed = None,
+    skip: Skip = 0.0,
+    slope: Slopes = None,
     frequency: Annotated[
         float,
         typer.Option(
@@ -187,14 +151,7 @@ def loads_command(
     parquet: Annotated[
         bool, typer.Option("--parquet", help="Write each table as Parquet, too (needs pyarrow).")
     ] = False,
-    resume: Annotated[
-        bool,
-        typer.Option(
-            "--resume",
-            help="Go on where a run was stopped: files that were counted with the same options, "
-            "and have not changed since, are not read again.",
-        ),
-    ] = False,
+    resume: Resume = False,
 ) -> None:
     """Show what is in load histories: statistics, spectra, cycles, time at level, load loops.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.commands.options import Mapping, SceneName, Skip, Slopes
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import Quick, results_text, tables_text
 from fe_drivetrain.commands.scenes import named_scene
@@ -29,19 +30,13 @@ if TYPE_CHECKING:
     from fe_drivetrain.suite.page import Page
     from fe_drivetrain.suite.run import Run
 
-_Scene = Annotated[
-    str,
-    typer.Argument(
-        metavar="SCENE", help="A scene file, or a name of the library, as in main_bearing_bonded."
-    ),
-]
 _OutFolder = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/COMMAND/SCENE."),
 ]
 
 
-def check_command(scene: _Scene, out: _OutFolder = None, set_: SceneSettings = None) -> None:
+def check_command(scene: SceneName, out: _OutFolder = None, set_: SceneSettings = None) -> None:
     """Check a scene, describe and draw it, and predict what each level of the ladder costs.
 
     Prints parts, bearings, supports, masses and costs; the report has the picture, too.
@@ -65,7 +60,7 @@ def check_command(scene: _Scene, out: _OutFolder = None, set_: SceneSettings = N
 
 
 def study_command(
-    scene: _Scene,
+    scene: SceneName,
     loads: Annotated[
         str | None,
         typer.Option(
@@ -75,33 +70,9 @@ def study_command(
             "quotes, as in 'outputs/*.outb'. Default: a surrogate of a generic 2 MW rotor.",
         ),
     ] = None,
-    skip: Annotated[
-        float,
-        typer.Option(
-            "--skip",
-            metavar="SECONDS",
-            min=0.0,
-            help="What is left out at the beginning of each file of --loads.",
-        ),
-    ] = 0.0,
-    mapping: Annotated[
-        Path | None,
-        typer.Option(
-            "--mapping",
-            metavar="YAML",
-            help="Names, units, frame and origin of channels in --loads, for files of other "
-            "programs (docs/loads.md).",
-        ),
-    ] = None,
-    slope: Annotated[
-        list[float] | None,
-        typer.Option(
-            "--slope",
-            metavar="M",
-            help="Exponent of an S-N curve, for damage-equivalent loads at 1 Hz. May be repeated. "
-            "Default: 3, 4 and 10.",
-        ),
-    ] = None,
+    skip: Skip = 0.0,
+    mapping: Mapping = None,
+    slope: Slopes = None,
     weight: Annotated[
         bool,
         typer.Option(
@@ -156,7 +127,7 @@ def study_command(
 
 
 def advise_command(
-    scene: _Scene,
+    scene: SceneName,
     quantity: Annotated[
         str | None,
         typer.Option(
@@ -210,7 +181,7 @@ def advise_command(
 
 
 def uncertainty_command(
-    scene: _Scene,
+    scene: SceneName,
     quantity: Annotated[
         list[str] | None,
         typer.Option(

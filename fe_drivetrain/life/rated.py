@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.catalogue import Entry, read_catalogue
 from fe_drivetrain.bearing.geometry import BallRow, Bearing
-from fe_drivetrain.bearing.rating import ratings
+from fe_drivetrain.bearing.rating import ball_dynamic_rating, ratings
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import validated
@@ -229,7 +229,7 @@ def rated_bearing(
     bearing : Bearing
         Of one kind of rolling elements.
     dynamic, static, fatigue : float, optional
-        C, C_0 and C_u [N]; C and C_0 of balls have to be given.
+        C, C_0 and C_u [N].
     b_m : float
         See `fe_drivetrain.bearing.ratings`.
     factors : Factors, optional
@@ -243,15 +243,14 @@ def rated_bearing(
     Raises
     ------
     InputError
-        A rating of balls is missing, or the rows differ from each other.
+        The rows differ from each other, or are beyond the tables of the standards.
     """
     given = (dynamic, static, fatigue)
     if isinstance(bearing.rows[0], BallRow):
-        if dynamic is None:
-            raise InputError(f"{bearing.name} has balls: give its C [N] from a catalogue")
         of_balls = static if static is not None else ball_static_rating(bearing)
         smaller = min(0.1 / (2.0 * bearing.arm), 1.0) ** 0.5
-        own = (dynamic, of_balls, of_balls / FATIGUE_OF_BALLS * smaller)
+        moving = dynamic if dynamic is not None else ball_dynamic_rating(bearing)
+        own = (moving, of_balls, of_balls / FATIGUE_OF_BALLS * smaller)
     elif None in given:
         computed = ratings(bearing, b_m)
         given_over_own = 1.0 if static is None else static / computed.static

@@ -43,6 +43,7 @@ from . import random_shafts as random_shafts
 from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_slices as ring_slices
 from . import ring_solids as ring_solids
+from . import rollers_on_rings as rollers_on_rings
 from . import round_shafts as round_shafts
 from . import sample_elastodyn as sample_elastodyn
 from . import seat_couplings as seat_couplings

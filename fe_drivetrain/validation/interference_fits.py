@@ -41,7 +41,7 @@ class Profile:
         return float(self.hoop[np.abs(self.r - r) < 1e-9].mean())
 
     def along(self, stress: str) -> tuple[Floats, Floats]:
-        """Radii of the nodes, each once, and the stress "hoop" or "radial" there [m, Pa]."""
+        """Radii of the nodes, each once, and their stress "hoop" or "radial" there [m, Pa]."""
         at, first = np.unique(self.r.round(9), return_index=True)
         return at, getattr(self, stress)[first]
 

@@ -1,0 +1,65 @@
+"""Options that several commands on scenes and load histories share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+SceneName = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENE", help="A scene file, or a name of the library, as in two_bearings."
+    ),
+]
+Channels = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--channel",
+        metavar="NAME=COLUMN",
+        help="How the files call a channel: NAME is time, Fx, Fy, Fz, Mx, My, Mz, rotor speed or "
+        "wind speed, as in --channel 'wind speed=Vhub'. May be repeated.",
+    ),
+]
+Mapping = Annotated[
+    Path | None,
+    typer.Option(
+        "--mapping",
+        metavar="YAML",
+        help="Names, units, frame and origin of channels, for files of other programs "
+        "(docs/loads.md); --channel, where there is one, goes before it.",
+    ),
+]
+RotorSpeed = Annotated[
+    float | None,
+    typer.Option(
+        "--rotor-speed", metavar="RPM", min=0.0, help="Of files that have no rotor speed."
+    ),
+]
+Skip = Annotated[
+    float,
+    typer.Option(
+        "--skip",
+        metavar="SECONDS",
+        min=0.0,
+        help="What is left out at the beginning of each file of loads.",
+    ),
+]
+Slopes = Annotated[
+    list[float] | None,
+    typer.Option(
+        "--slope",
+        metavar="M",
+        help="Exponent of an S-N curve, for damage-equivalent loads. May be repeated. Default: 3, "
+        "4 and 10.",
+    ),
+]
+Resume = Annotated[
+    bool,
+    typer.Option(
+        "--resume",
+        help="Go on where a run was stopped: files that were done with the same options, and have "
+        "not changed since, are not read again.",
+    ),
+]
