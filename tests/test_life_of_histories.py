@@ -31,7 +31,7 @@ from fe_drivetrain.life.roller_models import (
     steps_of,
     three_degree_rings,
 )
-from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.scene.reading import change_scene, library_scene
 
 LAMINAE = 10
 BEARING = double_row_tapered("S", 36, 0.065, 0.095, 0.7874, 20.0, 0.152, "O", laminae=LAMINAE)
@@ -226,6 +226,12 @@ def test_hub_loads_reach_the_rollers_by_the_path_that_is_named() -> None:
     assert_allclose(alone.lives()["L10r"], lives[None], rtol=1e-6)
     with pytest.raises(InputError, match="front, rear"):
         LoadPath(body, bearings, "middle")
+    # a load between the two follows the lever rule, but for what the gearbox's springs take
+    brake = {"name": "brake", "x": 0.7, "width": 0.1}
+    body = scene_body(change_scene(scene, {"load_points": [brake]}), 1)
+    half = LoadPath(body, bearings, "front", tilt_stiffness=PINNED)
+    (found,) = half.bearing_loads([[0.0] * 6 + [0, 0, 1e5, 0, 0, 0]])[0]
+    assert_allclose(found[2], 1e5 * (1.6 - 0.7) / 1.6, rtol=0.05)
 
 
 def test_a_site_weights_winds_by_their_time(damage: Damage) -> None:

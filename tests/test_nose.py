@@ -133,6 +133,7 @@ def test_the_assembly_is_the_solid_shaft_on_the_solid_nose(
 ) -> None:
     """Condensed each and put in series, or assembled in one system: the same model."""
     solid, (top, _, response) = shaft_level(COARSE, 3), assembly
+    assert top.neglects == solid.neglects
     assert response.equilibrium_error < 1e-7
     assert response.superposition_error < 1e-7
     first = 6 * solid.points.index("hub")

@@ -165,12 +165,14 @@ def life_command(
         from fe_drivetrain.commands.life_digest import Reading
         from fe_drivetrain.commands.life_page import lived
         from fe_drivetrain.commands.loads_words import parse_channels, parse_site
+        from fe_drivetrain.commands.study_loads import weightless
         from fe_drivetrain.hub_loads.channel_map import read_channel_map
         from fe_drivetrain.hub_loads.recorded import OWN_NAMES, recorded_files
         from fe_drivetrain.life.roller_damage import LifeRules
         from fe_drivetrain.suite.case import Case
         from fe_drivetrain.suite.result_folders import run_case
 
+        found = found if weight else weightless(found)
         rules = LifeRules(
             parse_lubricant(lubricant, temperature, supply, cleanliness),
             "standard" if riser else "none",

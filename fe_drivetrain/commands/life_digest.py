@@ -12,10 +12,12 @@ import numpy as np
 from fe_drivetrain.bearing.contact import line_pressure
 from fe_drivetrain.bearing.geometry import RollerRow, pitch_ratio
 from fe_drivetrain.commands.life_bearings import OneBearing
+from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.recorded import read_recorded
 from fe_drivetrain.life.limits import Limits
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
@@ -166,6 +168,7 @@ def digest(
     """
     found = read_recorded(file, reading.names, reading.skip)
     history = found.history.moved(scene.loads_at, scene.shaft.front)
+    require_points([history], list(scene.bands))
     if found.rotor_speed is not None:
         speed = found.rotor_speed * 30.0 / np.pi
     elif reading.rotor_speed is not None:
@@ -175,7 +178,7 @@ def digest(
             f"hub loads '{file}': there is no rotor speed, by which lives count turns: give "
             "--rotor-speed in 1/min, or --channel 'rotor speed=COLUMN'"
         )
-    loads, speed = history.loads[:: reading.every], speed[:: reading.every]
+    loads, speed = entering(scene, history)[:: reading.every], speed[:: reading.every]
     n = len(loads)
     step = history.step * reading.every
     sums = _Sums(one)

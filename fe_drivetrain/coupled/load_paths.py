@@ -69,7 +69,8 @@ class LoadPath:
         Parameters
         ----------
         hub_loads : array_like
-            (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m] of the rotor on the shaft at the hub.
+            (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m] of the rotor on the shaft at the hub; six
+            columns more for each load point of the body.
 
         Returns
         -------

@@ -42,6 +42,8 @@ TITLES = (
     "assembly of solids",
 )
 
+_ROUND_A_NOSE = "rings of bearings on the nose, and the bedplate that holds it"  # left out
+
 
 @dataclass(frozen=True)
 class Cost:
@@ -193,7 +195,7 @@ def shaft_level(
             neglects.append("fillets")
         neglects.append("sections that do not stay plane near steps and seats")
     if scene.nose is not None:
-        neglects.append("rings of bearings on the nose, and the bedplate that holds it")
+        neglects.append(_ROUND_A_NOSE)
     if not scene.bearing_units:
         housings, title = {}, TITLES[level]
     elif housings is None:
@@ -248,7 +250,9 @@ def level_of_response(scene: Scene, response: Response, seconds: float) -> Level
     names = (*scene.bearing_names, "gearbox")
     reactions = {name: response.reactions[name] for name in names}
     cost = Cost(seconds, response.diagnostics.n_unknowns)
-    return LevelModel(4, TITLES[4], (), cost, reactions, ("hub",), response.motions["hub"][:, :6])
+    neglects = () if scene.nose is None else (_ROUND_A_NOSE,)
+    motions = response.motions["hub"][:, :6]
+    return LevelModel(4, TITLES[4], neglects, cost, reactions, ("hub",), motions)
 
 
 def housing_springs(
