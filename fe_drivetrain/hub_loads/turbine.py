@@ -229,7 +229,7 @@ def blade_modes(turbine: Turbine, count: int = 400) -> BladeModes:
     """
     length = turbine.rotor.radius - turbine.blade_root
     step = 1.0 / count
-    place = step * (np.arange(count) + 0.5)
+    place = step * (np.arange(count, dtype=np.float64) + 0.5)
     density = np.interp(place, _PLACES, _MASS)
     mass = turbine.blade_mass * density / density.sum()
     radius = turbine.blade_root + length * place
