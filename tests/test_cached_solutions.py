@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
+from fe_drivetrain.common import made_by
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.made_by import arithmetic, source_hash
 from fe_drivetrain.fidelity import bearing_units
@@ -178,3 +179,23 @@ def test_threads_and_code_are_in_the_key(monkeypatch: pytest.MonkeyPatch) -> Non
     assert arithmetic() != before
     room = "fe_drivetrain.response"
     assert source_hash({room: {"model.py"}}) != source_hash({room: {"unit_loads.py"}})
+
+
+def test_a_program_has_one_hash_wherever_its_cases_lie(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the repository cases and geometry stand beside the package, installed within it."""
+    found = []
+    for layout in ("beside", "within"):
+        root = tmp_path / layout
+        around = root / "fe_drivetrain" if layout == "within" else root
+        folders = {"fe_drivetrain": root / "fe_drivetrain"}
+        folders |= {f"fe_drivetrain.{name}": around / name for name in ("geometry", "cases")}
+        for package, folder in folders.items():
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "one.py").write_text(package)
+        monkeypatch.setattr(made_by, "files", folders.__getitem__)
+        found.append(made_by.program_hash.__wrapped__())
+        (folders["fe_drivetrain.cases"] / "one.py").write_text("changed")
+        assert made_by.program_hash.__wrapped__() != found[-1]
+    assert found[0] == found[1]

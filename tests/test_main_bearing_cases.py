@@ -16,6 +16,7 @@ from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
 from fe_drivetrain.hub_loads.csv_table import read_csv
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.report.typeset import typeset
 from fe_drivetrain.suite.case import all_cases, find_cases
 from fe_drivetrain.suite.suite import run_cases
 
@@ -81,7 +82,7 @@ def test_results_are_valid_and_physics_holds(reports, name):
     failed = [v.quantity for v in results.verdicts if not v.passed]
     assert [q for q in failed if not any(text in q for text in NEEDS_REAL_SCENE)] == []
     page = (reports / name / "report.html").read_text()
-    assert results.title in html.unescape(page)
+    assert typeset(results.title) in html.unescape(page)
 
 
 @pytest.mark.parametrize("name", ["bonded", "spherical", "rmse"])

@@ -18,7 +18,8 @@ COARSER, TURN = 2.2, 8
 def run(run: Run, page: Page, row: Record) -> None:
     """All levels of a library scene with the user's changes to it, and its stiffness in files."""
     original = library_scene(row["scene"])
-    scene = change_scene(original, run.settings)
+    finer = {} if run.quick else {f"mesh.{key}": size for key, size in row.get("mesh", {}).items()}
+    scene = change_scene(original, finer | dict(run.settings))
     if run.quick:
         mesh = scene.mesh.scaled(row.get("coarser", COARSER), TURN)
         scene = scene.model_copy(update={"mesh": mesh})

@@ -43,10 +43,12 @@ def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
 @once
 def program_hash() -> str:
     """SHA-256 of all sources and tables of this program, cases and geometry included."""
-    code = hashlib.sha256()
+    code, found = hashlib.sha256(), {}
+    # in an installation the last two lie in the first, in the repository beside it
     for package in ("fe_drivetrain", "fe_drivetrain.geometry", "fe_drivetrain.cases"):
-        for name, file in sorted(_sources(files(package), package)):
-            code.update(name.encode() + b"\0" + file.read_bytes() + b"\0")
+        found |= dict(_sources(files(package), package.replace(".", "/")))
+    for name in sorted(found):
+        code.update(name.encode() + b"\0" + found[name].read_bytes() + b"\0")
     return code.hexdigest()
 
 
