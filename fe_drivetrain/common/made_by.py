@@ -43,7 +43,8 @@ def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
 @once
 def program_hash() -> str:
     """SHA-256 of all sources and tables of this program, cases and geometry included."""
-    code, found = hashlib.sha256(), {}
+    code = hashlib.sha256()
+    found: dict[str, Traversable] = {}
     # in an installation the last two lie in the first, in the repository beside it
     for package in ("fe_drivetrain", "fe_drivetrain.geometry", "fe_drivetrain.cases"):
         found |= dict(_sources(files(package), package.replace(".", "/")))
