@@ -13,9 +13,8 @@ from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sites import Site, site_life
 from fe_drivetrain.life.load_series import equivalent_life, miner_load, years
+from fe_drivetrain.life.lubricants import GREASE, contamination_factor
 from fe_drivetrain.life.modified_life import (
-    GREASE,
-    contamination,
     equivalent_loads,
     life_factor,
     modified_lamina_life,
@@ -277,14 +276,18 @@ def test_needed_viscosity_is_that_of_the_table_and_steps_at_1000() -> None:
 def test_contamination_of_three_greases(nu: float, kappa: float, factors: list[float]) -> None:
     found = nu / needed_viscosity(18.0, PITCH)
     assert_allclose(found, kappa, atol=5e-3)
-    e_C = [float(contamination(found, PITCH, grease)) for grease in list(GREASE)[1:]]
+    e_C = [
+        float(contamination_factor(found, PITCH, "grease", grease)) for grease in list(GREASE)[1:]
+    ]
     assert_allclose(e_C, factors, atol=5.1e-4)
-    assert contamination(found, PITCH, "high") > e_C[0]
+    assert contamination_factor(found, PITCH, "grease", "high") > e_C[0]
 
 
 def test_contamination_of_a_main_bearing_is_mastas() -> None:
     """A published 26 MW study; its class is not stated: slight to typical fits."""
-    assert_allclose(contamination(1.0, 3.3286, "slight to typical"), 0.888378, rtol=1e-3)
+    assert_allclose(
+        contamination_factor(1.0, 3.3286, "grease", "slight to typical"), 0.888378, rtol=1e-3
+    )
 
 
 @pytest.mark.parametrize(
@@ -299,7 +302,7 @@ def test_contamination_of_a_main_bearing_is_mastas() -> None:
             lambda: row_loads(BEARINGS[38.0].rows[0], np.zeros((1, 36, 9)), C, turning="both"),
             "'inner' or 'outer'",
         ),
-        (lambda: contamination(1.0, 0.7, "dirty"), "very severe"),
+        (lambda: contamination_factor(1.0, 0.7, "grease", "dirty"), "very severe"),
         (lambda: viscosity(50.0, ((40, 460), (40, 30))), "two temperatures"),
         (lambda: equivalent_life([1.0, -1.0]), "0 or more"),
         (lambda: equivalent_life([1.0, 1.0], [1.0, 0.0]), "durations"),

@@ -44,6 +44,12 @@ EVEN = np.ones(LAMINAE)
 #: Load cases whose laminae are held in memory together.
 CHUNK = 256
 
+#: A load of usual proportions: thrust, weight, moment [N, N m].
+LOAD = np.array([1.5e5, 0.0, -4e5, 3e5, 0.0])
+
+#: What a choice may change of a life.
+ENOUGH = 0.05
+
 PITCH = read_catalogue()["bearing_s"].pitch_diameter
 
 

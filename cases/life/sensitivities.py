@@ -30,7 +30,7 @@ from fe_drivetrain.life import (
     Lubricant,
     RowLoads,
     basic_life,
-    contamination,
+    contamination_factor,
     equivalent_loads,
     lamina_life,
     life_factor,
@@ -134,7 +134,7 @@ def life_of_greases(
     for lubricant in lubricants.values():
         kappa = lubricant.kappa(speed, PITCH)
         for grease in GREASES.values():
-            limit = setup.fatigue * contamination(kappa, PITCH, grease)
+            limit = setup.fatigue * contamination_factor(kappa, PITCH, "grease", grease)
             with np.errstate(divide="ignore"):  # a lamina without load has no damage
                 factors = [life_factor(limit / one, kappa) for one in P]
             yield modified_lamina_life(rows, factors)

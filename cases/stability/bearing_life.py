@@ -7,6 +7,8 @@ import numpy as np
 from fe_drivetrain.bearing import equilibrium, lamina_loads, pressures, sjovall
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import (
+    ENOUGH,
+    LOAD,
     Setup,
     own_setup,
     roller_rows,
@@ -25,12 +27,6 @@ from fe_drivetrain.life import (
     life_factor,
 )
 from fe_drivetrain.suite import Page, Record, Run
-
-#: A load of usual proportions: thrust, weight, moment [N, N m].
-LOAD = np.array([1.5e5, 0.0, -4e5, 3e5, 0.0])
-
-#: What a choice may change of a life.
-ENOUGH = 0.05
 
 KAPPA = "viscosity ratio kappa"
 OVER = "e_C C_u / P"

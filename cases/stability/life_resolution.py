@@ -7,6 +7,8 @@ import numpy as np
 from fe_drivetrain.bearing import equilibrium, lamina_loads
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import (
+    ENOUGH,
+    LOAD,
     SPEEDS,
     Winds,
     at_site,
@@ -19,12 +21,6 @@ from fe_drivetrain.cases.life.operating import (
 from fe_drivetrain.compare import fitted_exponent
 from fe_drivetrain.life import stress_riser
 from fe_drivetrain.suite import Page, Record, Run
-
-#: A load of usual proportions: thrust, weight, moment [N, N m].
-LOAD = np.array([1.5e5, 0.0, -4e5, 3e5, 0.0])
-
-#: What a choice may change of a life.
-ENOUGH = 0.05
 
 LAMINAE = "laminae of a roller"
 SEEDS = "histories of each wind speed"

@@ -5,17 +5,19 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.cases.verification.torsion_bound import BOUNDS, check_plane_sections
-from fe_drivetrain.scene import MATERIALS
+from fe_drivetrain.cases.verification.torsion_conical import (
+    HALF_ANGLE,
+    INPUTS,
+    RADII,
+    SHAFT,
+    STEEL,
+)
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import between_spheres, parabola_shortfall
 from fe_drivetrain.validation.torsion_meridian import series_stiffness, torsion_bounds
 
-STEEL = MATERIALS["steel"]
 G = STEEL.shear_modulus
-#: Radii at the ends [m] and half angle of the cone [degrees].
-RADII, HALF_ANGLE = (0.15, 0.3), 10.0
-SHAFT = solid_shafts.cone(RADII, HALF_ANGLE)
 ANGLES, QUICK_ANGLES = (2.5, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0), (5.0, 10.0, 20.0, 30.0)
 
 ANGLE, FLAT, SPHERES = "half angle [degrees]", "rigid flat ends", "spheres"
@@ -71,14 +73,7 @@ def run(run: Run, page: Page) -> None:
         f"angle of {HALF_ANGLE:g} degrees."
     )
     page.section("Cone")
-    show_inputs(
-        page,
-        ("radius at the thin end", RADII[0], "m"),
-        ("radius at the thick end", RADII[1], "m"),
-        ("half angle of the cone", HALF_ANGLE, "degrees"),
-        ("length", SHAFT.length, "m", "of these"),
-        steel=STEEL,
-    )
+    show_inputs(page, *INPUTS, steel=STEEL)
     title = "How much too stiff the integral of dx / GJ is: against rigid flat ends, and against "
     title += "Michell's cone between spheres through the ends' centres"
     curves = {FLAT: FLAT, SPHERES: SPHERES}

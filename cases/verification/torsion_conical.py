@@ -13,6 +13,12 @@ STEEL = MATERIALS["steel"]
 #: Radii at the ends [m] and half angle of the cone [degrees].
 RADII, HALF_ANGLE = (0.15, 0.3), 10.0
 SHAFT = solid_shafts.cone(RADII, HALF_ANGLE)
+INPUTS = (
+    ("radius at the thin end", RADII[0], "m"),
+    ("radius at the thick end", RADII[1], "m"),
+    ("half angle of the cone", HALF_ANGLE, "degrees"),
+    ("length", SHAFT.length, "m", "of these"),
+)
 #: Of Michell's displacements: u_t = -SCALE r / R^3 [m^3].
 SCALE = 1e-3 * RADII[0] ** 3
 TORQUE = SCALE * michell_torque(np.radians(HALF_ANGLE), STEEL.shear_modulus)
@@ -59,14 +65,7 @@ def run(run: Run, page: Page) -> None:
         f"{best[ERROR]:.1g}."
     )
     page.section("Cone")
-    show_inputs(
-        page,
-        ("radius at the thin end", RADII[0], "m"),
-        ("radius at the thick end", RADII[1], "m"),
-        ("half angle of the cone", HALF_ANGLE, "degrees"),
-        ("length", SHAFT.length, "m", "of these"),
-        steel=STEEL,
-    )
+    show_inputs(page, *INPUTS, steel=STEEL)
     curves = {MISSED: "torque", ERROR: "displacement, largest"}
     title, axis = "Convergence on Michell's field", "relative error"
     page.sweep(title, meshes, UNKNOWNS, curves, log="xy", axis=axis)

@@ -13,6 +13,9 @@ from fe_drivetrain.common.arrays import Floats, Ints
 MAX_STEPS = 100
 MAX_TRIALS = 80
 
+# Of the stiffness of all contacts, for what none carries yet, at the first step.
+FIRMEST = 1e-3
+
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 def solve(A: Floats, b: Floats, x: Floats) -> bool:
@@ -81,6 +84,14 @@ def narrowed(
 
 
 @njit(cache=True, error_model="numpy")
+def next_firmness(firm: float, step: float) -> float:
+    """How firmly to hold what no contact carries, after a step: softer where it was too short."""
+    if step > 1.0:
+        return 0.1 * firm
+    return min(10.0 * firm, FIRMEST) if step < 0.5 else firm
+
+
+@njit(cache=True, error_model="numpy")
 def over_allowed(norm: float, allowed: float) -> float:
     """A residual over what is allowed; nothing is allowed, and left, where there is no load."""
     if allowed > 0.0:
@@ -141,7 +152,7 @@ def _newton(
     w, base, target = start.copy(), np.empty(m), np.empty(m)
     _projected(B, load, target)
     size = _norm(target)
-    evaluations, steps, total, firm = 0, 0, known, 1e-3
+    evaluations, steps, total, firm = 0, 0, known, FIRMEST
     _expanded(B, w, u)
     if known < 0.0:
         total = evaluate(u, bearing, F, K, s, f)
@@ -192,10 +203,7 @@ def _newton(
             )
             if step in (low, high):
                 break
-        if step > 1.0:
-            firm *= 0.1
-        elif step < 0.5:
-            firm = min(10.0 * firm, 1e-3)
+        firm = next_firmness(firm, step)
         steps += 1
 
 

@@ -11,7 +11,13 @@ import numpy as np
 from numba import njit
 
 from fe_drivetrain.bearing.kernels import GAP, LENGTH, Packed, roller_sums, row_of
-from fe_drivetrain.bearing.newton import narrowed, over_allowed, solve
+from fe_drivetrain.bearing.newton import (
+    FIRMEST,
+    narrowed,
+    next_firmness,
+    over_allowed,
+    solve,
+)
 from fe_drivetrain.common.arrays import Floats, Ints
 
 MAX_STEPS = 100
@@ -114,7 +120,7 @@ def _newton(
     b, c, db, dc = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     at_b, at_c = np.empty(n), np.empty(n)
     size = np.sqrt(_dot(load, load))
-    steps, firm = 0, 1e-3
+    steps, firm = 0, FIRMEST
     for j in range(n):
         b[j], c[j] = _dot(body.approach[j], q), _dot(body.lean[j], q)
     total = _sums(b, c, bearing, s)
@@ -164,10 +170,7 @@ def _newton(
             )
             if step in (low, high):
                 break
-        if step > 1.0:
-            firm *= 0.1
-        elif step < 0.5:
-            firm = min(10.0 * firm, 1e-3)
+        firm = next_firmness(firm, step)
         for i in range(m):
             q[i] += step * d[i]
         for j in range(n):

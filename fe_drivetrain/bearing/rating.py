@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos
+from typing import TypeVar
 
 import numpy as np
 
@@ -26,6 +27,9 @@ _F_C_OF_BALLS = (
     *(59.8, 59.6, 59.3, 59.0, 58.6, 58.2, 57.7, 57.1, 56.6, 56.0),
     *(55.3, 54.6, 53.9, 53.2, 52.4, 51.7, 50.9, 50.0, 49.2, 48.4),
 )
+
+
+OneRow = TypeVar("OneRow", RollerRow, BallRow)
 
 
 @dataclass(frozen=True)
@@ -65,14 +69,7 @@ def ratings(bearing: Bearing, b_m: float = 1.1) -> Ratings:
     InputError
         The rows are not rollers, or not equal.
     """
-    rows = [row for row in bearing.rows if isinstance(row, RollerRow)]
-    different = {(r.rollers, r.radius, abs(r.angle), r.diameter, r.length) for r in rows}
-    if len(rows) != len(bearing.rows) or len(different) != 1:
-        raise InputError(
-            f"ratings of {bearing.name}: its rows must be rollers, equal in number, size and "
-            "contact angle"
-        )
-    row, i = rows[0], len(rows)
+    row, i = _equal_rows(bearing, RollerRow, "rollers"), len(bearing.rows)
     gamma, cosine = pitch_ratio(row), cos(row.angle)
     D, L, pitch = 1e3 * row.diameter, 1e3 * row.length, 2e3 * row.radius
     C = (
@@ -130,17 +127,10 @@ def ball_dynamic_rating(bearing: Bearing, b_m: float = 1.3) -> float:
     InputError
         The rows are not balls, or not equal, or gamma is beyond the table of f_c.
     """
-    rows = [row for row in bearing.rows if isinstance(row, BallRow)]
-    different = {(r.balls, r.radius, abs(r.angle), r.diameter) for r in rows}
-    if len(rows) != len(bearing.rows) or len(different) != 1:
-        raise InputError(
-            f"rating of {bearing.name}: its rows must be balls, equal in number, size and contact "
-            "angle"
-        )
-    row = rows[0]
+    row, i = _equal_rows(bearing, BallRow, "balls"), len(bearing.rows)
     D, size = 1e3 * row.diameter, ball_capacity_factor(pitch_ratio(row))
     grown = D**1.8 if D <= 25.4 else 3.647 * D**1.4
-    return float(b_m * size * (len(rows) * cos(row.angle)) ** 0.7 * row.balls ** (2 / 3) * grown)
+    return float(b_m * size * (i * cos(row.angle)) ** 0.7 * row.balls ** (2 / 3) * grown)
 
 
 def ball_capacity_factor(gamma: float) -> float:
@@ -168,3 +158,18 @@ def ball_capacity_factor(gamma: float) -> float:
         )
     count = len(_F_C_OF_BALLS)
     return float(np.interp(gamma, np.arange(1, count + 1) / 100.0, _F_C_OF_BALLS))
+
+
+def _equal_rows(bearing: Bearing, kind: type[OneRow], what: str) -> OneRow:
+    """The first row of a bearing, all of whose rows are of a kind and equal."""
+    rows = [row for row in bearing.rows if isinstance(row, kind)]
+    different = {
+        (count, r.radius, abs(r.angle), r.diameter, getattr(r, "length", None))
+        for count, r in zip(bearing.counts, rows, strict=False)
+    }
+    if len(rows) != len(bearing.rows) or len(different) != 1:
+        raise InputError(
+            f"ratings of {bearing.name}: its rows must be {what}, equal in number, size and "
+            "contact angle"
+        )
+    return rows[0]

@@ -6,12 +6,11 @@ from .load_series import miner_load as miner_load
 from .load_series import years as years
 from .lubricants import FILTERED_OIL as FILTERED_OIL
 from .lubricants import GRADES as GRADES
+from .lubricants import GREASE as GREASE
 from .lubricants import OIL_BATH as OIL_BATH
 from .lubricants import SUPPLIES as SUPPLIES
 from .lubricants import Lubricant as Lubricant
 from .lubricants import contamination_factor as contamination_factor
-from .modified_life import GREASE as GREASE
-from .modified_life import contamination as contamination
 from .modified_life import equivalent_loads as equivalent_loads
 from .modified_life import life_factor as life_factor
 from .modified_life import modified_lamina_life as modified_lamina_life

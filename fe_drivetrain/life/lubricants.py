@@ -10,15 +10,22 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.life.modified_life import (
-    GREASE,
-    film_factor,
-    grease_constants,
-    needed_viscosity,
-    viscosity,
-)
+from fe_drivetrain.life.modified_life import LAST_KAPPA, needed_viscosity, viscosity
 
 Supply = Literal["grease", "filtered oil", "oil bath"]
+
+GREASE = {
+    "high": (0.0864, 0.6796),
+    "normal": (0.0432, 1.141),
+    "slight to typical": (0.0177, 1.677),
+    "severe": (0.0115, 2.662),
+    "very severe": (0.00617, 4.06),
+}
+"""c1 and c2 of the contamination factor, by contamination of the grease; from memory of ISO 281,
+annex A, not verified."""
+
+SMALL_SLIGHT = 1.887
+"""c2 of slight to typical contamination below a pitch diameter of 500 mm."""
 
 FILTERED_OIL = {
     "-/13/10": (0.0864, 0.5663),
@@ -151,8 +158,9 @@ def contamination_factor(
     """
     if cleanliness not in SUPPLIES.get(supply, {}):
         Lubricant(460.0, 30.5, supply=supply, cleanliness=cleanliness)  # raises
-    if supply == "grease":
-        c1, c2 = grease_constants(pitch_diameter, cleanliness)
-    else:
-        c1, c2 = SUPPLIES[supply][cleanliness]
-    return film_factor(kappa, pitch_diameter, c1, c2)
+    c1, c2 = SUPPLIES[supply][cleanliness]
+    if (supply, cleanliness) == ("grease", "slight to typical") and 1e3 * pitch_diameter < 500.0:
+        c2 = SMALL_SLIGHT
+    mm = 1e3 * pitch_diameter
+    film = np.minimum(np.asarray(kappa, dtype=float), LAST_KAPPA) ** 0.68
+    return np.asarray(np.minimum(c1 * film * mm**0.55, 1.0) * max(1.0 - c2 / mm ** (1 / 3), 0.0))

@@ -1,7 +1,7 @@
 """Modified reference rating life: lubricant, contamination and fatigue limit, lamina by lamina.
 
 Constants of the life factor are those of ISO 281 as public code and Stirling (2023, eqs 5.11 to
-5.13) have them, those of contamination in grease are from memory: none was read in the standard.
+5.13) have them: none was read in the standard.
 Additives, wear, sliding and micropitting are not covered.
 """
 
@@ -49,18 +49,6 @@ FACTORS = {
 
 LAST_KAPPA = 4.0
 """Viscosity beyond this ratio brings nothing."""
-
-GREASE = {
-    "high": (0.0864, 0.6796),
-    "normal": (0.0432, 1.141),
-    "slight to typical": (0.0177, 1.677),
-    "severe": (0.0115, 2.662),
-    "very severe": (0.00617, 4.06),
-}
-"""c1 and c2 of the contamination factor, by contamination of the grease (ISO 281, annex A)."""
-
-SMALL_SLIGHT = 1.887
-"""c2 of slight to typical contamination below a pitch diameter of 500 mm."""
 
 MIX = 0.323 / LAMBDA
 """Equivalent load of a row from its laminae, without reduction for edge stress: some 0.389."""
@@ -125,81 +113,6 @@ def needed_viscosity(speed: ArrayLike, pitch_diameter: float) -> Floats:
     n = np.asarray(speed, dtype=float)
     slow, fast = 45000.0 * n**-0.83, 4500.0 * n**-0.5
     return np.asarray(np.where(n < 1000.0, slow, fast) / np.sqrt(1e3 * pitch_diameter))
-
-
-def contamination(kappa: ArrayLike, pitch_diameter: float, grease: str) -> Floats:
-    """Contamination factor e_C of grease lubrication.
-
-    Parameters
-    ----------
-    kappa : array_like
-        Viscosity ratio; above 4 it counts as 4.
-    pitch_diameter : float
-        D_pw [m].
-    grease : str
-        A key of `GREASE`.
-
-    Returns
-    -------
-    e_C : Floats
-        min(c1 kappa^0.68 D_pw^0.55, 1) (1 - c2 / D_pw^(1/3)), D_pw in mm; at least 0.
-
-    Raises
-    ------
-    InputError
-        There is no such contamination.
-    """
-    return film_factor(kappa, pitch_diameter, *grease_constants(pitch_diameter, grease))
-
-
-def grease_constants(pitch_diameter: float, grease: str) -> tuple[float, float]:
-    """c1 and c2 of a contamination of grease.
-
-    Parameters
-    ----------
-    pitch_diameter : float
-        D_pw [m].
-    grease : str
-        A key of `GREASE`.
-
-    Returns
-    -------
-    c1, c2 : float
-        For `film_factor`.
-
-    Raises
-    ------
-    InputError
-        There is no such contamination.
-    """
-    if grease not in GREASE:
-        raise InputError(f"contamination '{grease}': choose {', '.join(GREASE)}")
-    c1, c2 = GREASE[grease]
-    if grease == "slight to typical" and 1e3 * pitch_diameter < 500.0:
-        c2 = SMALL_SLIGHT
-    return c1, c2
-
-
-def film_factor(kappa: ArrayLike, pitch_diameter: float, c1: float, c2: float) -> Floats:
-    """e_C of its two constants.
-
-    Parameters
-    ----------
-    kappa : array_like
-        Viscosity ratio; above 4 it counts as 4.
-    pitch_diameter : float
-        D_pw [m].
-    c1, c2 : float
-        Constants of ISO 281, annex A.
-
-    Returns
-    -------
-    e_C : Floats
-        min(c1 kappa^0.68 D_pw^0.55, 1) (1 - c2 / D_pw^(1/3)), D_pw in mm; at least 0.
-    """
-    mm = 1e3 * pitch_diameter
-    film = np.minimum(np.asarray(kappa, dtype=float), LAST_KAPPA) ** 0.68
-    return np.asarray(np.minimum(c1 * film * mm**0.55, 1.0) * max(1.0 - c2 / mm ** (1 / 3), 0.0))
 
 
 def life_factor(ratio: ArrayLike, kappa: ArrayLike, contact: Contact = "line") -> Floats:
