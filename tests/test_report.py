@@ -284,6 +284,23 @@ def test_images_are_embedded_whole_and_described(tmp_path: Path) -> None:
     assert base64.b64decode(data) == (tmp_path / "model.png").read_bytes()
 
 
+def test_addresses_are_no_text_to_set(tmp_path: Path) -> None:
+    """Of a picture's letters and digits some look like a power of ten, as do those of a name."""
+    page_of(tmp_path, results("plain"))
+    picture = tmp_path / "model.png"
+    content = picture.read_bytes()
+    content += bytes(-len(content) % 3) + base64.b64decode("A+1e5+AA")
+    picture.write_bytes(content)
+    text = write_page(tmp_path).read_text("utf-8")
+    (image,) = Page(text).all("img")
+    assert base64.b64decode((image["src"] or "").partition(",")[2]) == content
+    case = tmp_path / "all" / "own" / "mesh-1e5"
+    case.mkdir(parents=True)
+    page_of(case, results("own/mesh-1e5"))
+    index = Page(write_index(tmp_path / "all").read_text("utf-8"))
+    assert "own/mesh-1e5/report.html" in [a.get("href") for a in index.all("a")]
+
+
 @pytest.mark.parametrize("file", ["missing.png", "../secret.png", "text.png", "link.png", ""])
 def test_an_image_must_be_a_png_in_the_folder(tmp_path: Path, file: str) -> None:
     Pixels.new("RGB", (2, 2)).save(tmp_path / "secret.png")

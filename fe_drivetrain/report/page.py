@@ -15,6 +15,7 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import jinja2
 from markupsafe import Markup, escape
@@ -191,6 +192,7 @@ def _environment() -> jinja2.Environment:
         "error": error_text,
         "tolerance": tolerance_text,
         "safe_range": safe_range,
+        "page_of": _page_of,
     }
     environment.filters |= shared
     return environment
@@ -438,17 +440,23 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _as_data_url(image: Image, folder: Path) -> str:
-    """A PNG of the folder, embedded."""
+def _as_data_url(image: Image, folder: Path) -> Markup:
+    """A PNG of the folder, embedded; Markup, for its letters and digits are no numbers to set."""
     path = folder / image.file
     if Path(image.file).name != image.file or not path.is_file() or path.is_symlink():
         raise InputError(f"image {image.file!r} of results.json is not a file in {folder}")
     content = path.read_bytes()
     if not content.startswith(_PNG):
         raise InputError(f"image {image.file!r} of results.json is no PNG: write it as one")
-    return f"data:image/png;base64,{base64.b64encode(content).decode()}"
+    return Markup(f"data:image/png;base64,{base64.b64encode(content).decode()}")
 
 
-def _hash(script: str) -> str:
+def _hash(script: str) -> Markup:
     """How a content-security policy names a script."""
-    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return Markup(f"'sha256-{digest}'")
+
+
+def _page_of(case: str) -> Markup:
+    """Address of a case's page from that of the index."""
+    return Markup(f"{quote(case)}/report.html")
