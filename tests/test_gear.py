@@ -8,12 +8,11 @@ import pytest
 from published_gears import example_1, nrel_5mw
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.gear.functions import inverse_involute, involute_of
 from fe_drivetrain.gear.involute import (
     Gear,
     Pair,
     Rack,
-    inverse_involute,
-    involute_of,
     meshing_without_backlash,
 )
 from fe_drivetrain.gear.planets import (

@@ -8,7 +8,8 @@ import pytest
 from published_gears import example_1, nrel_5mw
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.gear.involute import Gear, Pair, Rack, involute_of, meshing_without_backlash
+from fe_drivetrain.gear.functions import involute_of
+from fe_drivetrain.gear.involute import Gear, Pair, Rack, meshing_without_backlash
 from fe_drivetrain.gear.iso import blank_factor, iso_stiffness, rack_factor
 from fe_drivetrain.gear.meshes import (
     MeshStiffness,

@@ -14,7 +14,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.gear.involute import Pair, involute_of
+from fe_drivetrain.gear.functions import involute_of
+from fe_drivetrain.gear.involute import Pair
 
 
 def equally_spaced(sun: int, ring: int, planets: int) -> bool:
