@@ -148,17 +148,18 @@ def test_elements_converge_and_loads_are_reciprocal(meshed: MeshedPair) -> None:
     # both teeth are the same, on meshes of their own
     assert fine[0, own, 0, own] == pytest.approx(fine[1, own, 1, own], rel=5e-4)
     # what one tooth does to the other; measured at some depth, so not exactly reciprocal
-    assert fine[0][:, 1] == pytest.approx(fine[1][:, 0].T, rel=0.02)
+    assert fine[0][:, 1] == pytest.approx(fine[1][:, 0].T, rel=0.005)
 
 
 def test_methods_agree_as_far_as_they_do(meshed: MeshedPair) -> None:
     elements = meshed.single(LOAD)
-    inner = slice(2, -2)  # the ends of the path are where formulas differ most
     energy = energy_law(PAIR, HUBS, LOAD)(meshed.places)
-    assert energy[inner] == pytest.approx(elements[inner], rel=0.09)
+    assert energy == pytest.approx(elements, rel=0.06)
     assert (energy < elements).all()
+    # without contact, stiffer
     kuang = kuang_yang_law(PAIR)(meshed.places)
-    assert kuang[inner] == pytest.approx(elements[inner], rel=0.15)
+    assert (kuang > elements).all()
+    assert kuang == pytest.approx(elements, rel=0.16)
     # c' of ISO 6336-1 is the greatest over the path; from tests of discs
     assert iso_stiffness(PAIR).single == pytest.approx(elements.max(), rel=0.03)
 
@@ -169,7 +170,7 @@ def test_bodies_couple_two_pairs_in_contact(meshed: MeshedPair) -> None:
     assert coupled[~two] == pytest.approx(apart[~two])
     assert (coupled[two] < 0.9 * apart[two]).all()
     single = meshed.single(LOAD)
-    assert apart[0] == pytest.approx(single[0] + single[8], rel=1e-4)  # one mesh a tooth
+    assert apart[0] == pytest.approx(single[0] + single[8], rel=5e-4)  # one mesh a tooth
 
 
 def test_contact_apart_from_the_tooth_against_pressure_on_its_surface() -> None:
@@ -178,8 +179,14 @@ def test_contact_apart_from_the_tooth_against_pressure_on_its_surface() -> None:
     plane = plane_strain(206e9, 0.3)
     direct = pressed_surface(PINION, float(rho[0]), HUBS[0], width, plane)
     at = np.array([rho[0]])
-    body = compliances(mesh_teeth(PINION, at, HUBS[0], 0.15), plane)[0, 0, 0, 0]
-    depth = contact_depths(PINION, at)[0]
-    near = (2.0 * np.log(2.0 * depth / width) - plane.nu) / (pi * plane.E)
-    assert 0.2 < near / direct < 0.35
-    assert body + near == pytest.approx(direct, rel=0.025)
+    mesh = mesh_teeth(PINION, at, HUBS[0], 0.1)
+    misses = {}
+    for share in (0.3, 0.6, 1.0):
+        body = compliances(mesh, plane, share)[0, 0, 0, 0]
+        depth = share * contact_depths(PINION, at)[0]
+        near = (2.0 * np.log(2.0 * depth / width) - plane.nu) / (pi * plane.E)
+        misses[share] = (body + near) / direct - 1.0
+    # a tooth is a half plane near its surface only: the error goes with the depth
+    assert misses[1.0] == pytest.approx(-0.02, abs=0.004)
+    assert abs(misses[0.3]) < 0.006
+    assert 2.0 * misses[0.3] - misses[0.6] == pytest.approx(0.0, abs=0.005)

@@ -190,7 +190,7 @@ def yang_sun_contact(steel: Steel = STEEL) -> float:
 def line_contact(
     load: float, curvatures: tuple[Floats, Floats], depths: tuple[Floats, Floats], steel: Steel
 ) -> Floats:
-    """Secant compliance of a line contact down to the centre lines of both teeth.
+    """Secant compliance of a line contact, between points below both surfaces.
 
     Half planes of plane strain under Hertz's pressure, displacement of the surface against a point
     at a depth: F' (1 - nu^2) / (pi E) (ln(4 h^2 / a^2) - nu / (1 - nu)) for each (Weber and
@@ -203,7 +203,7 @@ def line_contact(
     curvatures : tuple of two (n,) arrays
         Radii of both flanks [m], negative if concave.
     depths : tuple of two (n,) arrays
-        To the centre line of each tooth [m].
+        Of both points, as those of the centre lines [m].
     steel : Steel
         Elastic constants.
 
