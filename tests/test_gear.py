@@ -1,7 +1,10 @@
 """Involute gears against published gearboxes, and against what the geometry must keep."""
 
+import re
 from dataclasses import replace
 from math import cos, degrees, pi, radians, sin, tan
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -232,3 +235,14 @@ def test_phases_of_planets(sun: int, ring: int, planets: int, kind: str) -> None
     phases = sun_phases(sun, ring, places)
     assert np.allclose(phases, ring_phases(sun, ring, places))
     assert np.allclose(phases, (sun % planets) * np.arange(planets) / planets % 1.0)
+
+
+def test_example_of_the_docs() -> None:
+    text = (Path(__file__).parents[1] / "docs" / "gears.md").read_text(encoding="utf-8")
+    found = re.search(r"```python\n(.*?)```", text, re.DOTALL)
+    assert found is not None
+    names: dict[str, Any] = {}
+    exec(found.group(1), names)
+    assert round(names["pair"].transverse_ratio, 3) == 1.463
+    assert round(names["iso"].mesh / 1e9, 2) == 18.63
+    assert float(names["series"].at(0.3)) > 0.0

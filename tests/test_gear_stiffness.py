@@ -14,6 +14,7 @@ from fe_drivetrain.gear.meshes import (
     MeshStiffness,
     StiffnessTable,
     mesh_stiffness,
+    planet_meshes,
     square_wave,
     square_wave_series,
 )
@@ -25,7 +26,7 @@ from fe_drivetrain.gear.pair_stiffness import (
     parabolic_law,
     parabolic_mean,
 )
-from fe_drivetrain.gear.planets import ring_after_sun
+from fe_drivetrain.gear.planets import ring_after_sun, sun_phases
 from fe_drivetrain.validation.published_gears import NREL_5MW_PRINTED, iso_example_1, nrel_5mw
 
 PAIRS = nrel_5mw()
@@ -290,3 +291,21 @@ def test_unshifted_planets_with_odd_teeth_pass_both_pitch_points_at_once(
 def test_planets_of_two_stages_are_not_one_gear() -> None:
     with pytest.raises(InputError, match="they must be one gear"):
         ring_after_sun(PAIRS["sun 1"], PAIRS["ring 2"])
+
+
+@pytest.mark.parametrize(("sun", "ring", "planets"), [(29, 145, 3), (21, 99, 3), (22, 70, 4)])
+def test_harmonics_of_equal_planets_add_up_or_cancel(sun: int, ring: int, planets: int) -> None:
+    places = 2.0 * pi * np.arange(planets) / planets
+    one, two = square_wave_series(1.0, 1.6, 8), square_wave_series(1.2, 1.8, 8)
+    suns, rings = planet_meshes(one, two, 0.3, sun_phases(sun, ring, places))
+    for order in range(1, 9):
+        # the sum turns the sun, the sum with e^(i psi) pushes it aside (Parker and Lin 2004)
+        waves = np.array([m.cosines[order - 1] + 1j * m.sines[order - 1] for m in suns])
+        size = planets * abs(waves[0])
+        kind = order * sun % planets
+        turned = abs(waves.sum())
+        pushed = max(abs((waves * np.exp(s * 1j * places)).sum()) for s in (-1, 1))
+        assert turned == pytest.approx(size if kind == 0 else 0.0, abs=1e-12)
+        assert pushed == pytest.approx(size if kind in (1, planets - 1) else 0.0, abs=1e-12)
+    at = np.linspace(0.0, 1.0, 5)
+    assert rings[0].at(at) == pytest.approx(two.at(at - 0.3))

@@ -20,6 +20,7 @@ from .iso import theoretical_stiffness as theoretical_stiffness
 from .meshes import MeshStiffness as MeshStiffness
 from .meshes import StiffnessTable as StiffnessTable
 from .meshes import mesh_stiffness as mesh_stiffness
+from .meshes import planet_meshes as planet_meshes
 from .meshes import square_wave as square_wave
 from .meshes import square_wave_series as square_wave_series
 from .pair_stiffness import Law as Law

@@ -268,3 +268,29 @@ def mesh_stiffness(pair: Pair, law: Law, points: int = 200, along: int = 2000) -
     # np.interp keeps its end values outside the path, where no pair is in contact
     values = np.interp(heads, places, integral) - np.interp(heads - lag, places, integral)
     return StiffnessTable(pair.face_width / lag * values.sum(axis=1), pair.contact_ratio)
+
+
+def planet_meshes(
+    sun: MeshStiffness, ring: MeshStiffness, behind: float, phases: Floats
+) -> tuple[list[MeshStiffness], list[MeshStiffness]]:
+    """Meshes of all planets of a stage, from those of one.
+
+    Parameters
+    ----------
+    sun, ring : MeshStiffness
+        Of one planet, each with phase 0 where a pair comes into contact.
+    behind : float
+        Delay of a planet's mesh with the ring against that with the sun, `ring_after_sun`.
+    phases : (n,) array
+        Delays of the planets, `sun_phases`: those with the ring are the same.
+
+    Returns
+    -------
+    tuple of two lists
+        Meshes with the sun and with the ring, one for each planet, over the phase of the first
+        planet's mesh with the sun.
+    """
+    return (
+        [sun.delayed(float(phase)) for phase in phases],
+        [ring.delayed(float(phase) + behind) for phase in phases],
+    )
