@@ -24,7 +24,7 @@ FLOORS = (
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"fidelity", "peers", "report", "rings", "validation"},
+    {"dynamics", "fidelity", "peers", "report", "rings", "validation"},
     {"coupled", "export", "suite", "uncertainty"},
     {"commands"},
     {"cases"},
