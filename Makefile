@@ -1,5 +1,5 @@
-# The two commands of the README, each the only thing to type.
-.PHONY: demo test
+# The commands of the README, each the only thing to type.
+.PHONY: demo docs test
 
 demo: ## run the main-bearing study and print where its report is
 	@.ci/setup
@@ -8,3 +8,8 @@ demo: ## run the main-bearing study and print where its report is
 test: ## run the whole test suite
 	@.ci/setup test
 	@.venv/bin/python -m pytest -q -n auto --dist loadgroup
+
+docs: ## build the documentation into build/docs
+	@.ci/setup docs
+	@.ci/docs
+	@echo build/docs/index.html

@@ -1,0 +1,74 @@
+"""How Sphinx builds this folder: ``.ci/docs``, or ``make docs``."""
+
+import re
+import sys
+from importlib.metadata import version as installed
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))
+
+import written_pages  # noqa: E402 - beside this file
+
+written_pages.write_all(HERE / "generated")
+
+project = "fe-drivetrain"
+release = version = installed("fe-drivetrain")
+extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc"]
+root_doc = "index"
+
+# Headings are link targets as on a repository page.
+myst_heading_anchors = 3
+myst_enable_extensions = ["deflist"]
+
+# Types stand in the signature; the docstrings say units, shapes and sources.
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+# The list of a room's names stands at the top of its page; in every page's menu it would be slow.
+toc_object_entries = False
+python_maximum_signature_line_length = 88
+numpydoc_show_class_members = False
+numpydoc_class_members_toctree = False
+# `name` in a docstring is a name of the same room where there is one, and code otherwise.
+default_role = "py:obj"
+# Two rooms may have a class of the same name, and an annotation does not say which is meant.
+suppress_warnings = ["ref.python"]
+
+# Arrays have the names of fe_drivetrain.common.
+ARRAYS = {"float64": "Floats", "int64": "Ints", "bool_": "Bools", "bool": "Bools"}
+ARRAY = re.compile(r"~numpy\.ndarray\[~typing\.Any, ~numpy\.dtype\[~numpy\.(\w+)\]\]")
+
+html_theme = "furo"
+html_title = "fe-drivetrain"
+html_show_copyright = False
+html_copy_source = False
+html_show_sourcelink = False
+
+
+def as_plain_text(
+    app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]
+) -> None:
+    """Let |x| in a docstring be an absolute value, and x_ a name: neither refers to anything."""
+    for i, line in enumerate(lines):
+        pieces = re.split(r"(`+[^`]*`+)", line)
+        pieces[::2] = [re.sub(r"\||(?<=\w)_(?!\w)", r"\\\g<0>", piece) for piece in pieces[::2]]
+        lines[i] = "".join(pieces)
+
+
+def by_their_names(
+    app: Sphinx, what: str, name: str, obj: object, options: object, takes: str, gives: str
+) -> tuple[str, str]:
+    """Let a signature say Floats, as the code does, and not what that stands for."""
+
+    def named(part: str) -> str:
+        return part and ARRAY.sub(lambda found: ARRAYS.get(found[1], found[0]), part)
+
+    return named(takes), named(gives)
+
+
+def setup(app: Sphinx) -> None:
+    """Connect what Sphinx calls, before numpydoc reads a docstring."""
+    app.connect("autodoc-process-docstring", as_plain_text, priority=100)
+    app.connect("autodoc-process-signature", by_their_names)

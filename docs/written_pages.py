@@ -1,0 +1,167 @@
+"""Pages that are written from the code each time the documentation is built.
+
+The validation index comes from what the cases declare, the API from the public names of the rooms.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+import re
+from collections.abc import Iterable, Iterator
+from itertools import groupby
+from pathlib import Path
+from types import ModuleType
+
+from sphinx.errors import PycodeError
+from sphinx.pycode import ModuleAnalyzer
+
+import fe_drivetrain
+from fe_drivetrain.suite.case import Case, all_cases
+
+#: Folders of modules without a list of names of their own, whose modules users import.
+MODULES_OF = {"export": "export.programs"}
+
+
+def write_all(folder: Path) -> None:
+    """Write all pages below a folder; those that have not changed stay, and are not built again."""
+    pages = {"validation.md": validation_index(all_cases().values())}
+    rooms = list(public_rooms())
+    pages["api.rst"] = api_index(rooms)
+    for room in rooms:
+        pages[f"api/{room}.rst"] = api_of(room)
+    for old in folder.rglob("*.*"):
+        if old.is_file() and old.relative_to(folder).as_posix() not in pages:
+            old.unlink()
+    for name, text in pages.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+
+
+# --- Validation ---
+
+
+def validation_index(cases: Iterable[Case]) -> str:
+    """All cases by group: title, where the reference comes from, settings."""
+    cases = list(cases)
+    lines = [
+        "# Validation index",
+        "",
+        f"The {len(cases)} cases of `fe-drivetrain list`, written from what they declare. "
+        "`fe-drivetrain run NAME` runs one, `fe-drivetrain run GROUP` a group; each page states "
+        "its checks, references, bands and assumptions. A setting is changed by `--set KEY=VALUE`.",
+        "",
+    ]
+    for group, members in groupby(cases, key=lambda c: c.name.partition("/")[0]):
+        about = inspect.getdoc(importlib.import_module(f"fe_drivetrain.cases.{group}")) or ""
+        lines += [f"## {group}", "", *([plain(about.split("\n\n")[0])] if about else []), ""]
+        for case in members:
+            lines += [
+                f"`{case.name}`",
+                f": {plain(case.title)}. *Source:* {plain(case.source).rstrip('.')}.",
+                *([f"  *Settings:* {settings}."] if (settings := settings_in_words(case)) else []),
+                "",
+            ]
+    return "\n".join(lines)
+
+
+def settings_in_words(case: Case) -> str:
+    """What ``--set`` takes for a case; empty where it takes nothing."""
+    own = ", ".join(f"`{key}`" for key in case.settings)
+    kind = case.changes.replace("_", " ")
+    return "; ".join(filter(None, [own, f"any value of its {kind}" if kind else ""]))
+
+
+def plain(text: str) -> str:
+    """Text in which Markdown finds no marks, but for code in backticks, on one line."""
+    pieces = re.split(r"(`+[^`]*`+)", " ".join(text.split()))
+    pieces[::2] = [re.sub(r"([\\*_\[\]<>|#$~])", r"\\\1", piece) for piece in pieces[::2]]
+    return "".join(pieces)
+
+
+# --- API ---
+
+
+def public_rooms() -> Iterator[str]:
+    """Names of the rooms that have public names, in order."""
+    for info in pkgutil.iter_modules(fe_drivetrain.__path__):
+        if info.ispkg:
+            yield info.name
+    yield "geometry"  # at the top level of the repository
+
+
+def public_names(room: ModuleType) -> list[str]:
+    """Names that users take from a room."""
+    return sorted(room.__all__)
+
+
+def api_index(rooms: Iterable[str]) -> str:
+    """The rooms with what they are for, and what a first script needs."""
+    lines = [
+        *heading("API", "="),
+        "Users import from a room: ``from fe_drivetrain.mesh import Mesh``.",
+        "",
+    ]
+    lines += ["A first script needs no more than what ``fe_drivetrain`` itself has:", ""]
+    for name in public_names(fe_drivetrain):
+        home = getattr(fe_drivetrain, name).__module__.split(".")[1]
+        lines.append(f"- :py:obj:`~fe_drivetrain.{home}.{name}`")
+    lines += ["", ".. toctree::", "   :hidden:", ""]
+    lines += [f"   api/{room}" for room in rooms]
+    lines += ["", *heading("Rooms", "-")]
+    for room in rooms:
+        about = inspect.getdoc(importlib.import_module(f"fe_drivetrain.{room}")) or ""
+        lines += [f":doc:`api/{room}`", f"   {' '.join(about.split(chr(10) * 2)[0].split())}"]
+    return "\n".join([*lines, ""])
+
+
+def api_of(room: str) -> str:
+    """One room: what it is for, and all its public names."""
+    module = importlib.import_module(f"fe_drivetrain.{room}")
+    lines = [*heading(room, "="), f".. automodule:: {module.__name__}", "   :no-members:", ""]
+    names = public_names(module)
+    lines += [", ".join(f":py:obj:`~{module.__name__}.{name}`" for name in names), ""]
+    for name in names:
+        lines += entry(module, name)
+    if room in MODULES_OF:
+        folder = importlib.import_module(f"fe_drivetrain.{MODULES_OF[room]}")
+        for info in pkgutil.iter_modules(folder.__path__):
+            full = f"{folder.__name__}.{info.name}"
+            lines += [*heading(full, "-"), f".. automodule:: {full}", "   :members:", ""]
+    return "\n".join(lines)
+
+
+def entry(module: ModuleType, name: str) -> list[str]:
+    """Directives for one public name."""
+    value = getattr(module, name)
+    full = f"{module.__name__}.{name}"
+    if inspect.isclass(value):
+        hidden = "model_config, model_post_init, model_fields, model_computed_fields"
+        return [f".. autoclass:: {full}", "   :members:", f"   :exclude-members: {hidden}", ""]
+    if inspect.isroutine(inspect.unwrap(value)) or hasattr(value, "py_func"):
+        return [f".. autofunction:: {full}", ""]
+    said = comment_of(module, name)
+    return [f".. py:data:: {full}", "", *(f"   {line}" for line in said), ""]
+
+
+def comment_of(module: ModuleType, name: str) -> list[str]:
+    """What stands above a constant in the module that makes it, as ``#:`` or below it in quotes."""
+    face = Path(str(module.__file__))
+    stub = face.with_suffix(".pyi")
+    names = (stub if stub.is_file() else face).read_text(encoding="utf-8")
+    found = re.search(rf"from \.([\w.]+) import .*\b{name}\b", names)
+    if found is None:
+        return []
+    try:
+        comments = ModuleAnalyzer.for_module(f"{module.__name__}.{found[1]}").find_attr_docs()
+    except PycodeError:
+        return []
+    return comments.get(("", name), [])
+
+
+def heading(text: str, mark: str) -> list[str]:
+    """A title in reStructuredText."""
+    return [text, mark * len(text), ""]
