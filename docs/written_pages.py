@@ -18,7 +18,7 @@ from sphinx.errors import PycodeError
 from sphinx.pycode import ModuleAnalyzer
 
 import fe_drivetrain
-from fe_drivetrain.suite.case import Case, all_cases
+from fe_drivetrain.suite import Case, all_cases, settings_in_words
 
 #: Folders of modules without a list of names of their own, whose modules users import.
 MODULES_OF = {"export": "export.programs"}
@@ -62,17 +62,10 @@ def validation_index(cases: Iterable[Case]) -> str:
             lines += [
                 f"`{case.name}`",
                 f": {plain(case.title)}. *Source:* {plain(case.source).rstrip('.')}.",
-                *([f"  *Settings:* {settings}."] if (settings := settings_in_words(case)) else []),
+                *([f"  *Settings:* {plain(words)}."] if (words := settings_in_words(case)) else []),
                 "",
             ]
     return "\n".join(lines)
-
-
-def settings_in_words(case: Case) -> str:
-    """What ``--set`` takes for a case; empty where it takes nothing."""
-    own = ", ".join(f"`{key}`" for key in case.settings)
-    kind = case.changes.replace("_", " ")
-    return "; ".join(filter(None, [own, f"any value of its {kind}" if kind else ""]))
 
 
 def plain(text: str) -> str:
@@ -126,12 +119,21 @@ def api_of(room: str) -> str:
     lines += [", ".join(f":py:obj:`~{module.__name__}.{name}`" for name in names), ""]
     for name in names:
         lines += entry(module, name)
+    lines += heading("Modules", "-")
+    for full in modules_of(module):
+        lines += [f".. automodule:: {full}", "   :no-members:", "   :no-index:", ""]
     if room in MODULES_OF:
         folder = importlib.import_module(f"fe_drivetrain.{MODULES_OF[room]}")
         for info in pkgutil.iter_modules(folder.__path__):
             full = f"{folder.__name__}.{info.name}"
             lines += [*heading(full, "-"), f".. automodule:: {full}", "   :members:", ""]
     return "\n".join(lines)
+
+
+def modules_of(room: ModuleType) -> list[str]:
+    """Modules of a room, whose docstrings have equations and sources."""
+    found = pkgutil.iter_modules(room.__path__, f"{room.__name__}.")
+    return [info.name for info in found if not info.ispkg]
 
 
 def entry(module: ModuleType, name: str) -> list[str]:

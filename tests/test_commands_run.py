@@ -27,6 +27,15 @@ def test_list_groups_the_cases(invoke: Callable[..., Result]) -> None:
     ]
 
 
+def test_list_shows_what_can_be_set_of_each_case(invoke: Callable[..., Result]) -> None:
+    status, out, _ = invoke("list", "--settings")
+    assert status == 0
+    lines = [line.strip() for line in out.splitlines()]
+    taken = "--set: a, k; any value of its scene by its dotted key"
+    assert lines[lines.index("group") + 2] == taken
+    assert lines.count(taken) == 3
+
+
 def test_a_passing_case_exits_0_and_says_where_to_read(
     invoke: Callable[..., Result], tmp_path: Path
 ) -> None:

@@ -35,13 +35,23 @@ OutFolder = Annotated[
 Quick = Annotated[bool, typer.Option("--quick", help="Coarser and smaller, for a first look.")]
 
 
-def list_command() -> None:
+def list_command(
+    settings: Annotated[
+        bool, typer.Option("--settings", help="Show what --set changes of each case, too.")
+    ] = False,
+) -> None:
     """List the validation cases."""
 
     def work() -> int:
         from fe_drivetrain.suite.case import all_cases
 
-        write(sys.stdout, cases_text({name: case.title for name, case in all_cases().items()}))
+        cases = all_cases()
+        taken = {}
+        if settings:
+            from fe_drivetrain.suite.settings import settings_in_words
+
+            taken = {name: settings_in_words(case) for name, case in cases.items()}
+        write(sys.stdout, cases_text({name: case.title for name, case in cases.items()}, taken))
         return PASSED
 
     raise typer.Exit(guarded(work))
@@ -204,13 +214,15 @@ def _run_several(
     return results, problems
 
 
-def cases_text(titles: Mapping[str, str]) -> str:
+def cases_text(titles: Mapping[str, str], settings: Mapping[str, str]) -> str:
     """Names and titles of cases, one a line, under their groups.
 
     Parameters
     ----------
     titles : mapping
         Title by "GROUP/NAME", in order.
+    settings : mapping
+        What can be set, by the same names, for a line below; none where there is nothing.
 
     Returns
     -------
@@ -219,7 +231,12 @@ def cases_text(titles: Mapping[str, str]) -> str:
     width = max((len(name) for name in titles), default=0)
     groups = []
     for group, names in groupby(titles, lambda name: name.partition("/")[0]):
-        groups.append("".join([f"{group}\n", *(f"  {n:<{width}}  {titles[n]}\n" for n in names)]))
+        lines = [group]
+        for name in names:
+            lines.append(f"  {name:<{width}}  {titles[name]}")
+            if settings.get(name):
+                lines.append(f"  {'':<{width}}  --set: {settings[name]}")
+        groups.append("\n".join([*lines, ""]))
     return "\n".join(groups)
 
 

@@ -15,5 +15,6 @@ from .run import RunJob as RunJob
 from .run_comparison import Change as Change
 from .run_comparison import RunComparison as RunComparison
 from .run_comparison import compare_runs as compare_runs
+from .settings import settings_in_words as settings_in_words
 from .suite import run_cases as run_cases
 from .targets import Target as Target

@@ -59,6 +59,14 @@ def changeable(case: Case) -> Sequence[str]:
     return tuple(model.model_fields)
 
 
+def settings_in_words(case: Case) -> str:
+    """What ``--set`` takes for a case; empty where it takes nothing."""
+    ways = [", ".join(case.settings)] if case.settings else []
+    if case.changes:
+        ways.append(f"any value of its {case.changes.replace('_', ' ')} by its dotted key")
+    return "; ".join(ways)
+
+
 def _unknown(key: str, cases: Sequence[Case]) -> InputError:
     which = cases[0].name if len(cases) == 1 else f"all {len(cases)} cases"
     own = list(dict.fromkeys(name for case in cases for name in case.settings))
