@@ -2,7 +2,7 @@
 
 from fe_drivetrain.beam import cowper_shear_coefficient
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import SIZE, show_inputs
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation import shaft_theory as theory
@@ -61,7 +61,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Saint-Venant's flexure")
     show_inputs(
         page,
-        ("outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
+        ("outer diameter", OUTER, "m", SIZE),
         ("length", LENGTH, "m", "chosen: short, so that shear counts"),
         ("force at the tip", FORCE / 1e6, "MN"),
         steel=STEEL,

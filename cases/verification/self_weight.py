@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, show_inputs
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
@@ -80,7 +80,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Sag")
     show_inputs(
         page,
-        ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
+        ("diameter, solid", OUTER, "m", SIZE),
         ("overhang", LENGTH, "m"),
         ("gravity", GRAVITY, "m/s^2", "standard"),
         ("density", STEEL.density, "kg/m^3", "steel, assumed"),

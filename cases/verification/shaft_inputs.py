@@ -1,4 +1,4 @@
-"""Tables of inputs, and a check, shared by the cases of shafts."""
+"""Tables of inputs, sources and a check, shared by the cases of shafts."""
 
 from collections.abc import Sequence
 
@@ -6,6 +6,8 @@ from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page, Record, Target
 from fe_drivetrain.validation.solid_shafts import mesh_band
 
+SIZE = "Stirling 2023, Table 3.1, in size"
+HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"
 #: Name, value, unit, and where it comes from: "chosen" where it is left out.
 Input = tuple[str, float | str, str] | tuple[str, float | str, str, str]
 
@@ -28,7 +30,7 @@ def show_uniform(
     """The inputs of a uniform shaft, solid and bored; diameters in m."""
     show_inputs(
         page,
-        ("outer diameter", outer, "m", "Stirling 2023, Table 3.1, in size"),
+        ("outer diameter", outer, "m", SIZE),
         ("bore of the bored shaft", bore, "m"),
         length,
         *more,

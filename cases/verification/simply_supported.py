@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, show_inputs
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
@@ -67,7 +67,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Simple supports")
     show_inputs(
         page,
-        ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
+        ("diameter, solid", OUTER, "m", SIZE),
         ("span", LENGTH, "m"),
         ("force at mid span", FORCE / 1e6, "MN"),
         ("moment at the downwind end", MOMENT / 1e6, "MN m"),

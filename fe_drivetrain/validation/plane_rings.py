@@ -126,12 +126,12 @@ class Rotating:
         """Force per volume [N/m^3] at (..., 3) positions; the axis of rotation is x."""
         return self.force * x * [0.0, 1.0, 1.0]
 
-    def radial(self, r: Floats) -> Floats:
+    def radial(self, r: float | Floats) -> Floats:
         """Radial stress [Pa]."""
         a2, b2, r2 = self.inner**2, self.outer**2, np.asarray(r) ** 2
         return self.force * (3.0 + self.plane.nu) / 8.0 * (a2 + b2 - a2 * b2 / r2 - r2)
 
-    def hoop(self, r: Floats) -> Floats:
+    def hoop(self, r: float | Floats) -> Floats:
         """Hoop stress [Pa]."""
         a2, b2, r2 = self.inner**2, self.outer**2, np.asarray(r) ** 2
         nu = self.plane.nu
