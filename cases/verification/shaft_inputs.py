@@ -4,10 +4,15 @@ from collections.abc import Sequence
 
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page, Record, Target
+from fe_drivetrain.validation.exact_shafts import ExactShaft
 from fe_drivetrain.validation.solid_shafts import mesh_band
 
 SIZE = "Stirling 2023, Table 3.1, in size"
 HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"
+#: Of a mesh under the loads of an exact field, see `of_mesh`.
+SHAFT, REFINEMENT, UNKNOWNS, TURN = "shaft", "refinement", "unknowns", "per turn"
+ERROR = "largest difference from the exact displacements, over the largest"
+
 #: Name, value, unit, and where it comes from: "chosen" where it is left out.
 Input = tuple[str, float | str, str] | tuple[str, float | str, str, str]
 
@@ -36,6 +41,13 @@ def show_uniform(
         *more,
         steel=steel,
     )
+
+
+def of_mesh(name: str, refinement: int, shaft: ExactShaft) -> Record:
+    """The size of a mesh under the loads of an exact field, and the error of its displacements."""
+    mesh = shaft.mesh
+    size = {SHAFT: name, REFINEMENT: refinement, UNKNOWNS: mesh.n_unknowns, TURN: mesh.per_turn}
+    return {**size, ERROR: shaft.error}
 
 
 def check_motion(

@@ -67,10 +67,15 @@ class Tube:
         return self.material.youngs_modulus * self.area
 
     @property
+    def shear_coefficient(self) -> float:
+        """Cowper's [-]."""
+        ratio = self.inner / self.outer
+        return float(cowper_shear_coefficient(self.material.poisson_ratio, ratio))
+
+    @property
     def kGA(self) -> float:
         """Shear rigidity with Cowper's coefficient [N]."""
-        nu, m = self.material.poisson_ratio, self.inner / self.outer
-        return float(cowper_shear_coefficient(nu, m)) * self.material.shear_modulus * self.area
+        return self.shear_coefficient * self.material.shear_modulus * self.area
 
 
 def solid_and_bored(
