@@ -52,8 +52,8 @@ def run(run: Run, page: Page) -> None:
             for frame, (turn, shift) in frames.items():
                 moved = solve_ring(nodes, turn, shift)
                 rows += check(page, body, frame, differences(fixed, moved, turn))
-            moved_by = [differences(fixed, solve_ring(nodes, Q, d * away), Q) for d in DISTANCES]
-            largest = [max(found.values()) for found in moved_by]
+            taken = [differences(fixed, solve_ring(nodes, Q, d * away), Q) for d in DISTANCES]
+            largest = [max(found.values()) for found in taken]
             traces.append(trace(body, DISTANCES, largest, mode="lines+markers"))
     for kind in ("spherical",) if run.quick else scenes.KINDS:
         # direct, since what iterations leave depends on the frame; on a mesh that suits that
@@ -61,15 +61,14 @@ def run(run: Run, page: Page) -> None:
         with run.step(f"main bearing, {kind}"):
             model = build_model(scene, mesh)
             both = model, moved_model(model, Q, far)
-            found = response_differences(*(unit_load_response(m, "superlu") for m in both), Q)
+            one, two = (unit_load_response(m, "superlu") for m in both)
+        found = response_differences(one, two, Q)
         rows += check(page, f"main bearing, {kind}", "turned, 10 m away", found)
 
-    worst = "; ".join(
-        f"{body} {max(column(of, 'difference [-]')):.0e}" for body, of in grouped(rows, "body")
-    )
+    worst = {body: max(column(of, "difference [-]")) for body, of in grouped(rows, "body")}
     page.answer(
         "Turned at random and moved by 10 m, displacements, reactions and stiffness turn along and "
-        f"stay the same: {worst}."
+        f"stay the same: {'; '.join(f'{body} {value:.0e}' for body, value in worst.items())}."
     )
     page.section("Quarter ring")
     page.text(

@@ -7,7 +7,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inputs
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation.shaft_theory import Tube
 from fe_drivetrain.validation.solid_shafts import local_compliance
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
@@ -41,7 +41,8 @@ def run(run: Run, page: Page) -> None:
     refinements = (1, 2) if run.quick else (1, 2, 3)
     meshes = [run.timed("mesh and solve", SHAFT.compliance, r, 2.75 * OUTER) for r in refinements]
     section, evenly = within_evenly(meshes[-1][0])
-    rows, traces = [], []
+    rows: list[Record] = []
+    traces = []
     fine = np.linspace(0.0, LENGTH, 96)
     for name, load in LOADS.items():
         frame = SHAFT.frame(load)

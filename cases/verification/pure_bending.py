@@ -56,12 +56,12 @@ def run(run: Run, page: Page) -> None:
         series, best, turn = MeshSeries(meshes, "refinement"), meshes[-1], meshes[-1]["per turn"]
         within, arcs = theory.within_arcs(turn, "I", 4)
         wide, exact = within + theory.anticlastic_error(turn), best["exact " + SIDEWAYS]
-        pull, near = -STEEL.youngs_modulus * CURVATURE * OUTER / 2, theory.recovery_error(turn)
+        pull = -STEEL.youngs_modulus * CURVATURE * OUTER / 2
         stiffness = Target(STIFFNESS, best[EXACT], within, arcs, "closed form E I", order=4.0)
         sag = Target(SAG, CURVATURE * LENGTH**2 / 2, within, follow, uniform, order=4.0)
         sideways = Target(SIDEWAYS, exact, wide, skin, f"nu k y z: {FIELD}", order=4.0)
         error = Target(ERROR, 0.0, within, worst_node, FIELD, measure="deflection")
-        stress = Target(STRESS, pull, near, theory.RECOVERED, "-E k z")
+        stress = Target(STRESS, pull, *theory.within_recovery(turn), "-E k z")
         page.finest(series, stiffness, sag, sideways, of=name)
         page.settled(series, error, stress, of=name)
         rows += meshes
