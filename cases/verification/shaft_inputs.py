@@ -17,9 +17,14 @@ ERROR = "largest difference from the exact displacements, over the largest"
 Input = tuple[str, float | str, str] | tuple[str, float | str, str, str]
 
 
-def show_inputs(page: Page, *rows: Input, steel: Material | None = None) -> None:
-    """Add the table of a case's inputs; with a steel, its elasticity below them."""
+def show_inputs(
+    page: Page, *rows: Input, steel: Material | None = None, gravity: float | None = None
+) -> None:
+    """Add the table of a case's inputs; below them gravity [m/s^2] and elasticity of its steel."""
     table = [row if len(row) == 4 else (*row, "chosen") for row in rows]
+    if steel is not None and gravity is not None:
+        table.append(("gravity", gravity, "m/s^2", "standard"))
+        table.append(("density", steel.density, "kg/m^3", "steel, assumed"))
     if steel is not None:
         table += [
             ("E", steel.youngs_modulus / 1e9, "GPa", "steel, assumed"),

@@ -64,6 +64,10 @@ class Lame:
         """Hoop stress [Pa]."""
         return self._mean + self._varying / np.asarray(r) ** 2
 
+    def hoop_at(self, r: float) -> float:
+        """Hoop stress at one radius [Pa]."""
+        return float(self.hoop(r))
+
     def displacement(self, r: float | Floats, plane: Plane) -> Floats:
         """Radial displacement [m]."""
         return np.asarray(r) / plane.E * (self.hoop(r) - plane.nu * self.radial(r))
