@@ -45,8 +45,7 @@ def run(run: Run, page: Page) -> None:
         bushes.append(Series(f"bush, {kind} P2", sizes, unknowns, norms, orders))
         last.append(errors[-2:])
     check_orders(run, page, [*shafts, *bushes], THEORY)
-    (before, chords), (coarser, arcs) = last
-    ratio = sizes[-1] / sizes[-2]
+    (before, chords), (coarser, arcs), ratio = *last, sizes[-1] / sizes[-2]
     title = f"shaft, straight P2, {sides} sides: torsional rigidity less GJ, relative"
     polygon, within = -4.0 / 3.0 * (np.pi / sides) ** 2, 2.0 * np.pi / sides
     why = "terms of the next order are smaller by about the angle of a side"
