@@ -68,8 +68,8 @@ def run(run: Run, page: Page) -> None:
         stresses = (Target(key, EXACT[key], *of_stress) for key in (HOOP, RADIAL))
         page.finest(series, moved, *stresses, of=f"{name}, plane strain")
     uniform = "as in plane strain: the axial strain is uniform, and adds no error of its own"
-    moved = 1e6 * float(RING.displacement(RING.inner, Plane(E, NU)))
-    target = Target(MOVED, moved, tolerance, uniform, LAME, order=4.0)
+    opens = 1e6 * float(RING.displacement(RING.inner, Plane(E, NU)))
+    target = Target(MOVED, opens, tolerance, uniform, LAME, order=4.0)
     page.finest(MeshSeries(free, THROUGH), target, of="free ends")
     best = rows[-1]
     page.answer(

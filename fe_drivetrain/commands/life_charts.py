@@ -84,8 +84,8 @@ def damage_map(caption: str, across: Floats, across_title: str, row: Row, values
     titles = across_title, "place [deg], 90 on top", "%"
     places = np.degrees(angles(row))[order] % 360.0
     categories = {"type": "category"} if len(across) <= 12 and "wind" in across_title else {}
-    shown = shares.T[order]
-    return heat_map(caption, across, places, shown, titles, xaxis=categories, yaxis={"dtick": 90})
+    shares, down = shares.T[order], {"dtick": 90}
+    return heat_map(caption, across, places, shares, titles, xaxis=categories, yaxis=down)
 
 
 def along_rollers(name: str, rows: Sequence[Row], worst: Floats) -> Chart | None:

@@ -127,8 +127,8 @@ def heat_map(
     right, up, colour = titles
     data: dict[str, Any] = {
         "type": "heatmap",
-        "x": list(x) if np.asarray(x).dtype.kind == "U" else rounded(x),
-        "y": list(y) if np.asarray(y).dtype.kind == "U" else rounded(y),
+        "x": _places(x),
+        "y": _places(y),
         "z": [
             [None if np.isnan(v) else float(f"{v:.4g}") for v in row]
             for row in np.asarray(z).tolist()
@@ -184,6 +184,11 @@ def bars(
         "yaxis": {"autorange": "reversed", "automargin": True},
     }
     return figure
+
+
+def _places(values: ArrayLike | Sequence[str]) -> list[Any]:
+    named = np.asarray(values).dtype.kind == "U"
+    return list(np.asarray(values).tolist()) if named else rounded(np.asarray(values))
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[float]:
