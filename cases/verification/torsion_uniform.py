@@ -4,17 +4,17 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import show_uniform
+from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped
 from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation.end_loaded import skin_nodes
 from fe_drivetrain.validation.exact_shafts import twisted
 from fe_drivetrain.validation.solid_shafts import meshed_moment
 
 STEEL = MATERIALS["steel"]
 OUTER, BORE, LENGTH, ANGLE = 0.4, 0.28, 0.8, 1e-3  # m, and rad between the ends
 TUBES = theory.solid_and_bored(OUTER, BORE, LENGTH, STEEL)
-SHAFT, TURN, ERROR, ARCS = "shaft", "elements round a turn", "relative error", "parabolic arcs"
+SHAFT, TURN, ERROR = "shaft", "elements round a turn", "relative error"
 STIFFNESS, MESHED = "torsional stiffness [N m/rad]", "G J / L of the mesh [N m/rad]"
 EXACT, BY_ENERGY = "G J / L [N m/rad]", "by energy [N m/rad]"
 BALANCE = "torque over angle against twice the energy over its square"
@@ -28,17 +28,15 @@ INTEGRAL = "G / L^2 times the integral of y^2 + z^2 over the mesh"
 def solve(name: str, refinement: int) -> Record:
     """The ends turned by an exact rotation, on one mesh."""
     shaft, by_torque, by_energy = twisted(TUBES[name], ANGLE, refinement)
-    mesh, s = shaft.mesh, shaft.found.stress[skin_nodes(shaft.mesh, LENGTH / 2)]
-    exact = TUBES[name].GJ / LENGTH
+    mesh, s = shaft.mesh, shaft.found.stress[np.sort(shaft.skin)]
     return {
         SHAFT: name,
         TURN: mesh.per_turn,
         "unknowns": mesh.n_unknowns,
         STIFFNESS: by_torque,
         MESHED: STEEL.shear_modulus * meshed_moment(mesh) / LENGTH**2,
-        EXACT: exact,
-        ERROR: float(abs(by_torque / exact - 1.0)),
-        ARCS: 4 * theory.parabola_shortfall(mesh.per_turn),
+        EXACT: shaft.tube.GJ / LENGTH,
+        ERROR: float(abs(by_torque / (shaft.tube.GJ / LENGTH) - 1.0)),
         BY_ENERGY: by_energy,
         BALANCE: by_torque / by_energy - 1.0,
         STRESS: float(np.hypot(s[:, 3], s[:, 5]).mean()),
@@ -78,11 +76,13 @@ def run(run: Run, page: Page) -> None:
     page.section("Torsional stiffness")
     length = "length", LENGTH, "m", "chosen: the answer does not depend on it"
     show_uniform(page, OUTER, BORE, length, steel=STEEL)
-    title = "Relative error of the stiffness between ends that turn as rigid planes; beside it, no "
-    title += "fit, four times the mean shortfall of the radius of as many parabolic arcs"
-    curves = {ERROR: "finite elements", ARCS: ARCS}
+    curves = [trace(of, column(r, TURN), column(r, ERROR), True) for of, r in grouped(rows, SHAFT)]
+    missed = [4 * theory.parabola_shortfall(n) for n in range(4, 33)]
+    curves.append(trace("shortfall of parabolic arcs", range(4, 33), missed))
+    title = "Relative error of the stiffness; the line is four times the mean shortfall of arcs"
+    page.chart(title, curves, TURN, ERROR, "xy")
     shown = SHAFT, TURN, "unknowns", STIFFNESS, MESHED, EXACT
-    page.sweep(title, rows, TURN, curves, by=SHAFT, log="xy", axis=ERROR, table=shown)
+    page.table("Stiffness between ends that turn as rigid planes", rows, shown)
     page.text(
         "A rotation that grows along the axis is a product of x with y and z. Elements drawn out "
         "along x hold it exactly, however curved their section; the error left is the section's."
