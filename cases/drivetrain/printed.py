@@ -66,8 +66,10 @@ def show_shapes(
     """Mode shapes seen from the rotor's shaft (angles over the speed ratio), largest 1."""
     seen = modes.shapes / np.array([[speeds[name]] for name in modes.names])
     seen = seen / np.abs(seen).max(axis=0)
-    at, style = np.arange(len(modes.names)), {"mode": "lines+markers", "text": list(modes.names)}
-    curves = [trace(f"{modes.frequencies[m]:.4g} Hz", at, seen[:, m], **style) for m in chosen]
+    at, hz, text = np.arange(len(modes.names)), modes.frequencies, list(modes.names)
+    curves = [
+        trace(f"{hz[m]:.4g} Hz", at, seen[:, m], mode="lines+markers", text=text) for m in chosen
+    ]
     x, y = "inertia, from the rotor (0) to the generator", "angle over speed ratio, largest 1"
     page.chart(caption, curves, x, y)
 
