@@ -41,6 +41,28 @@ class Inertias:
 
 
 @dataclass(frozen=True)
+class PinBearing:
+    """A bearing between a planet and its pin, or the flexible pin itself.
+
+    Attributes
+    ----------
+    stiffness : ArrayLike
+        (6,) along and about (x, radial, tangential) of the planet [N/m, N m/rad].
+    offset : float
+        x from the planet's centre [m].
+    name : str
+        After the planet's number in the names of its springs, such as "upwind"; may be empty.
+    damping : ArrayLike
+        (6,) or one for all [N s/m, N m s/rad].
+    """
+
+    stiffness: ArrayLike
+    offset: float = 0.0
+    name: str = ""
+    damping: ArrayLike = 0.0
+
+
+@dataclass(frozen=True)
 class PlanetarySet:
     """A planetary stage.
 
@@ -60,11 +82,8 @@ class PlanetarySet:
         Of the bodies, the carrier without planets, all planets the same.
     sun_stiffness, ring_stiffness : float
         Of one planet's mesh along the line of action [N/m].
-    pin : ArrayLike
-        (6,) stiffnesses between a planet and the carrier, along and about (x, radial, tangential)
-        [N/m, N m/rad].
-    pin_offset : float
-        x of the point where `pin` holds, from the planet's centre [m].
+    bearings : tuple[PinBearing, ...]
+        Between each planet and the carrier.
     hand : int
         Of the sun's teeth: 1 right, -1 left, 0 spur.
     driving : int
@@ -75,8 +94,8 @@ class PlanetarySet:
         x of all centres [m].
     free : frozenset[str]
         Degrees of freedom of the bodies; `PLANE` of a stage that stays in its plane.
-    pin_damping, mesh_damping : ArrayLike, float
-        (6,) of the pins, and along the lines of action of meshes [N s/m, N m s/rad].
+    mesh_damping : float
+        Along the lines of action of each mesh [N s/m].
     """
 
     name: str
@@ -91,14 +110,12 @@ class PlanetarySet:
     planet: Inertias
     sun_stiffness: float
     ring_stiffness: float
-    pin: ArrayLike
-    pin_offset: float = 0.0
+    bearings: tuple[PinBearing, ...]
     hand: int = SPUR
     driving: int = 1
     slices: int = 1
     position: float = 0.0
     free: frozenset[str] = ALL
-    pin_damping: ArrayLike = 0.0
     mesh_damping: float = 0.0
     ratio: float = field(init=False)
 
@@ -241,17 +258,19 @@ def pin_springs(stage: PlanetarySet, k: int, planet: Place, carrier: Place) -> l
     psi = stage.angles[k]
     out, along = np.array([0.0, cos(psi), sin(psi)]), np.array([0.0, -sin(psi), cos(psi)])
     axes = np.vstack([[1.0, 0.0, 0.0], out, along])
-    stiffness = np.asarray(stage.pin, dtype=float)
-    at = np.asarray(planet.centre) + along_x(stage.pin_offset)
-    damping = np.broadcast_to(np.asarray(stage.pin_damping, dtype=float), 6)
     found = []
-    for i, motion in enumerate(MOTIONS):
-        if stiffness[i] > 0 or damping[i] > 0:
-            direction = np.zeros(6)
-            direction[3 * (i // 3) : 3 * (i // 3) + 3] = axes[i % 3]
-            name = stage.full_name(f"pin {k + 1} {motion}")
-            k_i, c_i = float(stiffness[i]), float(damping[i])
-            found.append(directed(name, planet, carrier, at, direction, k_i, c_i))
+    for bearing in stage.bearings:
+        stiffness = np.asarray(bearing.stiffness, dtype=float)
+        damping = np.broadcast_to(np.asarray(bearing.damping, dtype=float), 6)
+        at = np.asarray(planet.centre) + along_x(bearing.offset)
+        label = f"pin {k + 1} {bearing.name}".strip()
+        for i, motion in enumerate(MOTIONS):
+            if stiffness[i] > 0 or damping[i] > 0:
+                direction = np.zeros(6)
+                direction[3 * (i // 3) : 3 * (i // 3) + 3] = axes[i % 3]
+                name = stage.full_name(f"{label} {motion}")
+                k_i, c_i = float(stiffness[i]), float(damping[i])
+                found.append(directed(name, planet, carrier, at, direction, k_i, c_i))
     return found
 
 

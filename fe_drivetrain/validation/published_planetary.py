@@ -13,6 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.dynamics.bodies import PLANE, assemble
 from fe_drivetrain.dynamics.planetary import (
     Inertias,
+    PinBearing,
     PlanetarySet,
     bodies_of,
     equal_angles,
@@ -165,7 +166,7 @@ def plane_stage(stage: PlaneStage, planets: int) -> PlanetarySet:
         planet=p,
         sun_stiffness=stage.mesh,
         ring_stiffness=stage.mesh,
-        pin=(0, stage.pin, stage.pin, 0, 0, 0),
+        bearings=(PinBearing((0, stage.pin, stage.pin, 0, 0, 0)),),
         driving=-1,
         free=PLANE,
     )
@@ -221,8 +222,7 @@ def helical_stage(planets: int, offset: float = 0.002) -> PlanetarySet:
         thick(flat.planet),
         flat.sun_stiffness,
         flat.ring_stiffness,
-        pin,
-        pin_offset=offset,
+        (PinBearing(pin, offset),),
         hand=1,
         slices=5,
     )
