@@ -1,3 +1,11 @@
+from .advice import QUESTIONS as QUESTIONS
+from .advice import Answer as Answer
+from .advice import Operation as Operation
+from .advice import ladder as ladder
+from .advice import needed_level as needed_level
+from .advice import pin_loads as pin_loads
+from .advice import slices_of as slices_of
+from .advice import torsional_frequency as torsional_frequency
 from .bodies import ALL as ALL
 from .bodies import PLANE as PLANE
 from .bodies import Body as Body
