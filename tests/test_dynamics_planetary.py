@@ -114,10 +114,10 @@ def test_other_first_angles_and_other_order_of_planets_leave_the_spectrum() -> N
 
 @pytest.mark.parametrize("driving", [1, -1])
 def test_a_stage_that_turns_at_its_ratio_winds_no_mesh(driving: int) -> None:
-    stage = replace(helical_stage(4), driving=driving, position=0.7)
+    stage = replace(helical_stage(4), driving=driving, position=(0.7, 0.1, -0.2))
     motions = {}
     for body in bodies_of(stage):
-        _, y, z = body.position
+        y, z = np.subtract(body.position, stage.position)[1:]
         carried = body.name.startswith("planet")
         spin = body.speed
         motions[body.name] = np.array([0, -z * carried, y * carried, spin, 0, 0], dtype=float)

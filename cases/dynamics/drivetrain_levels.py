@@ -35,7 +35,7 @@ FIRST = "first torsional frequency [Hz]"
     source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
 )
 def run(run: Run, page: Page) -> None:
-    """The torsional tables recovered, answers of each level beside its cost, and which is needed."""
+    """Tables recovered, answers of each level beside its cost, and which level is needed."""
     recover(run, page)
     needed: list[Record] = []
     for name, operation in OPERATIONS.items():

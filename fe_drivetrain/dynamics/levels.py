@@ -12,7 +12,9 @@ from math import cos, pi, radians, sin
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.dynamics.bodies import ALL, Body, assemble
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.bodies import ALL, Body, Superelement, assemble
+from fe_drivetrain.dynamics.flexible import Flexible, carrier_element, housing_body
 from fe_drivetrain.dynamics.planetary import (
     Inertias,
     PinBearing,
@@ -59,11 +61,14 @@ class Assembly:
         Shafts, meshes, pins and bearings.
     seats : dict[str, tuple[str, tuple[float, float, float]]]
         Body that each bearing holds, and its place [m].
+    superelements : list[Superelement]
+        Of flexible carriers and of the housing.
     """
 
     bodies: list[Body]
     springs: list[Spring]
     seats: dict[str, tuple[str, tuple[float, float, float]]]
+    superelements: list[Superelement]
 
 
 def machine_system(
@@ -72,6 +77,7 @@ def machine_system(
     azimuth: float = 0.0,
     elements: int = 6,
     held_generator: bool = False,
+    flexible: Flexible | None = None,
 ) -> System:
     """The system of a machine, in the frame that stands still, carriers at one azimuth.
 
@@ -91,9 +97,11 @@ def machine_system(
         Of each flexible shaft, beside the stations of its bearings.
     held_generator : bool
         For statics: a generator that does not turn.
+    flexible : Flexible, optional
+        Carriers and housing that give.
     """
-    found = assembly(machine, level, azimuth, elements, held_generator)
-    return without_massless(assemble(found.bodies, found.springs))
+    found = assembly(machine, level, azimuth, elements, held_generator, flexible)
+    return without_massless(assemble(found.bodies, found.springs, found.superelements))
 
 
 def assembly(
@@ -102,10 +110,20 @@ def assembly(
     azimuth: float = 0.0,
     elements: int = 6,
     held_generator: bool = False,
+    flexible: Flexible | None = None,
 ) -> Assembly:
     """Bodies and springs of a machine; arguments as of `machine_system`."""
     free = TURNS if level is Level.TORSIONAL else ALL
-    bodies, springs = [], []
+    gives = flexible or Flexible()
+    bodies: list[Body] = []
+    springs: list[Spring] = []
+    superelements: list[Superelement] = []
+    ground: Place | None = None
+    if gives.housing is not None and level is not Level.TORSIONAL:
+        housing, element = housing_body(gives.housing)
+        bodies.append(housing)
+        superelements.append(element)
+        ground = Place(housing.name, housing.position)
     rotor = machine.rotor
     across = rotor.inertia / 2 if rotor.transverse is None else rotor.transverse
     bodies.append(
@@ -115,7 +133,15 @@ def assembly(
     for number, stage in enumerate(machine.stages, start=1):
         name, turned = f"stage {number}", azimuth * machine.speeds[number - 1]
         if isinstance(stage, PlanetaryData):
-            made, rows = _planetary(machine, stage, number, free, turned)
+            carrier = None if level is Level.TORSIONAL else gives.carriers.get(number)
+            built = planetary_set(machine, number, free, turned)
+            if carrier is not None:
+                pins, element, places = carrier_element(carrier, built, f"{name} carrier")
+                built = replace(built, pins=places)
+                superelements.append(element)
+            made, rows = _planetary(machine, stage, number, built, ground)
+            if carrier is not None:
+                made += pins
             front, rear = f"{name} carrier", f"{name} sun"
         else:
             made, rows = _parallel(machine, stage, number, free)
@@ -147,22 +173,31 @@ def assembly(
     for k in range(len(machine.shafts)):
         bodies, rows = _shaft(machine, k, ends[k], bodies, level, elements, seats)
         springs += rows
-    places = {body.name: body.position for body in bodies}
+    centres = {body.name: body.position for body in bodies}
     shafts = {shaft.name for shaft in machine.shafts}
     for bearing in machine.bearings:
         if bearing.holds not in shafts:
-            c = places[bearing.holds]
+            c = centres[bearing.holds]
             seats[bearing.name] = (bearing.holds, (c[0] + bearing.at, c[1], c[2]))
         body, at = seats[bearing.name]
-        springs += bushing(bearing.name, Place(body, places[body]), None, at, bearing.stiffness)
-    return Assembly(bodies, springs, seats)
+        springs += bushing(bearing.name, Place(body, centres[body]), ground, at, bearing.stiffness)
+    return Assembly(bodies, springs, seats, superelements)
 
 
-def _planetary(
-    machine: Machine, stage: PlanetaryData, number: int, free: frozenset[str], turned: float
-) -> tuple[list[Body], list[Spring]]:
+def planetary_set(
+    machine: Machine, number: int, free: frozenset[str] = ALL, turned: float = 0.0
+) -> PlanetarySet:
+    """A machine's planetary stage by its number, from 1, with the first planet at an angle [rad].
+
+    Raises
+    ------
+    InputError
+        It is a parallel stage.
+    """
+    stage = machine.stages[number - 1]
+    if not isinstance(stage, PlanetaryData):
+        raise InputError(f"stage {number} of {machine.title!r} is parallel: name a planetary one")
     sun_mesh, ring_mesh = stage.meshes
-    x = machine.axes[number][0]
     a, width = stage.centre_distance, stage.face_width
     planet_radius = a - stage.sun_radius
     inertias = {}
@@ -177,7 +212,7 @@ def _planetary(
     if stage.ring is not None:
         mass, across = stage.ring.inertias(a + planet_radius, width)
         ring = Inertias(mass, stage.ring.inertia, across)
-    built = PlanetarySet(
+    return PlanetarySet(
         f"stage {number}",
         a,
         stage.sun_radius,
@@ -194,24 +229,34 @@ def _planetary(
         hand=stage.hand,
         driving=1 if machine.speeds[number - 1] > 0 else -1,
         slices=stage.slices,
-        position=x,
+        position=(machine.axes[number][0], *machine.axes[number - 1][1:]),
         free=free,
         mesh_damping=stage.mesh_damping,
     )
-    y, z = machine.axes[number - 1][1:]
-    bodies, torsional = [], free == TURNS
+
+
+def _planetary(
+    machine: Machine,
+    stage: PlanetaryData,
+    number: int,
+    built: PlanetarySet,
+    ground: Place | None,
+) -> tuple[list[Body], list[Spring]]:
+    """The stage's bodies and springs."""
+    bodies, torsional = [], built.free == TURNS
     for body in bodies_of(built, machine.speeds[number - 1]):
-        moved = replace(body, position=(x, body.position[1] + y, body.position[2] + z))
+        moved = body
         if body.name.endswith("ring") and (stage.ring_support is None or torsional):
-            moved = replace(moved, free=frozenset())
+            host = None if ground is None or torsional else ground.body
+            moved = replace(body, free=frozenset(), tied_to=host)
         elif torsional and "planet" in body.name:
-            moved = replace(moved, tied_to=f"stage {number} carrier")
+            moved = replace(body, tied_to=f"stage {number} carrier")
         bodies.append(moved)
     springs = [s for s in springs_of(built) if not (torsional and " pin " in s.name)]
     if stage.ring_support is not None and not torsional:
-        place = Place(f"stage {number} ring", (x, y, z))
+        place = Place(f"stage {number} ring", built.position)
         springs += bushing(
-            f"stage {number} ring support", place, None, place.centre, stage.ring_support
+            f"stage {number} ring support", place, ground, place.centre, stage.ring_support
         )
     return bodies, springs
 

@@ -90,10 +90,12 @@ class PlanetarySet:
         1 where the carrier drives the sun as it turns about +x (speed up); -1 where the sun drives.
     slices : int
         Of each mesh over its face width.
-    position : float
-        x of all centres [m].
+    position : tuple[float, float, float]
+        Of the centre of sun, ring and carrier [m].
     free : frozenset[str]
         Degrees of freedom of the bodies; `PLANE` of a stage that stays in its plane.
+    pins : tuple[Place, ...]
+        Bodies that the planets are on, of a flexible carrier; the carrier where there are none.
     mesh_damping : float
         Along the lines of action of each mesh [N s/m].
     """
@@ -114,8 +116,9 @@ class PlanetarySet:
     hand: int = SPUR
     driving: int = 1
     slices: int = 1
-    position: float = 0.0
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     free: frozenset[str] = ALL
+    pins: tuple[Place, ...] = ()
     mesh_damping: float = 0.0
     ratio: float = field(init=False)
 
@@ -161,9 +164,10 @@ class PlanetarySet:
     def centre(self, k: int | None = None) -> tuple[float, float, float]:
         """Of planet k from 0, or of the other bodies [m]."""
         if k is None:
-            return (self.position, 0.0, 0.0)
+            return self.position
         a, psi = self.centre_distance, self.angles[k]
-        return (self.position, a * cos(psi), a * sin(psi))
+        x, y, z = self.position
+        return (x, y + a * cos(psi), z + a * sin(psi))
 
 
 def equal_angles(planets: int, first: float = 0.0) -> tuple[float, ...]:
@@ -249,7 +253,7 @@ def springs_of(stage: PlanetarySet) -> list[Spring]:
             stage.driving,
             stage.slices,
         )
-        found += pin_springs(stage, k, planet, carrier)
+        found += pin_springs(stage, k, planet, stage.pins[k] if stage.pins else carrier)
     return found
 
 
