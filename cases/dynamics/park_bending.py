@@ -157,7 +157,7 @@ def spectra(run: Run, page: Page) -> None:
     page.table("Frequencies, planets in step, by how the meshes of Eq 20-25 are read", rows)
     page.text(
         "The source sees a contact force with a constant period of about 0.4 s (section 4). No "
-        "mesh passes that slowly; the first torsional mode does, freely swinging after a torque step: "
+        "mesh passes that slowly; the first torsional mode does, swinging after a torque step: "
         f"{rows[0][PERIOD]:.3f} s with the meshes as printed, {rows[2][PERIOD]:.3f} s with all of "
         f"them wound along both axes, {rows[3][PERIOD]:.3f} s with the planetary ones alone."
     )

@@ -1,6 +1,8 @@
 from .advice import QUESTIONS as QUESTIONS
+from .advice import RUNGS as RUNGS
 from .advice import Answer as Answer
 from .advice import Operation as Operation
+from .advice import Rung as Rung
 from .advice import ladder as ladder
 from .advice import needed_level as needed_level
 from .advice import pin_loads as pin_loads
@@ -13,11 +15,14 @@ from .bodies import Superelement as Superelement
 from .bodies import assemble as assemble
 from .bodies import disc as disc
 from .bodies import stretched as stretched
+from .flexible import Flexible as Flexible
+from .flexible import Housing as Housing
 from .levels import Assembly as Assembly
 from .levels import Level as Level
 from .levels import assembly as assembly
 from .levels import azimuths as azimuths
 from .levels import machine_system as machine_system
+from .levels import planetary_set as planetary_set
 from .levels import steady_load as steady_load
 from .levels import torsional as torsional
 from .modes import SystemModes as SystemModes
