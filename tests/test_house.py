@@ -19,7 +19,7 @@ LIBRARY = sorted(GRAPH.keys() - {"geometry", "cases"})
 FLOORS = (
     {"common"},
     {"geometry", "compare", "histories"},
-    {"bearing", "mesh", "scene", "torsion", "hub_loads"},
+    {"bearing", "gear", "mesh", "scene", "torsion", "hub_loads"},
     {"life", "operator", "revolution"},
     {"interfaces"},
     {"solve"},
