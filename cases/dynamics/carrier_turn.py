@@ -18,7 +18,7 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.dynamics.static import Turn
 from fe_drivetrain.fidelity.component_frames import carrier_frame
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import library_component
+from fe_drivetrain.scene import CarrierComponent, library_component
 from fe_drivetrain.suite import Page, Record, Run
 
 NAME = "nrel_750kw"
@@ -112,7 +112,9 @@ def rows_of(name: str, one: Turn) -> list[Record]:
 def five_megawatt(count: int) -> list[Record]:
     """The 5 MW gearbox at rated torque, with a carrier of beams and with a rigid one."""
     machine = library_machine("nrel_5mw")
-    body = carrier_frame(library_component("planet_carrier"))
+    component = library_component("planet_carrier")
+    assert isinstance(component, CarrierComponent)
+    body = carrier_frame(component)
     rows = []
     for name, flexible in (("carrier of beams", Flexible({1: body})), ("rigid carrier", None)):
 

@@ -24,7 +24,7 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.fidelity import solid_component
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
-from fe_drivetrain.scene import library_component
+from fe_drivetrain.scene import CarrierComponent, HousingComponent, library_component
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes
 from fe_drivetrain.validation import published_drivetrains as published
@@ -91,8 +91,11 @@ def run(run: Run, page: Page) -> None:
     )
     page.answer(
         "All levels are one assembly: the torsional tables come back to round-off from it.",
-        "Within 5 % of flexible shafts, "
-        + "; ".join(f"{r['drivetrain']} needs {r['level']} for {r['question']}" for r in needed[:4])
+        "The 5 MW gearbox, within 5 % of the finest level: "
+        + "; ".join(
+            f"{str(row['question']).partition(' [')[0]}: {row['level']}"
+            for row in needed[: len(QUESTIONS)]
+        )
         + ".",
     )
 
@@ -102,16 +105,18 @@ def more_rungs(run: Run, name: str) -> list[Rung]:
     found = []
     if name == "nrel_5mw":
         component = library_component("planet_carrier")
+        assert isinstance(component, CarrierComponent)
         with run.step("carrier of beams"):
             beams = Flexible({1: carrier_frame(component)})
         found.append(Rung(Level.FLEXIBLE, beams, "flexible shafts, carrier of beams"))
         if not run.quick:
             with run.step("carrier of finite elements"):
-                solid = solid_component(coarser(component, COARSER))
+                solid = solid_component(coarser(component, COARSER[0]))
             elements = Flexible({1: solid.body})
             found.append(Rung(Level.FLEXIBLE, elements, "flexible shafts, carrier of FE"))
     if name == "synthetic_2mw":
         housing = library_component("gearbox_housing")
+        assert isinstance(housing, HousingComponent)
         body = housing_frame(housing, True)
         spring = stiffness_on_supports(body, housing.supports, ["ring"])
         x = library_machine(name).axes[1][0]
@@ -169,7 +174,9 @@ def show_modes(page: Page, machine: Machine) -> None:
                 "kind": kinds[number],
                 "most kinetic energy": system.bodies[int(kinetic.argmax())],
                 "its share": float(kinetic.max()),
-                "most strain energy": system.spring_names[int(strain.argmax())],
+                "most strain energy": system.spring_names[int(strain.argmax())]
+                if strain.max() > 0
+                else "none",
                 "share of it": float(strain.max()),
             }
         )

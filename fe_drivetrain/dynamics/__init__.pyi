@@ -36,14 +36,10 @@ from .modes import turning_modes as turning_modes
 from .planetary import Inertias as Inertias
 from .planetary import PinBearing as PinBearing
 from .planetary import PlanetarySet as PlanetarySet
-from .planetary import assembly_remainder as assembly_remainder
 from .planetary import bodies_of as bodies_of
 from .planetary import check_assembly as check_assembly
 from .planetary import equal_angles as equal_angles
 from .planetary import excited_motion as excited_motion
-from .planetary import mesh_order as mesh_order
-from .planetary import mesh_phases as mesh_phases
-from .planetary import nearest_angles as nearest_angles
 from .planetary import springs_of as springs_of
 from .response import Crossing as Crossing
 from .response import absolute_sun_orders as absolute_sun_orders
