@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import assemble, stretched
+from fe_drivetrain.dynamics.bodies import Body, assemble, stretched
 from fe_drivetrain.dynamics.modes import (
     PLANET,
     ROTATIONAL,
@@ -24,6 +24,9 @@ from fe_drivetrain.dynamics.planetary import (
     excited_motion,
     springs_of,
 )
+from fe_drivetrain.dynamics.response import frequency_response
+from fe_drivetrain.dynamics.springs import Place, bushing
+from fe_drivetrain.gear.planets import sun_phases
 from fe_drivetrain.validation.published_planetary import (
     COOLEY_PARKER_PRINTED,
     COOLEY_PARKER_STAGE,
@@ -179,3 +182,46 @@ def test_what_a_harmonic_excites() -> None:
     assert excited_motion(21, 3) == "torque"
     assert excited_motion(29, 3) == "force"
     assert excited_motion(22, 4) == "nothing"
+
+
+def sun_at_mesh_frequency(sun: int, ring: int) -> tuple[float, float]:
+    """Orbit and torsion of a sun whose meshes are excited by their phases, in three dimensions."""
+    system = helical_system(3)
+    phases = sun_phases(sun, ring, np.array(equal_angles(3)))
+    load = np.zeros(len(system.names), dtype=complex)
+    for k, phase in enumerate(phases):
+        for i, name in enumerate(system.spring_names):
+            if name.startswith(f"sun-planet {k + 1} "):
+                load += np.exp(-2j * np.pi * phase) * system.rows[i] * system.stiffness[i] * 1e-6
+    q = np.array([frequency_response(system, part, 500.0)[0] for part in (load.real, load.imag)])
+    moved = q[0] + 1j * q[1]
+    orbit = max(abs(moved[system.place(f"sun {m}")]) for m in ("uy", "uz"))
+    return float(orbit), float(abs(moved[system.place("sun rx")]))
+
+
+def test_planets_in_phase_give_no_orbit_and_sequential_ones_no_torsion() -> None:
+    in_phase, sequential = sun_at_mesh_frequency(21, 99), sun_at_mesh_frequency(29, 145)
+    assert in_phase[0] < 1e-9 * sequential[0]
+    assert sequential[1] < 1e-9 * in_phase[1]
+
+
+def test_a_chain_of_discs() -> None:
+    # Friswell et al. 2010, example 9.7.1, frequencies as a public program's tests have them
+    inertias, stiffness = (3.5e-3, 3.5e-3, 3.5e-3, 0.15, 0.05), (12e3, 12e3, 14e3, 10e3)
+    bodies = [
+        Body(f"disc {k}", (float(k), 0.0, 0.0), 0.0, J, free=frozenset({"rx"}))
+        for k, J in enumerate(inertias)
+    ]
+    springs = [
+        spring
+        for k, value in enumerate(stiffness)
+        for spring in bushing(
+            f"shaft {k}",
+            Place(f"disc {k}", (float(k), 0.0, 0.0)),
+            Place(f"disc {k + 1}", (float(k + 1), 0.0, 0.0)),
+            (k + 0.5, 0.0, 0.0),
+            (0, 0, 0, value, 0, 0),
+        )
+    ]
+    found = system_modes(assemble(bodies, springs)).frequencies
+    assert np.allclose(found[1:], [81.21, 141.21, 378.95, 536.36], atol=5.01e-3)
