@@ -15,6 +15,8 @@ from .bodies import Superelement as Superelement
 from .bodies import assemble as assemble
 from .bodies import disc as disc
 from .bodies import stretched as stretched
+from .elastic_ring import Rim as Rim
+from .elastic_ring import with_rim as with_rim
 from .flexible import Flexible as Flexible
 from .flexible import Housing as Housing
 from .levels import Assembly as Assembly
