@@ -32,7 +32,7 @@ from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import CarrierComponent, HousingComponent, library_component
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes
+from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
 from fe_drivetrain.validation import published_drivetrains as published
 
 #: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
@@ -95,6 +95,8 @@ def run(run: Run, page: Page) -> None:
         )
         show_modes(page, machine)
         show_turning(page, name, machine)
+        if name == "nrel_5mw":
+            stiffness_of_5mw(page)
         for text in machine.assumed:
             page.assume(f"{name}: {text.partition(':')[0]}", "", "", text)
     page.section("Which level a question needs")
@@ -181,9 +183,21 @@ def recover(run: Run, page: Page) -> None:
             why="round-off: rows of lines of action in place of ratios of radii",
             source="gear_masses of Table 4.3, and of Table 4.2 with the teeth in place of ratios",
         )
-    held = library_machine("nrel_5mw")
-    rows = [float(natural_modes(torsional(held)).frequencies[k]) for k in range(1, 5)]
-    page.data("nrel_5mw_torsional_hz", rows)
+
+
+def stiffness_of_5mw(page: Page) -> None:
+    """Beside the torsional spring of the turbine that the gearbox was designed for."""
+    found = torsional(library_machine("nrel_5mw"))
+    stiffness = static_stiffness(found, "rotor", "generator") / 1e6
+    first = natural_modes(found).frequencies[1]
+    page.text(
+        f"From rotor to held generator the 5 MW table has {stiffness:.1f} MN m/rad in torsion, and "
+        f"{first:.3f} Hz with both ends free. The turbine's shaft is given 867.637 MN m/rad "
+        "(Jonkman 2009, NREL/TP-500-38060), and 2.18 Hz with two masses of the same rotor and "
+        "generator: the masses of the gearbox are what is between 2.16 and "
+        f"{first:.2f} Hz."
+    )
+    page.data("nrel_5mw_stiffness_MN_m_per_rad", stiffness)
 
 
 def with_teeth(table: Drivetrain) -> Drivetrain:

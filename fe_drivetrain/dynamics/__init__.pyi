@@ -64,6 +64,7 @@ from .static import load_sharing as load_sharing
 from .static import over_a_turn as over_a_turn
 from .static import static as static
 from .system import System as System
+from .system import with_proportional_damping as with_proportional_damping
 from .system import with_stiffness as with_stiffness
 from .system import without_massless as without_massless
 from .tables import MACHINES as MACHINES
