@@ -187,15 +187,19 @@ def recover(run: Run, page: Page) -> None:
 
 def stiffness_of_5mw(page: Page) -> None:
     """Beside the torsional spring of the turbine that the gearbox was designed for."""
-    found = torsional(library_machine("nrel_5mw"))
+    machine = library_machine("nrel_5mw")
+    found = torsional(machine)
     stiffness = static_stiffness(found, "rotor", "generator") / 1e6
     first = natural_modes(found).frequencies[1]
+    generator = machine.speeds[-1] ** 2 * machine.generator.inertia
+    both = 1 / machine.rotor.inertia + 1 / generator
+    two = float(np.sqrt(1e6 * stiffness * both) / (2 * np.pi))
     page.text(
         f"From rotor to held generator the 5 MW table has {stiffness:.1f} MN m/rad in torsion, and "
         f"{first:.3f} Hz with both ends free. The turbine's shaft is given 867.637 MN m/rad "
         "(Jonkman 2009, NREL/TP-500-38060), and 2.18 Hz with two masses of the same rotor and "
-        "generator: the masses of the gearbox are what is between 2.16 and "
-        f"{first:.2f} Hz."
+        f"generator; so would these inertias alone have {two:.2f} Hz here: the rest, down to "
+        f"{first:.2f} Hz, is that of the gearbox's own inertias."
     )
     page.data("nrel_5mw_stiffness_MN_m_per_rad", stiffness)
 
