@@ -198,7 +198,7 @@ def stiffness_of_5mw(page: Page) -> None:
         f"From rotor to held generator the 5 MW table has {stiffness:.1f} MN m/rad in torsion, and "
         f"{first:.3f} Hz with both ends free. The turbine's shaft is given 867.637 MN m/rad "
         "(Jonkman 2009, NREL/TP-500-38060), and 2.18 Hz with two masses of the same rotor and "
-        f"generator; so would these inertias alone have {two:.2f} Hz here: the rest, down to "
+        f"generator. With these inertias alone it would be {two:.2f} Hz here; the rest, down to "
         f"{first:.2f} Hz, is that of the gearbox's own inertias."
     )
     page.data("nrel_5mw_stiffness_MN_m_per_rad", stiffness)
