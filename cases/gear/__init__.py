@@ -1,0 +1,1 @@
+"""Gears: geometry, stiffness, load over the face width, rating, damage."""
