@@ -17,7 +17,7 @@ def run(run: Run, page: Page) -> None:
     """Rate the helical pair of 17 and 103 teeth."""
     mesh = rated_meshes()["ISO/TR 6336-30, example 1"]
     with run.step("rating"):
-        check_mesh(page, mesh, SOURCE)
+        check_mesh(page, mesh, SOURCE, "second-hand")
         found = rated(mesh)
     for quantity, prints in PRINTED.items():
         for number, (ours, printed) in enumerate(zip(found[quantity], prints, strict=True)):

@@ -2,6 +2,7 @@
 
 from math import isinf
 
+from fe_drivetrain.report import Basis
 from fe_drivetrain.suite import Page, Record
 from fe_drivetrain.validation.rated_gears import RatedMesh, rated, tolerance
 
@@ -29,7 +30,9 @@ WHY = (
 )
 
 
-def check_mesh(page: Page, mesh: RatedMesh, source: str) -> tuple[int, int]:
+def check_mesh(
+    page: Page, mesh: RatedMesh, source: str, basis: Basis = "independent"
+) -> tuple[int, int]:
     """All that is printed of a mesh: checks, a table; how many prints, and how many were met."""
     found, rows, met = rated(mesh), [], 0
     for quantity, prints in mesh.printed.items():
@@ -55,6 +58,7 @@ def check_mesh(page: Page, mesh: RatedMesh, source: str) -> tuple[int, int]:
                     relative=False,
                     why=WHY,
                     source=source,
+                    basis=basis,
                 )
     for quantity, prints in mesh.unmet.items():
         rows += [_row(quantity, p, found[quantity][n], "no") for n, p in enumerate(prints)]
@@ -66,4 +70,5 @@ def check_mesh(page: Page, mesh: RatedMesh, source: str) -> tuple[int, int]:
 
 
 def _row(quantity: str, printed: str, ours: float, within: str) -> Record:
-    return {"quantity": quantity, "printed": printed, "ours": ours, "within rounding": within}
+    shown = f"{ours:.{len(printed.partition('.')[2]) + 1}f}"
+    return {"quantity": quantity, "printed": printed, "ours": shown, "within rounding": within}

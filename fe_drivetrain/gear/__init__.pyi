@@ -1,3 +1,6 @@
+from .coupled_slices import Coupling as Coupling
+from .coupled_slices import hertz_line_stiffness as hertz_line_stiffness
+from .coupled_slices import loaded_with_coupling as loaded_with_coupling
 from .involute import ContactPath as ContactPath
 from .involute import Gear as Gear
 from .involute import Pair as Pair
@@ -5,6 +8,11 @@ from .involute import Rack as Rack
 from .involute import inverse_involute as inverse_involute
 from .involute import involute_of as involute_of
 from .involute import meshing_without_backlash as meshing_without_backlash
+from .load_distribution import Loaded as Loaded
+from .load_distribution import Period as Period
+from .load_distribution import loaded as loaded
+from .load_distribution import over_period as over_period
+from .load_distribution import supported as supported
 from .load_factors import Deviations as Deviations
 from .load_factors import LoadFactors as LoadFactors
 from .load_factors import contact_ratio_factor as contact_ratio_factor
@@ -38,6 +46,13 @@ from .rating import zone_factor as zone_factor
 from .root_geometry import Cutter as Cutter
 from .root_geometry import ToothRoot as ToothRoot
 from .root_geometry import tooth_root as tooth_root
+from .slices import SLICES as SLICES
+from .slices import Contacts as Contacts
+from .slices import Modifications as Modifications
+from .slices import SlicedMesh as SlicedMesh
+from .slices import contact_rows as contact_rows
+from .slices import contacts as contacts
+from .slices import parabolic_stiffness as parabolic_stiffness
 from .strength import GearMaterial as GearMaterial
 from .strength import LifeCurve as LifeCurve
 from .strength import equivalent_roughness as equivalent_roughness
