@@ -1,8 +1,8 @@
 """Ratings beside what others print, digit by digit."""
 
 from math import isinf
+from typing import Literal
 
-from fe_drivetrain.report import Basis
 from fe_drivetrain.suite import Page, Record
 from fe_drivetrain.validation.rated_gears import RatedMesh, rated, tolerance
 
@@ -31,7 +31,10 @@ WHY = (
 
 
 def check_mesh(
-    page: Page, mesh: RatedMesh, source: str, basis: Basis = "independent"
+    page: Page,
+    mesh: RatedMesh,
+    source: str,
+    basis: Literal["independent", "second-hand"] = "independent",
 ) -> tuple[int, int]:
     """All that is printed of a mesh: checks, a table; how many prints, and how many were met."""
     found, rows, met = rated(mesh), [], 0

@@ -12,6 +12,7 @@ from .load_distribution import Loaded as Loaded
 from .load_distribution import Period as Period
 from .load_distribution import loaded as loaded
 from .load_distribution import over_period as over_period
+from .load_distribution import peak_over_mean as peak_over_mean
 from .load_distribution import supported as supported
 from .load_factors import Deviations as Deviations
 from .load_factors import LoadFactors as LoadFactors

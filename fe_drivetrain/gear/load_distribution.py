@@ -1,4 +1,4 @@
-"""How a torque is shared by the slices of a mesh: face load factor, transmission error, wrenches."""
+"""How a torque is shared by slices of a mesh: face load factor, transmission error, wrenches."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ class Loaded:
     @property
     def over_face(self) -> Floats:
         """Load of each slice, of all pairs of teeth and both flanks [N]: (slices,)."""
-        return np.bincount(self.contacts.slice, self.forces, self.slices)
+        load = np.bincount(self.contacts.slice, self.forces, self.slices)
+        return np.asarray(load, dtype=np.float64)
 
     @property
     def face_factor(self) -> float:
-        """Largest over mean load of the slices, at this position."""
-        load = self.over_face
-        return float(load.max() / load.mean())
+        """Largest over mean load per face width, at this position; see `peak_over_mean`."""
+        return peak_over_mean(self.over_face)
 
     @property
     def loaded_share(self) -> float:
@@ -57,6 +57,26 @@ class Loaded:
     def wrench(self) -> Floats:
         """Forces and moments on both gears, about the middles of their axes [N, N m]: (12,)."""
         return np.asarray(-self.contacts.rows.T @ self.forces, dtype=np.float64)
+
+
+def peak_over_mean(load: Floats) -> float:
+    """Largest over mean load per face width.
+
+    Parameters
+    ----------
+    load : ndarray, (n,)
+        Of equal slices [N].
+
+    Returns
+    -------
+    float
+        The largest of the slices, and of the ends of the face, to which the last two slices go on
+        in a straight line: a misaligned gear carries most at its very end.
+    """
+    if len(load) < 2:
+        return 1.0
+    ends = 1.5 * load[[0, -1]] - 0.5 * load[[1, -2]]
+    return float(max(load.max(), ends.max()) / load.mean())
 
 
 def loaded(
@@ -94,12 +114,20 @@ def loaded(
 
 def _approach(side: Floats, stiffness: Floats, away: Floats, load: float) -> float:
     """Where springs that begin at side * away sum to a load: by the places of their beginnings."""
-    begins = np.sort(side * away)
+    begins, order = np.sort(side * away), np.argsort(side * away)
+    # springs of one side are pressed beyond their beginning, those of the other before it
+    up = np.where(side > 0.0, stiffness, 0.0)[order]
+    down = np.where(side < 0.0, stiffness, 0.0)[order]
+    above = begins * np.cumsum(up) - np.cumsum(up * begins)
+    below = (down @ begins - np.cumsum(down * begins)) - begins * (down.sum() - np.cumsum(down))
     # beyond all beginnings every spring of one side is pressed
     reach = abs(load) / stiffness.min()
-    places = np.concatenate([[begins[0] - reach], begins, [begins[-1] + reach]])
-    pressed = np.maximum(side * places[:, None] - away, 0.0)
-    at = float(np.interp(load, pressed @ (stiffness * side), places))
+    ends = begins[[0, -1]] + np.array([-reach, reach])
+    last = above[-1] + up.sum() * reach
+    first = -(below[0] + down.sum() * reach)
+    places = np.concatenate([ends[:1], begins, ends[1:]])
+    carried = np.concatenate([[first], above - below, [last]])
+    at = float(np.interp(load, carried, places))
     active = side * at > away
     if not active.any():
         return at
@@ -133,9 +161,8 @@ class Period:
 
     @property
     def face_factor(self) -> float:
-        """K_Hbeta: largest over mean load of the slices, of their means over the period."""
-        load = self.over_face.mean(axis=0)
-        return float(load.max() / load.mean())
+        """K_Hbeta: largest over mean load per face width, of means over the period."""
+        return peak_over_mean(self.over_face.mean(axis=0))
 
     @property
     def ripple(self) -> float:
