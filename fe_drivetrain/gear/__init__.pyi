@@ -1,6 +1,15 @@
 from .coupled_slices import Coupling as Coupling
 from .coupled_slices import hertz_line_stiffness as hertz_line_stiffness
 from .coupled_slices import loaded_with_coupling as loaded_with_coupling
+from .damage import ParallelStage as ParallelStage
+from .damage import PlanetaryStage as PlanetaryStage
+from .damage import RatedTooth as RatedTooth
+from .damage import ToothDamage as ToothDamage
+from .damage import damage_of_history as damage_of_history
+from .damage import damage_of_levels as damage_of_levels
+from .damage import damage_of_turns as damage_of_turns
+from .damage import loads_per_turn as loads_per_turn
+from .damage import torque_exponent as torque_exponent
 from .involute import ContactPath as ContactPath
 from .involute import Gear as Gear
 from .involute import Pair as Pair
