@@ -37,9 +37,9 @@ PHASES = 64
 LADDER = "face load factor K_Hbeta"
 
 
-def mesh(slices: int, misalignment: float = 0.0, pair: Pair = PAIR, **more: float) -> SlicedMesh:
+def mesh(slices: int, misalignment: float = 0.0, pair: Pair = PAIR) -> SlicedMesh:
     """Stage 3 in slices, misaligned by a gap at one end [m]."""
-    change = Modifications(slope=misalignment, **more)
+    change = Modifications(slope=misalignment)
     stiffness = parabolic_stiffness(pair, C_SINGLE, RATIO)
     return SlicedMesh(pair, stiffness, change, slices, PLAY)
 
@@ -178,9 +178,9 @@ def ripple(page: Page) -> None:
 
 def transmission(page: Page) -> None:
     """Transmission error over a period: plain, relieved, with the torque reversed."""
-    relief = {"tip_relief": (30e-6, 30e-6), "relief_length": (0.02, 0.02)}
+    relief = Modifications(tip_relief=(30e-6, 30e-6), relief_length=(0.02, 0.02))
     plain = over_period(mesh(35), TORQUE)
-    relieved = over_period(replace(mesh(35), modifications=Modifications(**relief)), TORQUE)  # type: ignore[arg-type]
+    relieved = over_period(replace(mesh(35), modifications=relief), TORQUE)
     back = over_period(mesh(35), -TORQUE)
     rows = [
         {
