@@ -79,4 +79,4 @@ def test_the_example_of_gear_rating_runs() -> None:
     K_Hbeta, S_H, flank, back = (float(x) for x in done.stdout.split())
     assert 1.0 < K_Hbeta < 2.0
     assert S_H > 1.0
-    assert flank >= back >= 0.0
+    assert flank > back >= 0.0
