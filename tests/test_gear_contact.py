@@ -8,14 +8,14 @@ from scipy.integrate import quad, trapezoid
 
 from fe_drivetrain.bearing.contact import line_pressure
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.gear.involute import Gear, Pair
-from fe_drivetrain.gear.line_contact import (
+from fe_drivetrain.gear.flank_stress import (
     LineContact,
     reduced_modulus,
     shear_stress,
     tooth_contact,
     von_mises,
 )
+from fe_drivetrain.gear.involute import Gear, Pair
 
 STEEL = reduced_modulus()
 CONTACT = LineContact(8e5, 0.03, STEEL)

@@ -17,11 +17,11 @@ from .involute import Rack as Rack
 from .involute import inverse_involute as inverse_involute
 from .involute import involute_of as involute_of
 from .involute import meshing_without_backlash as meshing_without_backlash
-from .line_contact import LineContact as LineContact
-from .line_contact import reduced_modulus as reduced_modulus
-from .line_contact import shear_stress as shear_stress
-from .line_contact import tooth_contact as tooth_contact
-from .line_contact import von_mises as von_mises
+from .flank_stress import LineContact as LineContact
+from .flank_stress import reduced_modulus as reduced_modulus
+from .flank_stress import shear_stress as shear_stress
+from .flank_stress import tooth_contact as tooth_contact
+from .flank_stress import von_mises as von_mises
 from .load_distribution import Loaded as Loaded
 from .load_distribution import Period as Period
 from .load_distribution import loaded as loaded
