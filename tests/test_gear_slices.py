@@ -234,6 +234,21 @@ def test_tip_relief_takes_load_from_the_tips() -> None:
     assert end[1] < 0.5 * end[0]
 
 
+def test_a_helix_deviation_is_a_tilt_about_the_line_of_centres() -> None:
+    b, slope, motion = SPUR.face_width, 40e-6, np.zeros(12)
+    angle = SPUR.working_angle
+    # about the line of centres: what opens one flank closes the other
+    motion[4] = slope / b / cos(angle)
+    for torque in (TORQUE, -TORQUE):
+        deviated = loaded(sliced(SPUR, modifications=Modifications(slope=slope)), 0.5, torque)
+        tilted = loaded(sliced(SPUR), 0.5, torque, motion)
+        assert tilted.over_face == pytest.approx(deviated.over_face, rel=1e-9)
+        assert tilted.approach == pytest.approx(deviated.approach, rel=1e-9)
+    # larger than the play it jams
+    jammed = loaded(sliced(SPUR, modifications=Modifications(slope=4.0 * PLAY)), 0.5, TORQUE)
+    assert jammed.forces[~jammed.contacts.driving].sum() > 0.0
+
+
 def test_crowning_and_end_relief_unload_the_ends() -> None:
     for change in (Modifications(crowning=20e-6), Modifications(end_relief=20e-6, end_length=0.02)):
         over = loaded(sliced(SPUR, modifications=change), 0.5, TORQUE).over_face

@@ -44,7 +44,8 @@ class Modifications:
     end_length : float
         From where that begins to the end.
     slope : float
-        Helix deviation: gap at the end at +x less that at -x.
+        Helix deviation: gap of the driving flank at the end at +x less that at -x; the other flank
+        has as much less.
     """
 
     tip_relief: tuple[float, float] = (0.0, 0.0)
@@ -54,7 +55,7 @@ class Modifications:
     end_length: float = 0.0
     slope: float = 0.0
 
-    def gap(self, pair: Pair, place: Floats, x: Floats) -> Floats:
+    def gap(self, pair: Pair, place: Floats, x: Floats, driving: bool = True) -> Floats:
         """Gap that they leave.
 
         Parameters
@@ -65,6 +66,8 @@ class Modifications:
             Distances from T1 along the line of action [m].
         x : ndarray, (n,)
             From the middle of the face [m].
+        driving : bool
+            Of the driving flank, or of the other.
 
         Returns
         -------
@@ -72,7 +75,8 @@ class Modifications:
             [m].
         """
         path, half = pair.path, 0.5 * pair.face_width
-        gap = self.crowning * (x / half) ** 2 + 0.5 * self.slope * x / half
+        slope = self.slope if driving else -self.slope
+        gap = self.crowning * (x / half) ** 2 + 0.5 * slope * x / half
         gap = gap + _ramp(np.abs(x), half, self.end_length, self.end_relief)
         gap += _ramp(place, path.end, self.relief_length[0], self.tip_relief[0])
         return gap + _ramp(-place, -path.start, self.relief_length[1], self.tip_relief[1])
@@ -222,7 +226,7 @@ def contacts(mesh: SlicedMesh, phase: float) -> Contacts:
         tooth, number = np.nonzero((place >= path.start) & (place <= path.end))
         s = place[tooth, number]
         width = pair.face_width / mesh.slices
-        gap = mesh.modifications.gap(pair, s, x[number]) + 0.5 * max(mesh.play, 0.0)
+        gap = mesh.modifications.gap(pair, s, x[number], driving) + 0.5 * max(mesh.play, 0.0)
         rows = contact_rows(pair, s, x[number], driving)
         k = mesh.stiffness(s) * width
         parts.append((rows, k, gap, s, number, numbers[tooth], np.full(len(s), driving)))
