@@ -10,6 +10,11 @@ from .damage import damage_of_levels as damage_of_levels
 from .damage import damage_of_turns as damage_of_turns
 from .damage import loads_per_turn as loads_per_turn
 from .damage import torque_exponent as torque_exponent
+from .flank_stress import LineContact as LineContact
+from .flank_stress import reduced_modulus as reduced_modulus
+from .flank_stress import shear_stress as shear_stress
+from .flank_stress import tooth_contact as tooth_contact
+from .flank_stress import von_mises as von_mises
 from .involute import ContactPath as ContactPath
 from .involute import Gear as Gear
 from .involute import Pair as Pair
@@ -17,11 +22,6 @@ from .involute import Rack as Rack
 from .involute import inverse_involute as inverse_involute
 from .involute import involute_of as involute_of
 from .involute import meshing_without_backlash as meshing_without_backlash
-from .flank_stress import LineContact as LineContact
-from .flank_stress import reduced_modulus as reduced_modulus
-from .flank_stress import shear_stress as shear_stress
-from .flank_stress import tooth_contact as tooth_contact
-from .flank_stress import von_mises as von_mises
 from .load_distribution import Loaded as Loaded
 from .load_distribution import Period as Period
 from .load_distribution import loaded as loaded
