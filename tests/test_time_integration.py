@@ -428,8 +428,8 @@ def test_messages(make: object, message: str) -> None:
 
 
 @pytest.mark.needs("pyyeti")
-def test_pyyeti_newmark() -> None:
-    """Another program's average acceleration on the same matrices and load."""
+def test_pyyeti_superposes_the_same() -> None:
+    """Another program's exact coefficients for piecewise linear loads, on the same matrices."""
     from pyyeti.ode import SolveUnc
 
     equations, loads = frame()
@@ -442,3 +442,26 @@ def test_pyyeti_newmark() -> None:
     times, q, _ = exact_steps(plain, loads, 2.0, 0.1)
     found = SolveUnc(plain.mass, plain.C, plain.K, h=0.1).tsolve(loads.at(times).T, d0=np.zeros(4))
     assert_allclose(found.d.T, q, rtol=0, atol=1e-9)
+
+
+@pytest.mark.needs("exudyn")
+@pytest.mark.parametrize("radius", [1.0, 0.8])
+def test_exudyn_takes_the_same_steps(radius: float) -> None:
+    """Exudyn's generalised alpha is the same method, to what its Newton's method leaves."""
+    from fe_drivetrain.export.programs.exudyn_motion import exudyn_motion
+
+    equations, loads = frame()
+    _, q = exudyn_motion(equations, loads, 1.0, 0.02, radius)
+    scheme = AVERAGE if radius == 1.0 else generalised_alpha(radius)
+    found = integrate(equations, loads, 1.0, 0.02, scheme).q
+    assert_allclose(found, q, rtol=0, atol=1e-8 * np.abs(q).max())
+
+
+@pytest.mark.needs("exudyn")
+def test_exudyn_on_a_stiffness_that_varies_with_an_angle() -> None:
+    from fe_drivetrain.export.programs.exudyn_motion import exudyn_motion
+
+    equations, loads = varying_with_angle(), steady([0.0, 0.0])
+    start = started([0.2, 0.0], [5.0, 0.0])
+    _, q = exudyn_motion(equations, loads, 0.2, 1e-3, start=start)
+    assert_allclose(integrate(equations, loads, 0.2, 1e-3, start=start).q, q, rtol=0, atol=1e-6)

@@ -5,6 +5,10 @@ from .bodies import Superelement as Superelement
 from .bodies import assemble as assemble
 from .bodies import disc as disc
 from .bodies import stretched as stretched
+from .brakes import Brake as Brake
+from .brakes import Phase as Phase
+from .brakes import Transient as Transient
+from .brakes import transient as transient
 from .equations import Equations as Equations
 from .equations import Loads as Loads
 from .equations import SpringLaws as SpringLaws
@@ -24,6 +28,9 @@ from .integration import Scheme as Scheme
 from .integration import State as State
 from .integration import generalised_alpha as generalised_alpha
 from .integration import integrate as integrate
+from .machines import constant_power as constant_power
+from .machines import grid_spring as grid_spring
+from .machines import slip_line as slip_line
 from .springs import Mesh as Mesh
 from .springs import Place as Place
 from .springs import Spring as Spring
@@ -37,6 +44,10 @@ from .steady_state import free_motions as free_motions
 from .steady_state import wind_up as wind_up
 from .step_control import Adaptive as Adaptive
 from .step_control import integrate_adaptively as integrate_adaptively
+from .stopping import Shutdown as Shutdown
+from .stopping import StopSequence as StopSequence
+from .stopping import shutdown as shutdown
+from .stopping import torsional_equations as torsional_equations
 from .superposition import Superposed as Superposed
 from .superposition import exact_steps as exact_steps
 from .superposition import modal_superposition as modal_superposition

@@ -426,7 +426,7 @@ def run_steps(
     forces[:, law] = law_forces[:k]
     constant = ~law
     # the constant of a spring's energy that its offset leaves
-    energies[:, STRAIN] += 0.5 * float((s.stiffness * s.offset**2)[constant].sum())
+    energies[:k, STRAIN] += 0.5 * float((s.stiffness * s.offset**2)[constant].sum())
     dt = stepper.matrices.dt
     before = State(state[3], state[4], state[5], begin.time + (done - 1) * dt)
     motion = Motion(
