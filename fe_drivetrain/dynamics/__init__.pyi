@@ -46,6 +46,7 @@ from .step_control import Adaptive as Adaptive
 from .step_control import integrate_adaptively as integrate_adaptively
 from .stopping import Shutdown as Shutdown
 from .stopping import StopSequence as StopSequence
+from .stopping import damped_by_ratio as damped_by_ratio
 from .stopping import shutdown as shutdown
 from .stopping import torsional_equations as torsional_equations
 from .superposition import Superposed as Superposed

@@ -5,6 +5,7 @@ normal operation, then the aerodynamic torque falls and the generator is off at 
 brake on the high-speed shaft until it stands, and the rotor swings against it.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,9 +28,10 @@ from fe_drivetrain.torsion.gear_table import (
     Drivetrain,
     gear_masses,
     gear_speeds,
+    shaft_damping,
     two_masses,
 )
-from fe_drivetrain.torsion.system import Torsional
+from fe_drivetrain.torsion.system import Torsional, damped
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,33 @@ def _static(system: Torsional, speeds: dict[str, float], torque: float) -> Float
     return np.asarray(system.k * (system.B @ wind_up(equations, load).q))
 
 
+def damped_by_ratio(system: Torsional, ratios: Mapping[str, float]) -> Torsional:
+    """Dampers beside the springs of a torsional system, from damping ratios.
+
+    The ratio is that of the element alone: C = 2 zeta sqrt(k J) with J the inertia that its two
+    sides oppose to each other, 1 / (b M^-1 b^T) of its row b (Al-Hamadani 2018, Eq 4.5 and 4.7 as
+    they must be meant).
+
+    Parameters
+    ----------
+    system : Torsional
+        Inertias and springs.
+    ratios : Mapping[str, float]
+        zeta by the name of the element; others keep their dampers.
+
+    Returns
+    -------
+    system : Torsional
+    """
+    inertia = 1.0 / (system.B**2 @ (1.0 / system.J))
+    c = {
+        e.name: shaft_damping(ratios[e.name], float(J), e.stiffness)
+        for e, J in zip(system.elements, inertia, strict=True)
+        if e.name in ratios
+    }
+    return damped(system, c)
+
+
 def torsional_equations(system: Torsional) -> Equations:
     """Equations of motion of a torsional system."""
     damping = np.array([element.damping for element in system.elements])
@@ -121,6 +150,7 @@ def shutdown(
     dt: float = 1e-3,
     lumped: bool = False,
     slip: float = 0.01,
+    ratios: tuple[float, float] | None = None,
 ) -> Shutdown:
     """Let a drivetrain stop.
 
@@ -140,6 +170,9 @@ def shutdown(
         Two masses, in place of one for each gear.
     slip : float
         Of the generator at rated torque.
+    ratios : tuple of float, optional
+        Damping ratios of shafts and of meshes, as of `damped_by_ratio`, in place of the dampers of
+        the table.
 
     Returns
     -------
@@ -147,6 +180,10 @@ def shutdown(
     """
     when = sequence or StopSequence()
     system = (two_masses if lumped else gear_masses)(table, "free")
+    if ratios is not None:
+        shafts = {shaft.name for shaft in table.shafts} | {"shafts"}
+        named = {e.name: ratios[0 if e.name in shafts else 1] for e in system.elements}
+        system = damped_by_ratio(system, named)
     speeds = {ROTOR: 1.0, GENERATOR: 1.0} if lumped else dict(gear_speeds(table))
     ratio = speeds[GENERATOR]
     to_rotor, to_generator = np.zeros(len(speeds)), np.zeros(len(speeds))

@@ -1,0 +1,1 @@
+"""Drivetrains in three dimensions and in time: modes, static load, transients."""
