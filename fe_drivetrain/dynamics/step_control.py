@@ -80,7 +80,8 @@ def integrate_adaptively(
     duration, first : float
         Of all, and of the first step tried [s].
     tolerance : float
-        Of the error's strain over the largest strain so far, both in the energy of the springs.
+        Of the error's strain over the largest strain so far, or that of the loads at rest, both by
+        the energy of the springs.
     scheme : Scheme
         With a beta other than 1/6, whose estimate is zero.
     start : State, optional
@@ -116,7 +117,7 @@ def integrate_adaptively(
     parts: list[Motion] = []
     steps: list[float] = []
     errors: list[float] = []
-    rejected, dt, largest = 0, first, 0.0
+    rejected, dt, largest = 0, first, _static_strain(equations, loads)
     while state.time < end * (1.0 - 1e-12):
         h = min(dt, end - state.time)
         stepper = steppers.get(h) or prepared(equations, h, scheme, driven)
@@ -143,6 +144,16 @@ def integrate_adaptively(
         if error < tolerance / 12.0 and (longest is None or 2.0 * dt <= longest):
             dt *= 2.0
     return Adaptive(joined(parts), np.array(steps), np.array(errors), rejected, len(steppers))
+
+
+def _static_strain(equations: Equations, loads: Loads) -> float:
+    """Twice the strain energy of the largest loads, put on slowly: a scale from the first step."""
+    root = np.sqrt(np.diag(equations.mass))
+    flexible = np.linalg.pinv(equations.K / np.outer(root, root), rcond=1e-12, hermitian=True)
+    P = loads.patterns / root[:, None]
+    return float(
+        np.einsum("sr,rq,sq->s", loads.histories, P.T @ flexible @ P, loads.histories).max()
+    )
 
 
 def joined(parts: list[Motion]) -> Motion:
