@@ -23,8 +23,6 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import two_masses
 
-#: Frequencies of two free masses, rounded [Hz].
-FREQUENCIES = {"A": 9.62, "B": 5.02, "C": 2.54, "D": 2.524}
 PER_PERIOD = (20, 40, 80, 160)
 QUICK = (20, 40)
 
