@@ -1,1 +1,1 @@
-"""Drivetrains in three dimensions and in time: modes, static load, transients."""
+"""Drivetrains in three dimensions: planetary stages, orders, levels of one machine."""

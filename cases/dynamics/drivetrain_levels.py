@@ -1,0 +1,141 @@
+"""One drivetrain as torsional, rigid and flexible model: what each level answers, and its cost."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.dynamics import (
+    QUESTIONS,
+    Level,
+    Machine,
+    Operation,
+    direction_kinds,
+    ladder,
+    library_machine,
+    machine_system,
+    needed_level,
+    system_modes,
+    torsional,
+)
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes
+from fe_drivetrain.validation import published_drivetrains as published
+
+#: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
+OPERATIONS = {
+    "nrel_5mw": Operation(3.946e6, 2.0e6),
+    "nrel_750kw": Operation(3.25e5, 3.0e5),
+    "synthetic_2mw": Operation(1.055e6, 1.0e6),
+}
+TOLERANCE = 0.05
+FIRST = "first torsional frequency [Hz]"
+
+
+@case(
+    "Levels of one drivetrain: torsional, rigid bodies, flexible shafts",
+    source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
+)
+def run(run: Run, page: Page) -> None:
+    """Tables recovered, answers of each level beside its cost, and which level is needed."""
+    recover(run, page)
+    needed: list[Record] = []
+    for name, operation in OPERATIONS.items():
+        machine = library_machine(name)
+        with run.step(f"ladder of {name}"):
+            answers = ladder(machine, operation)
+        page.section(machine.title)
+        rows: list[Record] = []
+        finest = answers[-1].values
+        for answer in answers:
+            row: Record = {
+                "level": answer.level.value,
+                "degrees of freedom": answer.degrees,
+                "time [s]": round(answer.seconds, 2),
+            }
+            for question, value in answer.values.items():
+                row[question] = value
+                best = finest[question]
+                row[f"error of {question.partition(' [')[0]} [%]"] = (
+                    None if value is None or best is None else 100 * (value / best - 1)
+                )
+            rows.append(row)
+        page.table("Answers, and their differences from the finest level", rows)
+        page.data(f"ladder_{name}", rows)
+        for question in QUESTIONS:
+            level = needed_level(answers, question, TOLERANCE)
+            needed.append({"drivetrain": name, "question": question, "level": level.value})
+        first = [float(a.values[FIRST] or 0.0) for a in answers]
+        page.holds(
+            f"{name}: the first torsional frequency falls as more may move",
+            first[0] >= first[1] * (1 - 1e-9),
+            why="what is let go adds compliance",
+            source="Rayleigh's principle of constraints",
+        )
+        show_modes(page, machine)
+        for text in machine.assumed:
+            page.assume(f"{name}: {text.partition(':')[0]}", "", "", text)
+    page.section("Which level a question needs")
+    page.table(f"The simplest level within {100 * TOLERANCE:g} % of the finest", needed)
+    page.text(
+        "Torsional frequencies need a torsional model, and loads of bearings, of planets and along "
+        "the face rigid bodies at least: a torsional one has no answer. Times are of this run."
+    )
+    page.answer(
+        "All levels are one assembly: the torsional tables come back to round-off from it.",
+        "Within 5 % of flexible shafts, "
+        + "; ".join(f"{r['drivetrain']} needs {r['level']} for {r['question']}" for r in needed[:4])
+        + ".",
+    )
+
+
+def recover(run: Run, page: Page) -> None:
+    """The standing tables of C and D from the assembly in three dimensions, all else held."""
+    for name, table, state in (
+        ("synthetic_2mw", published.table("drivetrain_c"), "free"),
+        ("nrel_750kw", with_teeth(published.table("nrel_750kw")), "fixed"),
+    ):
+        with run.step(f"torsional level of {name}"):
+            data = library_machine(name).model_dump(exclude_none=True)
+            data["stages"][0]["planet"]["mass"] = 0.0  # in the table's carrier already
+            found = natural_modes(torsional(Machine.model_validate(data))).frequencies
+        expected = natural_modes(gear_masses(table, "free" if state == "free" else "fixed"))
+        moving = expected.frequencies > 0
+        page.vanishes(
+            f"{name}: torsional level against the gear table, relative difference",
+            float(np.abs(found[moving] / expected.frequencies[moving] - 1).max()),
+            within=1e-12,
+            why="round-off: rows of lines of action in place of ratios of radii",
+            source="gear_masses of Table 4.3, and of Table 4.2 with the teeth in place of ratios",
+        )
+    held = library_machine("nrel_5mw")
+    rows = [float(natural_modes(torsional(held)).frequencies[k]) for k in range(1, 5)]
+    page.data("nrel_5mw_torsional_hz", rows)
+
+
+def with_teeth(table: Drivetrain) -> Drivetrain:
+    """Table 4.2 with the teeth that its ratios are rounded from."""
+    data = table.model_dump(exclude_none=True)
+    for stage, teeth in zip(data["stages"], ((99, 21), (82, 23), (88, 22)), strict=True):
+        del stage["ratio"]
+        stage["teeth"] = teeth
+    return Drivetrain.model_validate(data)
+
+
+def show_modes(page: Page, machine: Machine) -> None:
+    """The first modes with flexible shafts: kind, and where the energy is."""
+    system = machine_system(machine, Level.FLEXIBLE)
+    modes = system_modes(system)
+    kinds = direction_kinds(system, modes)
+    rows: list[Record] = []
+    for number in range(14):
+        kinetic, strain = modes.kinetic_shares[:, number], modes.strain_shares[:, number]
+        rows.append(
+            {
+                "frequency [Hz]": float(modes.frequencies[number]),
+                "kind": kinds[number],
+                "most kinetic energy": system.bodies[int(kinetic.argmax())],
+                "its share": float(kinetic.max()),
+                "most strain energy": system.spring_names[int(strain.argmax())],
+                "share of it": float(strain.max()),
+            }
+        )
+    page.table("The first modes with flexible shafts", rows)
