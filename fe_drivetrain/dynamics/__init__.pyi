@@ -46,6 +46,10 @@ from .levels import torsional as torsional
 from .machines import constant_power as constant_power
 from .machines import grid_spring as grid_spring
 from .machines import slip_line as slip_line
+from .meshing import Meshing as Meshing
+from .meshing import contact_wave as contact_wave
+from .meshing import machine_meshing as machine_meshing
+from .meshing import varying_equations as varying_equations
 from .modes import SystemModes as SystemModes
 from .modes import TurningModes as TurningModes
 from .modes import direction_kinds as direction_kinds
