@@ -100,7 +100,7 @@ def steps(page: Page, quick: bool) -> float:
     for over in decades(-3, -0.5, 4 if quick else 10)[::-1]:
         dt = float(over) * period
         start = State(np.zeros(1), np.zeros(1), np.zeros(1))
-        found = integrate(one, steady([-MASS * GRAVITY]), 0.02, dt, start=start)
+        found = integrate(one, steady([-MASS * GRAVITY]), 0.012, dt, start=start)
         # without dampers it comes back to where it fell from
         after = found.q[found.q[:, 0].argmin() :, 0]
         rows.append(

@@ -46,8 +46,8 @@ def sweep(page: Page, name: str, factors: Floats) -> None:
     }
     error = errors[BY_ROWS]
     best = int(error.argmin())
-    # before, the nearest frequency may be that of another motion
-    far = slice(int(np.searchsorted(factors, 9e4)), best + 1)
+    # before, the nearest frequency may be that of another motion; behind, round-off
+    far = slice(*np.searchsorted(factors, [9e4, 2e9]).tolist())
     slope, spread = fitted_exponent(factors[far], error[far], (1e-8, 1e-3))
     page.equals(
         f"{name}: error over the stiffness, exponent",
