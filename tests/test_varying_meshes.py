@@ -63,7 +63,7 @@ def test_frequencies_and_phases_from_teeth() -> None:
     found = machine_meshing(library_machine("nrel_5mw"), 12.1 * np.pi / 30, RATIOS)
     assert len(found) == 13
     assert found["stage 1 sun-planet 2"].frequency == pytest.approx(56 * 12.1 / 60)
-    assert found["stage 1 sun-planet 2"].phase == pytest.approx(19 / 3 % 1)
+    assert found["stage 1 sun-planet 2"].phase == pytest.approx(-19 / 3 % 1)
     assert found["stage 2 ring-planet 3"].frequency == pytest.approx(93 * 12.1 / 60 * 75 / 19)
     assert found["stage 2 ring-planet 3"].phase == pytest.approx(0.0)
     assert found["stage 3 mesh"].frequency == pytest.approx(95 * 12.1 / 60 * 75 / 19 * 111 / 18)

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import InputError
 from fe_drivetrain.dynamics import (
@@ -9,10 +11,11 @@ from fe_drivetrain.dynamics import (
     absolute_sun_orders,
     check_assembly,
     crossings,
+    equal_angles,
+    excited_motion,
     mesh_orders,
-    mesh_phases,
 )
-from fe_drivetrain.dynamics.planetary import equal_angles, excited_motion
+from fe_drivetrain.gear import equally_spaced, sequence, sun_phases
 from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import gear_masses, natural_modes
@@ -166,9 +169,9 @@ def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, int]:
             page.text("No crossing within the range of speeds.")
         page.data(f"crossings_{letter}", rows)
         traces = []
-        for name, order in mesh_orders(train.stages).items():
+        for name, turns in mesh_orders(train.stages).items():
             for harmonic in (1, 2, 3):
-                ends = [order * harmonic * s / 60 for s in (low, high)]
+                ends = [turns * harmonic * s / 60 for s in (low, high)]
                 traces.append(trace(f"{name} x{harmonic}", [low, high], ends))
         for number, frequency in enumerate(train.printed):
             if frequency < 1.1 * max(t["y"][1] for t in traces):
@@ -211,14 +214,16 @@ def show_assembly(page: Page, found: dict[str, Train]) -> None:
             except InputError as error:
                 reason = str(error)
                 refused.append((letter, number))
-            phases = mesh_phases(sun, ring, equal_angles(3))[0]
+            fits = equally_spaced(sun, ring, 3)
+            phases = sun_phases(sun, ring, np.array(equal_angles(3))) if fits else np.zeros(0)
             rows.append(
                 {
                     "drivetrain": letter,
                     "stage": number,
                     "(z_s + z_r) / 3": round((sun + ring) / 3, 2),
                     "phases of the sun's meshes": ", ".join(f"{p:.2f}" for p in phases),
-                    "first harmonic gives the sun a": excited_motion(sun, 3),
+                    "sequence": sequence(sun, ring, 3) if fits else "",
+                    "first harmonic gives the sun a": excited_motion(sun, 3) if fits else "",
                     "verdict": reason,
                 }
             )

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.published_planetary import (
@@ -71,7 +72,7 @@ def run(run: Run, page: Page) -> None:
     page.data("frequencies", rows)
 
 
-def check_printed(page: Page, planets: int, frequencies: np.ndarray) -> None:
+def check_printed(page: Page, planets: int, frequencies: Floats) -> None:
     """Half a digit of each, but of those that are rounded."""
     printed = printed_values(LIN_PARKER_PRINTED[planets], planets)
     rounded = np.isin(printed, ROUND.get(planets, ()))

@@ -62,8 +62,8 @@ def run(run: Run, page: Page) -> None:
         "equations.",
         "With hinges that move with their bodies a moment of 100 kN m on the rotor changes the "
         f"mesh forces of the planets by up to {forces:.2f} kN.",
-        "The '3 % for the gearbox' that the source takes for 30 % would balance at 2.9 %: with the "
-        "torque as printed the machine would stand still after 19 s.",
+        "A generator torque of 30 % of the rotor's, as printed, would stop the machine after 19 s: "
+        "balance needs 2.9 %, one over the speed ratio, so that 3 % may have been meant.",
     )
     for text in machine.assumed:
         page.assume(text.partition(":")[0], "", "", text.partition(":")[2].strip() or text)
@@ -157,7 +157,7 @@ def spectra(run: Run, page: Page) -> None:
     page.table("Frequencies, planets in step, by how the meshes of Eq 20-25 are read", rows)
     page.text(
         "The source sees a contact force with a constant period of about 0.4 s (section 4). No "
-        "mesh passes that slowly; the first torsional mode does, freely swinging after a torque step: "
+        "mesh passes that slowly; the first torsional mode does, swinging after a torque step: "
         f"{rows[0][PERIOD]:.3f} s with the meshes as printed, {rows[2][PERIOD]:.3f} s with all of "
         f"them wound along both axes, {rows[3][PERIOD]:.3f} s with the planetary ones alone."
     )
@@ -184,7 +184,9 @@ def show_modes(page: Page, corrected: System) -> None:
                 "kind": kinds[number],
                 "most kinetic energy": corrected.bodies[int(kinetic.argmax())],
                 "its share": float(kinetic.max()),
-                "most strain energy": corrected.spring_names[int(strain.argmax())],
+                "most strain energy": corrected.spring_names[int(strain.argmax())]
+                if strain.max() > 0
+                else "none",
                 "share of it": float(strain.max()),
             }
         )

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.levels import Level, machine_system, steady_load, torsional
-from fe_drivetrain.dynamics.modes import system_modes
+from fe_drivetrain.dynamics.modes import SystemModes, system_modes
 from fe_drivetrain.dynamics.static import Static, load_sharing, static
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import Machine, ParallelData, PlanetaryData
@@ -32,7 +34,70 @@ class Operation:
     moment: float = 0.0
 
 
-Question = Callable[[Machine, Level, Operation], float | None]
+@dataclass(frozen=True)
+class Rung:
+    """A level, and what gives beside it.
+
+    Attributes
+    ----------
+    level : Level
+        What may move.
+    flexible : Flexible
+        Carriers and housing that give.
+    name : str
+        In words.
+    """
+
+    level: Level
+    flexible: Flexible
+    name: str
+
+
+RUNGS = tuple(Rung(level, Flexible(), level.value) for level in Level)
+"""The levels without flexible carriers or housing, from the simplest."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A machine at a level and what it carries; what several questions need is solved once.
+
+    Attributes
+    ----------
+    machine : Machine
+        Its table.
+    rung : Rung
+        Level, and what gives.
+    operation : Operation
+        Loads.
+    """
+
+    machine: Machine
+    rung: Rung
+    operation: Operation
+
+    @cached_property
+    def modes(self) -> SystemModes:
+        """At rest."""
+        return system_modes(self.system)
+
+    @cached_property
+    def system(self) -> System:
+        """With the generator free to turn."""
+        return machine_system(self.machine, self.rung.level, flexible=self.rung.flexible)
+
+    @cached_property
+    def loaded(self) -> Static | None:
+        """Equilibrium with gravity; none at the torsional level."""
+        if self.rung.level is Level.TORSIONAL:
+            return None
+        system = machine_system(
+            self.machine, self.rung.level, held_generator=True, flexible=self.rung.flexible
+        )
+        hub = np.array([0.0, 0.0, 0.0, 0.0, self.operation.moment, 0.0])
+        return static(system, steady_load(self.machine, system, self.operation.torque, hub))
+
+
+Question = Callable[[Asked], float | None]
 """A number of a machine at a level; None where the level has no answer."""
 
 
@@ -42,38 +107,26 @@ def torsional_frequency(number: int) -> Question:
     None where no mode has half of it: the mode has become several.
     """
 
-    def asked(machine: Machine, level: Level, operation: Operation) -> float | None:
-        del operation
-        simple = torsional(machine)
+    def asked(of: Asked) -> float | None:
+        simple = torsional(of.machine)
         modes = natural_modes(simple)
         chosen = int(np.flatnonzero(modes.frequencies > 0)[number - 1])
-        if level is Level.TORSIONAL:
+        if of.rung.level is Level.TORSIONAL:
             return float(modes.frequencies[chosen])
-        system = machine_system(machine, level)
-        found = system_modes(system)
-        rows = [system.place(f"{name} rx") for name in modes.names]
-        likeness = (modes.shapes[:, chosen] * simple.J) @ found.shapes[rows]
+        rows = [of.system.place(f"{name} rx") for name in modes.names]
+        likeness = (modes.shapes[:, chosen] * simple.J) @ of.modes.shapes[rows]
         best = int(np.abs(likeness).argmax())
-        return float(found.frequencies[best]) if likeness[best] ** 2 > 0.5 else None
+        return float(of.modes.frequencies[best]) if likeness[best] ** 2 > 0.5 else None
 
     return asked
 
 
-def _loaded(machine: Machine, level: Level, operation: Operation) -> Static | None:
-    if level is Level.TORSIONAL:
-        return None
-    system = machine_system(machine, level, held_generator=True)
-    hub = np.array([0.0, 0.0, 0.0, 0.0, operation.moment, 0.0])
-    return static(system, steady_load(machine, system, operation.torque, hub))
-
-
-def planet_bearing_load(machine: Machine, level: Level, operation: Operation) -> float | None:
+def planet_bearing_load(of: Asked) -> float | None:
     """Largest radial load of a bearing of the first stage's planets [kN]."""
-    found = _loaded(machine, level, operation)
-    stage = machine.stages[0]
-    if found is None or not isinstance(stage, PlanetaryData):
+    stage = of.machine.stages[0]
+    if of.loaded is None or not isinstance(stage, PlanetaryData):
         return None
-    return max(pin_loads(found, stage, 1).values()) / 1e3
+    return max(pin_loads(of.loaded, stage, 1).values()) / 1e3
 
 
 def pin_loads(found: Static, stage: PlanetaryData, number: int) -> dict[str, float]:
@@ -89,23 +142,22 @@ def pin_loads(found: Static, stage: PlanetaryData, number: int) -> dict[str, flo
     }
 
 
-def planet_sharing(machine: Machine, level: Level, operation: Operation) -> float | None:
+def planet_sharing(of: Asked) -> float | None:
     """Load of the ring's mesh that has most, over the mean of the first stage's."""
-    found = _loaded(machine, level, operation)
-    stage = machine.stages[0]
-    if found is None or not isinstance(stage, PlanetaryData):
+    stage = of.machine.stages[0]
+    if of.loaded is None or not isinstance(stage, PlanetaryData):
         return None
-    forces = [found.force(f"stage 1 ring-planet {k + 1}") for k in range(stage.planets)]
+    forces = [of.loaded.force(f"stage 1 ring-planet {k + 1}") for k in range(stage.planets)]
     return load_sharing(np.array(forces))
 
 
-def face_load(machine: Machine, level: Level, operation: Operation) -> float | None:
+def face_load(of: Asked) -> float | None:
     """Largest load of a slice over the mean, of the last parallel stage's mesh."""
-    found = _loaded(machine, level, operation)
-    numbers = [k for k, stage in enumerate(machine.stages, 1) if isinstance(stage, ParallelData)]
-    if found is None or not numbers or machine.stages[numbers[-1] - 1].slices == 1:
+    stages = of.machine.stages
+    numbers = [k for k, stage in enumerate(stages, 1) if isinstance(stage, ParallelData)]
+    if of.loaded is None or not numbers or stages[numbers[-1] - 1].slices == 1:
         return None
-    return load_sharing(slices_of(found, f"stage {numbers[-1]} mesh"))
+    return load_sharing(slices_of(of.loaded, f"stage {numbers[-1]} mesh"))
 
 
 def slices_of(found: Static, mesh: str) -> Floats:
@@ -129,8 +181,8 @@ class Answer:
 
     Attributes
     ----------
-    level : Level
-        That gave them.
+    name : str
+        Of the level.
     degrees : int
         Number of degrees of freedom.
     seconds : float
@@ -139,14 +191,17 @@ class Answer:
         By question; None where the level has no answer.
     """
 
-    level: Level
+    name: str
     degrees: int
     seconds: float
     values: Mapping[str, float | None]
 
 
 def ladder(
-    machine: Machine, operation: Operation, questions: Mapping[str, Question] = QUESTIONS
+    machine: Machine,
+    operation: Operation,
+    rungs: Sequence[Rung] = RUNGS,
+    questions: Mapping[str, Question] = QUESTIONS,
 ) -> list[Answer]:
     """The answers of all levels, from the simplest.
 
@@ -156,21 +211,23 @@ def ladder(
         With a rotor that has a mass.
     operation : Operation
         Torque and moment of the statics.
+    rungs : sequence of Rung
+        From the simplest level to the finest.
     questions : mapping
         By name.
     """
     found = []
-    for level in Level:
+    for rung in rungs:
         start = perf_counter()
-        values = {name: ask(machine, level, operation) for name, ask in questions.items()}
-        seconds = perf_counter() - start
-        size: System = machine_system(machine, level)
-        found.append(Answer(level, len(size.names), seconds, values))
+        asked = Asked(machine, rung, operation)
+        values = {name: ask(asked) for name, ask in questions.items()}
+        size = len(asked.system.names)
+        found.append(Answer(rung.name, size, perf_counter() - start, values))
     return found
 
 
-def needed_level(answers: Sequence[Answer], question: str, tolerance: float) -> Level:
-    """The simplest level whose answer is within a tolerance of the finest one's.
+def needed_level(answers: Sequence[Answer], question: str, tolerance: float) -> str:
+    """Name of the simplest level whose answer is within a tolerance of the finest one's.
 
     Parameters
     ----------
@@ -192,10 +249,10 @@ def needed_level(answers: Sequence[Answer], question: str, tolerance: float) -> 
     finest = answers[-1].values[question]
     if finest is None:
         raise InputError(f"no level answers {question!r}: its stages are not of that kind")
-    chosen = answers[-1].level
+    chosen = answers[-1].name
     for answer in reversed(answers):
         value = answer.values[question]
         if value is None or abs(value - finest) > tolerance * abs(finest):
             break
-        chosen = answer.level
+        chosen = answer.name
     return chosen

@@ -21,9 +21,10 @@ from fe_drivetrain.dynamics.equations import (
     fourier_wave,
     spring_laws,
 )
-from fe_drivetrain.dynamics.planetary import equal_angles, mesh_phases
+from fe_drivetrain.dynamics.planetary import equal_angles
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import Machine, PlanetaryData
+from fe_drivetrain.gear.planets import ring_phases, sun_phases
 
 HARMONICS = 8
 """Of the square wave, as in Park et al. 2021, Eq 10."""
@@ -85,6 +86,8 @@ def machine_meshing(
 ) -> dict[str, Meshing]:
     """Frequencies and phases of all meshes of a machine, from its teeth.
 
+    The constant phase between the two meshes of one planet, of its tooth's thickness, is not in it.
+
     Parameters
     ----------
     machine : Machine
@@ -110,12 +113,13 @@ def machine_meshing(
     ):
         frequency = abs(speed * machine.speeds[number - 1]) * teeth[0] / (2.0 * pi)
         if isinstance(stage, PlanetaryData):
-            phases = mesh_phases(teeth[1], teeth[0], equal_angles(stage.planets))
+            places = np.array(equal_angles(stage.planets))
+            phases = (of(teeth[1], teeth[0], places) for of in (sun_phases, ring_phases))
             for kind, of in zip(("sun-planet", "ring-planet"), phases, strict=True):
                 ratio = _ratio(contact_ratios, f"stage {number} {kind}")
                 for planet, phase in enumerate(of, start=1):
                     name = f"stage {number} {kind} {planet}"
-                    found[name] = Meshing(ratio, frequency, float(phase))
+                    found[name] = Meshing(ratio, frequency, -float(phase) % 1.0)
         else:
             name = f"stage {number} mesh"
             found[name] = Meshing(_ratio(contact_ratios, name), frequency)

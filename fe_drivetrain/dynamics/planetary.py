@@ -5,19 +5,18 @@ angle psi_k about it, from y to z. Every body has up to six degrees of freedom; 
 turns with the carrier, the springs of equal planets do not change in time.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from math import cos, isclose, pi, sin
+from math import cos, pi, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import along_x
 from fe_drivetrain.dynamics.bodies import ALL, Body
 from fe_drivetrain.dynamics.springs import Mesh, Place, Spring, directed, gear_mesh
+from fe_drivetrain.gear.planets import equally_spaced
 
 RIGHT_HAND, SPUR, LEFT_HAND = 1, 0, -1
 """Hands of a sun's teeth."""
@@ -282,11 +281,6 @@ def _handed(mesh: Mesh, hand: int) -> Mesh:
     return Mesh(mesh.pressure_angle, hand * mesh.base_helix, mesh.face_width)
 
 
-def assembly_remainder(sun_teeth: int, ring_teeth: int, planets: int) -> int:
-    """(z_s + z_r) mod N: 0 where N equally spaced planets can be put in."""
-    return (sun_teeth + ring_teeth) % planets
-
-
 def check_assembly(name: str, sun_teeth: int, ring_teeth: int, planets: int) -> None:
     """Refuse a stage whose planets cannot be put in at equal angles.
 
@@ -295,30 +289,13 @@ def check_assembly(name: str, sun_teeth: int, ring_teeth: int, planets: int) -> 
     InputError
         (z_s + z_r) / N is no integer.
     """
-    if assembly_remainder(sun_teeth, ring_teeth, planets):
+    if not equally_spaced(sun_teeth, ring_teeth, planets):
         total = sun_teeth + ring_teeth
         raise InputError(
             f"{name}: {planets} planets cannot be put in at equal angles, since the teeth of sun "
             f"and ring, {sun_teeth} + {ring_teeth} = {total}, must be a multiple of {planets} "
-            f"(remainder {total % planets}): change the teeth, or give the angles of the planets"
+            f"(remainder {total % planets}): change the teeth"
         )
-
-
-def nearest_angles(sun_teeth: int, ring_teeth: int, planets: int) -> tuple[float, ...]:
-    """The angles next to equal ones at which planets go in: multiples of 2 pi / (z_s + z_r)."""
-    total = sun_teeth + ring_teeth
-    return tuple(2 * pi / total * round(total * k / planets) for k in range(planets))
-
-
-def mesh_phases(sun_teeth: int, ring_teeth: int, angles: Sequence[float]) -> tuple[Floats, Floats]:
-    """Phases in periods of the sun-planet and the ring-planet meshes, against the first planet's.
-
-    z_s psi / (2 pi) and -z_r psi / (2 pi), modulo 1, for planets that turn clockwise; the constant
-    phase between the two meshes of one planet, of its tooth's thickness, is not in it (Parker and
-    Lin 2004, J. Mech. Des. 126, 68).
-    """
-    turns = (np.asarray(angles) - angles[0]) / (2 * pi)
-    return _modulo(sun_teeth * turns), _modulo(-ring_teeth * turns)
 
 
 def excited_motion(teeth: int, planets: int, harmonic: int = 1) -> str:
@@ -342,15 +319,6 @@ def excited_motion(teeth: int, planets: int, harmonic: int = 1) -> str:
     """
     k = (harmonic * teeth) % planets
     return "torque" if k == 0 else "force" if k in (1, planets - 1) else "nothing"
-
-
-def mesh_order(ring_teeth: int, speed: float = 1.0) -> float:
-    """Mesh frequency over the rotor's, with the ring standing and the carrier at `speed` times it.
-
-    z_r times the carrier's speed; equally z_s times the sun's speed less the carrier's. (The sun's
-    teeth times its absolute speed, (z_s + z_r), counts the carrier's turn too.)
-    """
-    return ring_teeth * speed
 
 
 def working_angle(
@@ -389,9 +357,3 @@ def working_angle(
 def base_helix(helix: float, pressure_angle: float) -> float:
     """Helix angle at the base circle [rad], of those at the reference circle (normal angle)."""
     return float(np.arcsin(sin(helix) * cos(pressure_angle)))
-
-
-def _modulo(periods: Floats) -> Floats:
-    rounded = np.round(periods)
-    near = np.array([isclose(p, r, abs_tol=1e-9) for p, r in zip(periods, rounded, strict=True)])
-    return np.asarray(np.where(near, 0.0, periods % 1.0))

@@ -107,9 +107,9 @@ def printed_model(bearing: float, both: bool, mesh_factor: float = 1.0) -> Syste
                 carrier=(0, 0, -r["carrier"]), planet=(y, z, r["planet"]), sun=(y, z, r["sun"])
             )
             ring_row = _row(carrier=(0, 0, r["carrier"]), planet=(y, z, r["planet"]))
-            k = MESHES["sun-planet"], MESHES["ring-planet"]
-            springs.append(Spring(f"sun-planet {axis}", sun_row, planetary * k[0]))
-            springs.append(Spring(f"ring-planet {axis}", ring_row, planetary * k[1]))
+            own = planetary * MESHES["sun-planet"], planetary * MESHES["ring-planet"]
+            springs.append(Spring(f"sun-planet {axis}", sun_row, own[0]))
+            springs.append(Spring(f"ring-planet {axis}", ring_row, own[1]))
     one_two = _row(gear_1=(1, 0, r["gear 1"]), gear_2=(1, 0, r["gear 2_1"]))
     two_three = _row(gear_2=(1, 0, r["gear 2_2"]), gear_3=(1, 0, r["gear 3"]))
     springs.append(Spring("gears 1-2", one_two, mesh_factor * MESHES["gears 1-2"]))
