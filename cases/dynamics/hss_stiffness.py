@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import decades
 from fe_drivetrain.dynamics import StopSequence, shutdown
 from fe_drivetrain.report import trace
@@ -61,7 +62,7 @@ def run(run: Run, page: Page) -> None:
     page.table("Least torque of the high-speed shaft over rated", torques)
 
 
-def sweep(page: Page, name: str, system: Torsional, factors: np.ndarray) -> Record:
+def sweep(page: Page, name: str, system: Torsional, factors: Floats) -> Record:
     """Frequencies over the stiffness, monotone, with slopes of half the energy share."""
     tabled = next(e.stiffness for e in system.elements if e.name == "HSS")
     f = np.array([natural_modes(changed(system, {"HSS": k * tabled})).frequencies for k in factors])

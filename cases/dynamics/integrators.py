@@ -90,17 +90,17 @@ def check_tables(page: Page) -> None:
         ]
     springs = spring_laws([[1.0, 0.0], [1.0, -1.0], [0.0, 1.0]], [4.0, 2.0, 2.0])
     q = integrate(equations_of_motion([2.0, 1.0], springs), steady([0.0, 10.0]), 3.36, 0.28).q[1:]
-    for k, printed in enumerate(BATHE):
+    for k, column in enumerate(BATHE):
         page.vanishes(
             f"Bathe, trapezoidal rule, displacement {k + 1}: largest relative difference",
-            float(np.abs(q[:, k] / printed - 1.0).max()),
+            float(np.abs(q[:, k] / column - 1.0).max()),
             within=5.1e-3,
             why="half a unit of the third digit, of numbers that begin with a 1",
             source="Bathe 1996, section 9.2.4",
         )
         rows += [
             {"example": f"Bathe, displacement {k + 1}", "step": i + 1, "printed": p, "ours": u}
-            for i, (p, u) in enumerate(zip(printed, q[:, k].tolist(), strict=True))
+            for i, (p, u) in enumerate(zip(column, q[:, k].tolist(), strict=True))
         ]
     page.section("Printed examples")
     page.table("Displacements, printed and ours", rows)

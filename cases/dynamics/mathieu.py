@@ -30,11 +30,11 @@ def run(run: Run, page: Page) -> None:
     rows = []
     with run.step("growth at twice the natural frequency"):
         for depth in DEPTHS[1:] if run.quick else DEPTHS:
-            found, exact = growth(depth, 2.0), exact_growth(depth, 2.0)
+            found, right = growth(depth, 2.0), exact_growth(depth, 2.0)
             page.equals(
                 f"depth {depth}: growth at twice the natural frequency [1/s]",
                 found,
-                exact,
+                right,
                 within=2e-3,
                 why=f"{STEPS} steps in a period of the mesh leave a thousandth of its square",
                 source="Floquet multiplier of Mathieu's equation by an explicit method of order 8",
@@ -44,7 +44,7 @@ def run(run: Run, page: Page) -> None:
                 {
                     "depth of the variation": depth,
                     "growth [1/s]": found,
-                    "Floquet [1/s]": exact,
+                    "Floquet [1/s]": right,
                     "first order, e w / 4 [1/s]": depth / 4.0,
                 }
             )

@@ -46,18 +46,18 @@ def run(run: Run, page: Page) -> None:
         with run.step(f"drivetrain {one.letter}"):
             stopped.append(stop(one, dt))
     losses = [check_loss(page, one, dt) for one in drivetrains()]
-    rows = [row_of(one) for one in stopped]
-    swings = [check_frequencies(page, one) for one in stopped]
-    for one in stopped:
+    rows = [row_of(each) for each in stopped]
+    swings = [check_frequencies(page, each) for each in stopped]
+    for each in stopped:
         page.vanishes(
-            f"drivetrain {one.of.letter}: energy that appears from nowhere, over the largest",
-            one.done.transient.motion.relative_imbalance,
+            f"drivetrain {each.of.letter}: energy that appears from nowhere, over the largest",
+            each.done.transient.motion.relative_imbalance,
             within=1e-8,
             why="average acceleration conserves energy of linear systems: round-off of so many "
             "steps, with modes of some kHz",
             source="work of wind, generator and brake is kinetic and strain energy and losses",
         )
-    fast = {one["drivetrain"]: one["HSS, peak over rated"] for one in rows}
+    fast = {row["drivetrain"]: row["HSS, peak over rated"] for row in rows}
     page.answer(
         f"With a brake that brings the low-speed shaft to the printed {PEAK} of its rated torque, "
         f"the high-speed shaft of C comes to {fast['C']:.3f}, the lowest is that of "
@@ -91,8 +91,8 @@ def run(run: Run, page: Page) -> None:
         "critical damping, so that the swing of the generator's loss is still there when the "
         "brake comes."
     )
-    for one in stopped:
-        show(page, one)
+    for each in stopped:
+        show(page, each)
     page.section("What rings")
     page.table("Frequencies of the torque of the high-speed shaft", swings)
     page.text(

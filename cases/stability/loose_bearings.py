@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import InputError
+from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import decades, fitted_exponent, last_within
 from fe_drivetrain.dynamics import (
     Equations,
@@ -53,7 +53,7 @@ def shaft(clearance: float, damping: float = DAMPING) -> Equations:
     return equations_of_motion([MASS, INERTIA], springs)
 
 
-def at_rest_by_hand(clearance: float) -> np.ndarray:
+def at_rest_by_hand(clearance: float) -> Floats:
     """Reactions by the lever, and the place that has them."""
     share = np.array([(SPAN - ARM) / SPAN, ARM / SPAN])
     ends = -clearance - share * MASS * GRAVITY / STIFFNESS

@@ -1,7 +1,7 @@
-from .advice import Answer as Answer
-from .advice import Operation as Operation
 from .advice import QUESTIONS as QUESTIONS
 from .advice import RUNGS as RUNGS
+from .advice import Answer as Answer
+from .advice import Operation as Operation
 from .advice import Rung as Rung
 from .advice import ladder as ladder
 from .advice import needed_level as needed_level
@@ -9,8 +9,8 @@ from .advice import pin_loads as pin_loads
 from .advice import slices_of as slices_of
 from .advice import torsional_frequency as torsional_frequency
 from .bodies import ALL as ALL
-from .bodies import Body as Body
 from .bodies import PLANE as PLANE
+from .bodies import Body as Body
 from .bodies import Superelement as Superelement
 from .bodies import assemble as assemble
 from .bodies import disc as disc

@@ -125,7 +125,8 @@ def integrate_adaptively(
             steppers[h] = stepper
         motion, _, _ = run_steps(stepper, loads, state, 1, 1, watch, never, TOLERANCE)
         e = factor * h**2 * (motion.end.acceleration - state.acceleration)
-        strain = max(largest, float(state.q @ K @ state.q), float(motion.end.q @ K @ motion.end.q))
+        both = np.array([state.q, motion.end.q])
+        strain = max(largest, float(np.einsum("si,ij,sj->s", both, K, both).max()))
         error = float(np.sqrt(max(e @ K @ e, 0.0) / strain)) if strain > 0.0 else 0.0
         if error > tolerance or not motion.converged:
             rejected += 1
