@@ -1,5 +1,9 @@
 """Meshes that vary as teeth come and go: waves, frequencies from teeth, lines in the spectrum."""
 
+import re
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 from conftest import QuickRun
@@ -128,3 +132,14 @@ def test_a_mesh_that_is_not_there() -> None:
 def test_speed_of_a_gearbox_in_time(quick_run: QuickRun) -> None:
     results = quick_run("performance/drivetrain_transient")
     assert all(verdict.passed for verdict in results.verdicts)
+
+
+def test_the_examples_of_the_docs_run() -> None:
+    text = (Path(__file__).parents[1] / "docs" / "transients.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", text, flags=re.S)
+    assert len(blocks) == 2
+    found: dict[str, Any] = {}
+    for block in blocks:
+        exec(block, found)
+    assert found["motion"].converged
+    assert found["stopped"].ratio("HSS")[0] == pytest.approx(1.0, rel=1e-6)
