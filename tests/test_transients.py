@@ -190,3 +190,21 @@ def test_brake_that_grows() -> None:
         [Phase(2.0, SHAFT, varying([1.0, 0.0], [0.0, 1.0], [0.0, 0.0]), brake)], 1e-2, turning(5.0)
     )
     assert_allclose(found.motion.velocity[-1] @ J, 20.0 - 1.0, rtol=1e-9)
+
+
+def test_backlash_in_a_shutdown() -> None:
+    """Teeth part where torque is reversed; in steady operation they stay on their flank."""
+    when = StopSequence(off=0.05, pitched=1e3, left=1.0, end=0.4)
+    table = published.table("nrel_750kw")
+    linear, gap = (
+        shutdown(table, 324e3, 2.31, 0.0, when, dt=1e-4, backlash=backlash)
+        for backlash in (0.0, 2e-3)
+    )
+    mesh = "stage 3 mesh"
+    assert linear.ratio(mesh).min() < -0.5
+    assert_allclose(gap.ratio(mesh)[:400], 1.0, rtol=1e-6)
+    apart = np.abs(gap.ratio(mesh)) < 1e-12
+    assert apart.any()
+    assert gap.ratio(mesh).min() < -0.1
+    assert gap.transient.motion.converged
+    assert gap.transient.motion.relative_imbalance < 2e-3

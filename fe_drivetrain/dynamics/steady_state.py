@@ -122,7 +122,8 @@ def wind_up(
     time : float
         At which stiffnesses that vary with time are taken [s].
     guess : array_like, optional
-        (n,) displacements to begin from: those of springs without gaps where left out.
+        (n,) displacements to begin from; where left out those of springs on the flanks that are
+        loaded with closed gaps.
     tolerance : float
         Of the residual.
 
@@ -149,9 +150,16 @@ def wind_up(
         return np.asarray(f - force - M @ a), tangent, np.asarray(a)
 
     if guess is None:
-        offsets = s.rows.T @ (s.stiffness * s.offset)
-        a = free @ np.linalg.solve(reduced, free.T @ f) if free.size else np.zeros(len(f))
-        q = _bordered(equations.K, MZ, f + offsets - M @ a)
+        q, flank = np.zeros(len(f)), np.zeros(len(s.rows))
+        # dampers and machines at this velocity
+        f0 = f - restoring(equations, time, q, v)[0] + restoring(equations, time, q, q)[0]
+        a = free @ np.linalg.solve(reduced, free.T @ f0) if free.size else np.zeros(len(f))
+        for _ in range(2):
+            # closed gaps first, then each spring on the flank that is loaded so
+            offsets = s.rows.T @ (s.stiffness * (s.offset + flank))
+            q = _bordered(equations.K, MZ, f0 + offsets - M @ a)
+            loaded = np.where(s.rows @ q > s.offset, s.upper, s.lower)
+            flank = np.where(np.isfinite(loaded), loaded, 0.0)
     else:
         q = np.asarray(guess, dtype=np.float64)
     scale = max(float(np.abs(f).max()), float(np.abs(s.stiffness * s.offset).max(initial=0.0)))

@@ -6,7 +6,7 @@ brake on the high-speed shaft until it stands, and the rotor swings against it.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -151,6 +151,7 @@ def shutdown(
     lumped: bool = False,
     slip: float = 0.01,
     ratios: tuple[float, float] | None = None,
+    backlash: float = 0.0,
 ) -> Shutdown:
     """Let a drivetrain stop.
 
@@ -173,6 +174,9 @@ def shutdown(
     ratios : tuple of float, optional
         Damping ratios of shafts and of meshes, as of `damped_by_ratio`, in place of the dampers of
         the table.
+    backlash : float
+        Of all meshes, about the axis that their stiffness is about [rad]: where torque is reversed,
+        teeth part and touch with their other flanks.
 
     Returns
     -------
@@ -192,6 +196,10 @@ def shutdown(
     rated, speed = torque / ratio, rotor_speed * ratio
     machine, pull = slip_line(to_generator, rated, speed, abs(rated / (slip * speed)))
     chain = torsional_equations(system)
+    if backlash:
+        shafts = {shaft.name for shaft in table.shafts} | {"shafts"}
+        half = np.array([0.0 if e.name in shafts else backlash / 2.0 for e in system.elements])
+        chain = replace(chain, springs=replace(chain.springs, lower=-half, upper=half))
     on, off = (
         Equations(
             chain.mass,
