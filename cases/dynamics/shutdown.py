@@ -105,8 +105,8 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "The thesis has one linear spring in both directions (section 4.6). With backlash, teeth "
         "that part where torque is reversed strike their other flanks, and torques beyond the "
-        "printed ones come of it. How large they are depends on the damping of the meshes, which is "
-        "only estimated; where a peak changes with the step, impacts follow so closely on each "
+        "printed ones come of it. How large they are depends on the damping of the meshes, which "
+        "is only estimated; where a peak changes with the step, impacts follow so closely on each "
         "other that it is no more than a size."
     )
     page.section("What rings")
