@@ -10,14 +10,15 @@ from fe_drivetrain.dynamics.levels import (
     assembly,
     azimuths,
     machine_system,
+    planetary_set,
     steady_load,
     torsional,
 )
-from fe_drivetrain.dynamics.modes import system_modes
+from fe_drivetrain.dynamics.modes import system_modes, turning_modes
 from fe_drivetrain.dynamics.planetary import check_assembly
 from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.dynamics.static import over_a_turn, static
-from fe_drivetrain.dynamics.system import System, without_massless
+from fe_drivetrain.dynamics.system import System, with_proportional_damping, without_massless
 from fe_drivetrain.dynamics.tables import (
     MACHINES,
     Machine,
@@ -25,7 +26,7 @@ from fe_drivetrain.dynamics.tables import (
     library_machine,
     parse_machine,
 )
-from fe_drivetrain.torsion.gear_table import PlanetaryStage, gear_masses
+from fe_drivetrain.torsion.gear_table import PlanetaryStage, gear_masses, stage_masses
 from fe_drivetrain.torsion.system import natural_modes
 from fe_drivetrain.validation import published_drivetrains as published
 
@@ -167,6 +168,54 @@ def test_mesh_forces_are_those_of_the_torque() -> None:
     assert ring == pytest.approx(sum(shares), rel=1e-3)  # planets are in balance
     housing = system.rows.T @ found.forces - load
     assert np.abs(housing).max() < 1e-6 * torque
+
+
+def test_meshes_of_park_carry_the_torque_of_the_table() -> None:
+    system, load = statics(PARK, 15e3)
+    found = static(system, load)
+    cosine = np.cos(np.radians(20.0))
+    for mesh, tangential in (("stage 2 mesh", 10536.0), ("stage 3 mesh", 5411.0)):
+        assert found.force(mesh) * cosine == pytest.approx(tangential, abs=0.51)
+    shares = [found.force(f"stage 1 sun-planet {k}") * cosine for k in (1, 2, 3)]
+    assert np.mean(shares) == pytest.approx(9259.0, abs=0.51)
+
+
+def test_ring_and_sun_take_their_shares_of_the_torque() -> None:
+    torque = 1e6
+    system, load = statics(C, torque)
+    found = static(system, load)
+    stage = planetary_set(C, 1)
+    torques = {"ring": 0.0, "sun": 0.0}
+    for spring, force in zip(
+        assembly(C, Level.RIGID, held_generator=True).springs, found.forces, strict=True
+    ):
+        for part in torques:
+            if "-planet" in spring.name and f"stage 1 {part}" in spring.by:
+                torques[part] += float(spring.by[f"stage 1 {part}"][3] * force)
+    assert abs(torques["ring"]) == pytest.approx(torque * (stage.ratio - 1) / stage.ratio, rel=1e-9)
+    assert abs(torques["sun"]) == pytest.approx(torque / stage.ratio, rel=1e-9)
+
+
+def test_rigid_meshes_are_the_model_of_one_mass_a_stage() -> None:
+    data = with_light_planets(C).model_dump(exclude_none=True)
+    for stage in data["stages"]:
+        for key in ("ring_planet", "sun_planet", "stiffness"):
+            if key in stage:
+                stage[key] *= 1e8
+        if stage["kind"] == "planetary":
+            stage["planet"]["inertia"] = 1e-3  # the stage model has none of its planets' own
+    found = natural_modes(torsional(Machine.model_validate(data))).frequencies
+    expected = natural_modes(stage_masses(published.table("drivetrain_c"), "free")).frequencies
+    assert np.allclose(found[1:5], expected[1:], rtol=1e-4)
+
+
+def test_damping_in_proportion_to_the_stiffness() -> None:
+    system = with_proportional_damping(machine_system(GRC, Level.RIGID), 1e-5)
+    damped, modes = turning_modes(system), system_modes(system)
+    assert np.allclose(damped.frequencies[:10], modes.frequencies[:10], rtol=1e-4)
+    assert np.allclose(damped.ratios[:10], np.pi * 1e-5 * modes.frequencies[:10], rtol=1e-4)
+    with pytest.raises(InputError, match="at least 0 s"):
+        with_proportional_damping(system, -1.0)
 
 
 def test_loads_over_a_turn_shift_by_a_third() -> None:

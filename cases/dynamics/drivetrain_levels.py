@@ -1,5 +1,8 @@
 """One drivetrain as torsional, rigid and flexible model: what each level answers, and its cost."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from fe_drivetrain.cases import case
@@ -7,6 +10,7 @@ from fe_drivetrain.cases.fidelity.component_page import COARSER, coarser
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
+    Answer,
     Flexible,
     Housing,
     Level,
@@ -20,13 +24,15 @@ from fe_drivetrain.dynamics import (
     needed_level,
     system_modes,
     torsional,
+    turning_modes,
 )
 from fe_drivetrain.fidelity import solid_component
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
+from fe_drivetrain.report import trace
 from fe_drivetrain.scene import CarrierComponent, HousingComponent, library_component
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes
+from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
 from fe_drivetrain.validation import published_drivetrains as published
 
 #: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
@@ -70,6 +76,13 @@ def run(run: Run, page: Page) -> None:
             rows.append(row)
         page.table("Answers, and their differences from the finest level", rows)
         page.data(f"ladder_{name}", rows)
+        page.chart(
+            "Difference from the finest level against the time that a level takes",
+            error_curves(answers),
+            "time [s]",
+            "difference [%]",
+            ("x", "y"),
+        )
         for question in QUESTIONS:
             level = needed_level(answers, question, TOLERANCE)
             needed.append({"drivetrain": name, "question": question, "level": level})
@@ -81,6 +94,9 @@ def run(run: Run, page: Page) -> None:
             source="Rayleigh's principle of constraints",
         )
         show_modes(page, machine)
+        show_turning(page, name, machine)
+        if name == "nrel_5mw":
+            stiffness_of_5mw(page)
         for text in machine.assumed:
             page.assume(f"{name}: {text.partition(':')[0]}", "", "", text)
     page.section("Which level a question needs")
@@ -98,6 +114,27 @@ def run(run: Run, page: Page) -> None:
         )
         + ".",
     )
+
+
+def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
+    """One curve a question: time and difference from the finest of the levels that answer it."""
+    curves = []
+    for question, finest in answers[-1].values.items():
+        points = [
+            (answer.seconds, 100 * abs(value / finest - 1))
+            for answer in answers[:-1]
+            if finest and (value := answer.values[question]) is not None
+        ]
+        shown = [(t, e) for t, e in points if e > 1e-6]
+        curves.append(
+            trace(
+                question.partition(" [")[0],
+                [t for t, _ in shown],
+                [e for _, e in shown],
+                mode="lines+markers",
+            )
+        )
+    return curves
 
 
 def more_rungs(run: Run, name: str) -> list[Rung]:
@@ -146,9 +183,25 @@ def recover(run: Run, page: Page) -> None:
             why="round-off: rows of lines of action in place of ratios of radii",
             source="gear_masses of Table 4.3, and of Table 4.2 with the teeth in place of ratios",
         )
-    held = library_machine("nrel_5mw")
-    rows = [float(natural_modes(torsional(held)).frequencies[k]) for k in range(1, 5)]
-    page.data("nrel_5mw_torsional_hz", rows)
+
+
+def stiffness_of_5mw(page: Page) -> None:
+    """Beside the torsional spring of the turbine that the gearbox was designed for."""
+    machine = library_machine("nrel_5mw")
+    found = torsional(machine)
+    stiffness = static_stiffness(found, "rotor", "generator") / 1e6
+    first = natural_modes(found).frequencies[1]
+    generator = machine.speeds[-1] ** 2 * machine.generator.inertia
+    both = 1 / machine.rotor.inertia + 1 / generator
+    two = float(np.sqrt(1e6 * stiffness * both) / (2 * np.pi))
+    page.text(
+        f"From rotor to held generator the 5 MW table has {stiffness:.1f} MN m/rad in torsion, and "
+        f"{first:.3f} Hz with both ends free. The turbine's shaft is given 867.637 MN m/rad "
+        "(Jonkman 2009, NREL/TP-500-38060), and 2.18 Hz with two masses of the same rotor and "
+        f"generator. With these inertias alone it would be {two:.2f} Hz here; the rest, down to "
+        f"{first:.2f} Hz, is that of the gearbox's own inertias."
+    )
+    page.data("nrel_5mw_stiffness_MN_m_per_rad", stiffness)
 
 
 def with_teeth(table: Drivetrain) -> Drivetrain:
@@ -158,6 +211,23 @@ def with_teeth(table: Drivetrain) -> Drivetrain:
         del stage["ratio"]
         stage["teeth"] = teeth
     return Drivetrain.model_validate(data)
+
+
+RPM = {"nrel_5mw": 12.1, "nrel_750kw": 22.1, "synthetic_2mw": 18.1}
+
+
+def show_turning(page: Page, name: str, machine: Machine) -> None:
+    """What spinning adds to the frequencies at rated speed, by the gyroscopic terms."""
+    system = machine_system(machine, Level.RIGID)
+    at_rest = turning_modes(system, 0.0, damped=False).frequencies
+    turning = turning_modes(system, RPM[name] * 2 * np.pi / 60, damped=False).frequencies
+    count = min(len(at_rest), len(turning))
+    change = float(np.abs(turning[-count:] / at_rest[-count:] - 1).max())
+    page.data(f"gyroscopic_change_{name}", change)
+    page.text(
+        f"At {RPM[name]} rpm of the rotor the gyroscopic terms of all spinning bodies change no "
+        f"frequency by more than {100 * change:.2g} %."
+    )
 
 
 def show_modes(page: Page, machine: Machine) -> None:

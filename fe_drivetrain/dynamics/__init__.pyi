@@ -19,6 +19,8 @@ from .brakes import Brake as Brake
 from .brakes import Phase as Phase
 from .brakes import Transient as Transient
 from .brakes import transient as transient
+from .elastic_ring import Rim as Rim
+from .elastic_ring import with_rim as with_rim
 from .equations import Equations as Equations
 from .equations import Loads as Loads
 from .equations import SpringLaws as SpringLaws
@@ -105,6 +107,7 @@ from .superposition import Superposed as Superposed
 from .superposition import exact_steps as exact_steps
 from .superposition import modal_superposition as modal_superposition
 from .system import System as System
+from .system import with_proportional_damping as with_proportional_damping
 from .system import with_stiffness as with_stiffness
 from .system import without_massless as without_massless
 from .tables import MACHINES as MACHINES

@@ -151,6 +151,30 @@ def with_stiffness(system: System, stiffness: dict[str, float]) -> System:
     return replace(system, stiffness=values)
 
 
+def with_proportional_damping(system: System, seconds: float) -> System:
+    """The system with dampers of a time times the stiffness in all springs, as Rayleigh's second.
+
+    A mode of frequency f then has the damping ratio pi f times that time.
+
+    Parameters
+    ----------
+    system : System
+        Without superelements, which have no dampers.
+    seconds : float
+        Damping over stiffness [s].
+
+    Raises
+    ------
+    InputError
+        The time is negative.
+    """
+    if not seconds >= 0:
+        raise InputError(
+            f"damping over stiffness is {seconds:g} s but must be at least 0 s: change it"
+        )
+    return replace(system, damping=seconds * system.stiffness)
+
+
 def without_massless(system: System) -> System:
     """The system with what has no mass eliminated, which is exact for linear springs.
 

@@ -175,14 +175,20 @@ def plane_stage(stage: PlaneStage, planets: int) -> PlanetarySet:
 def plane_system(stage: PlaneStage, planets: int) -> System:
     """The system of such a stage in the frame of the carrier, at 1 rad/s of it."""
     built = plane_stage(stage, planets)
-    springs = springs_of(built)
+    springs = [*springs_of(built), *plane_supports(stage, built)]
+    return assemble(bodies_of(built), springs, frame_speed=1.0)
+
+
+def plane_supports(stage: PlaneStage, built: PlanetarySet) -> list[Spring]:
+    """Springs of the central bodies to the ground."""
+    springs: list[Spring] = []
     for part, across, turning, radius in (
         ("sun", stage.sun, stage.turning[0], built.sun_base_radius),
         ("ring", stage.ring, stage.turning[1], built.ring_base_radius),
         ("carrier", stage.carrier, stage.turning[2], built.centre_distance),
     ):
         springs += support(part, (0, across, across, turning * radius**2, 0, 0))
-    return assemble(bodies_of(built), springs, frame_speed=1.0)
+    return springs
 
 
 def support(body: str, stiffness: tuple[float, float, float, float, float, float]) -> list[Spring]:
