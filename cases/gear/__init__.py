@@ -1,1 +1,1 @@
-"""Gears: geometry, stiffness, load over the face width, rating, damage."""
+"""Involute gears by themselves: geometry, stiffness, load over the face, rating, damage."""

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from math import acos, cos, isfinite, pi, sin, sqrt, tan
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.gear.involute import Gear, involute_of
+from fe_drivetrain.gear.functions import involute_of
+from fe_drivetrain.gear.involute import Gear
 
 
 @dataclass(frozen=True)
