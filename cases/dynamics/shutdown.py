@@ -49,6 +49,8 @@ def run(run: Run, page: Page) -> None:
     losses = [check_loss(page, one, dt) for one in drivetrains()]
     rows = [row_of(each) for each in stopped]
     swings = [check_frequencies(page, each) for each in stopped]
+    with run.step("dips of the grid"):
+        dips = [row for one in drivetrains() for row in dip_rows(one, run.quick)]
     with run.step("backlash"):
         knocks = [row for each in stopped for row in with_backlash(page, each, run.quick)]
     for each in stopped:
@@ -96,6 +98,17 @@ def run(run: Run, page: Page) -> None:
     )
     for each in stopped:
         show(page, each)
+    page.section("A dip of the grid")
+    page.table(
+        "Generator off and on again, rotor's torque held: torque of the high-speed shaft over "
+        "rated",
+        dips,
+    )
+    page.text(
+        "What a dip does depends on where it ends in the swing of the first mode, and on how much "
+        "speed the drivetrain has gained: the slip line has no breakdown torque, while a real "
+        "machine carries no more than two to three times its rated torque."
+    )
     page.section("With backlash")
     page.table(
         f"Torques over rated up to {SEQUENCE.braked + 3:g} s, the same brakes, backlash of all "
@@ -233,6 +246,33 @@ def verdicts(rows: list[Record]) -> list[Record]:
             "verdict": "agrees in kind",
         },
     ]
+
+
+def dip_rows(one: Rated, quick: bool) -> list[Record]:
+    """Peaks after dips of several lengths."""
+    rows: list[Record] = []
+    for length in (0.05, 0.15, 0.3):
+        when = StopSequence(off=0.2, pitched=1e3, left=1.0, end=2.0, back=0.2 + length)
+        done = shutdown(
+            one.table,
+            one.torque,
+            one.speed,
+            0.0,
+            when,
+            dt=1e-3 if quick else 2e-4,
+            ratios=one.ratios,
+        )
+        fast = done.ratio("HSS")
+        rows.append(
+            {
+                "drivetrain": one.letter,
+                "off for [s]": length,
+                "largest": float(fast.max()),
+                "least": float(fast.min()),
+                "at the end": float(fast[-1]),
+            }
+        )
+    return rows
 
 
 def with_backlash(page: Page, one: Stopped, quick: bool) -> list[Record]:
