@@ -128,12 +128,12 @@ class Rotating:
 
     def body_force(self, x: Floats) -> Floats:
         """Force per volume [N/m^3] at (..., 3) positions; the axis of rotation is x."""
-        return self.force * x * [0.0, 1.0, 1.0]
+        return np.asarray(self.force * x * [0.0, 1.0, 1.0])
 
     def radial(self, r: float | Floats) -> Floats:
         """Radial stress [Pa]."""
         a2, b2, r2 = self.inner**2, self.outer**2, np.asarray(r) ** 2
-        return self.force * (3.0 + self.plane.nu) / 8.0 * (a2 + b2 - a2 * b2 / r2 - r2)
+        return np.asarray(self.force * (3.0 + self.plane.nu) / 8.0 * (a2 + b2 - a2 * b2 / r2 - r2))
 
     def hoop(self, r: float | Floats) -> Floats:
         """Hoop stress [Pa]."""
