@@ -68,7 +68,16 @@ def by_their_names(
     return named(takes), named(gives)
 
 
+def to_docstrings(app: Sphinx, docname: str, source: list[str]) -> None:
+    """Let the rooms and modules that the theory names lead to their docstrings."""
+    if docname == "theory":
+        source[0] = re.sub(
+            r"`([a-z_]+(?:\.[a-z_]+)?)`", r"{py:mod}`\1 <fe_drivetrain.\1>`", source[0]
+        )
+
+
 def setup(app: Sphinx) -> None:
     """Connect what Sphinx calls, before numpydoc reads a docstring."""
     app.connect("autodoc-process-docstring", as_plain_text, priority=100)
     app.connect("autodoc-process-signature", by_their_names)
+    app.connect("source-read", to_docstrings)

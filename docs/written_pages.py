@@ -121,7 +121,10 @@ def api_of(room: str) -> str:
         lines += entry(module, name)
     lines += heading("Modules", "-")
     for full in modules_of(module):
-        lines += [f".. automodule:: {full}", "   :no-members:", "   :no-index:", ""]
+        name = full.rpartition(".")[2]
+        lines += [*heading(name, "~"), f".. automodule:: {full}", "   :no-members:"]
+        # where a public name is that of its module, links lead to the former
+        lines += ["   :no-index:", ""] if name in names else [""]
     if room in MODULES_OF:
         folder = importlib.import_module(f"fe_drivetrain.{MODULES_OF[room]}")
         for info in pkgutil.iter_modules(folder.__path__):

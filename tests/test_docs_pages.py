@@ -1,6 +1,7 @@
 """Pages of the documentation: their blocks run, what they show is so, and their links lead on."""
 
 import contextlib
+import importlib.util
 import re
 import shlex
 import subprocess
@@ -156,6 +157,13 @@ def test_links_lead_to_files_and_headings_that_are_there(page: Path) -> None:
         assert to.exists(), target
         if anchor:
             assert anchor in anchors(to), target
+
+
+def test_the_theory_names_modules_that_are_there() -> None:
+    names = re.findall(r"`([^`]+)`", (DOCS / "theory.md").read_text(encoding="utf-8"))
+    assert names
+    for name in names:
+        assert importlib.util.find_spec(f"fe_drivetrain.{name}"), name
 
 
 def test_every_page_is_reached_from_the_index() -> None:
