@@ -24,7 +24,7 @@ FLOORS = (
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"dynamics", "fidelity", "peers", "report", "rings", "validation"},
+    {"dynamics", "fidelity", "peers", "procedure", "report", "rings", "validation"},
     {"coupled", "export", "suite", "uncertainty"},
     {"commands"},
     {"cases"},
