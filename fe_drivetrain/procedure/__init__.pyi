@@ -1,5 +1,11 @@
 from .decay import Decay as Decay
 from .decay import logarithmic_decrement as logarithmic_decrement
+from .duty import Moves as Moves
+from .duty import moves as moves
+from .duty import peak_times as peak_times
+from .duty import thermal_torque as thermal_torque
+from .duty import tooth_counts as tooth_counts
+from .duty import with_transients as with_transients
 from .identification import Fit as Fit
 from .identification import Solutions as Solutions
 from .identification import Twist as Twist
@@ -22,4 +28,12 @@ from .sensors import measured as measured
 from .sensors import sampling_rates as sampling_rates
 from .sensors import scaled_to_power as scaled_to_power
 from .sensors import timed_angle as timed_angle
+from .slewing import SlewingDrive as SlewingDrive
+from .slewing import drive_torque as drive_torque
+from .slewing import friction_torque as friction_torque
+from .slewing import gyroscopic_torque as gyroscopic_torque
+from .slewing import holding_torque as holding_torque
+from .slewing import printed_drive_torque as printed_drive_torque
+from .slewing import ring_torque as ring_torque
+from .slewing import shear_between as shear_between
 from .spectral_fit import spectral_fit as spectral_fit
