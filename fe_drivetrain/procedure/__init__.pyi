@@ -6,6 +6,12 @@ from .duty import peak_times as peak_times
 from .duty import thermal_torque as thermal_torque
 from .duty import tooth_counts as tooth_counts
 from .duty import with_transients as with_transients
+from .failure_modes import Catalogue as Catalogue
+from .failure_modes import DesignLoad as DesignLoad
+from .failure_modes import LoadCase as LoadCase
+from .failure_modes import parse_catalogue as parse_catalogue
+from .failure_modes import protest_catalogue as protest_catalogue
+from .failure_modes import read_catalogue as read_catalogue
 from .identification import Fit as Fit
 from .identification import Solutions as Solutions
 from .identification import Twist as Twist
@@ -17,6 +23,16 @@ from .identification import ratio_by_ranges as ratio_by_ranges
 from .identification import reduced_torque as reduced_torque
 from .identification import stiffness_by_ranges as stiffness_by_ranges
 from .identification import window_ranges as window_ranges
+from .interface_loads import GROUND as GROUND
+from .interface_loads import Body as Body
+from .interface_loads import Interface as Interface
+from .interface_loads import LoadTable as LoadTable
+from .interface_loads import analysed as analysed
+from .interface_loads import check_equilibrium as check_equilibrium
+from .interface_loads import imbalance as imbalance
+from .interface_loads import read_load_json as read_load_json
+from .interface_loads import write_load_csv as write_load_csv
+from .interface_loads import write_load_json as write_load_json
 from .motions import Motions as Motions
 from .motions import band_torque as band_torque
 from .motions import driven_motions as driven_motions
@@ -37,3 +53,5 @@ from .slewing import printed_drive_torque as printed_drive_torque
 from .slewing import ring_torque as ring_torque
 from .slewing import shear_between as shear_between
 from .spectral_fit import spectral_fit as spectral_fit
+from .three_points import ThreePoints as ThreePoints
+from .three_points import three_point_loads as three_point_loads
