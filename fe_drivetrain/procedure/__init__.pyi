@@ -33,11 +33,17 @@ from .interface_loads import imbalance as imbalance
 from .interface_loads import read_load_json as read_load_json
 from .interface_loads import write_load_csv as write_load_csv
 from .interface_loads import write_load_json as write_load_json
+from .misalignment import Misalignment as Misalignment
+from .misalignment import influence_of_offsets as influence_of_offsets
 from .motions import Motions as Motions
 from .motions import band_torque as band_torque
 from .motions import driven_motions as driven_motions
 from .motions import element_torques as element_torques
 from .motions import periodic_motions as periodic_motions
+from .resonance import Excitation as Excitation
+from .resonance import Meeting as Meeting
+from .resonance import drivetrain_excitations as drivetrain_excitations
+from .resonance import resonances as resonances
 from .sensors import Sensor as Sensor
 from .sensors import counted_angle as counted_angle
 from .sensors import measured as measured
@@ -55,3 +61,4 @@ from .slewing import shear_between as shear_between
 from .spectral_fit import spectral_fit as spectral_fit
 from .three_points import ThreePoints as ThreePoints
 from .three_points import three_point_loads as three_point_loads
+from .voltage_dips import Dip as Dip
