@@ -345,10 +345,8 @@ def read_load_json(path: str | Path) -> LoadTable:
                 row["on"],
                 np.array(row["position"], dtype=np.float64),
                 np.array(row["loads"], dtype=np.float64),
-                *(
-                    None if row[key] is None else np.array(row[key], dtype=np.float64)
-                    for key in ("displacements", "accelerations")
-                ),
+                _optional(row["displacements"]),
+                _optional(row["accelerations"]),
                 source=row["source"],
             )
             for row in content["interfaces"]
@@ -368,3 +366,7 @@ def read_load_json(path: str | Path) -> LoadTable:
             "wrote"
         ) from error
     return LoadTable(time, interfaces, bodies)
+
+
+def _optional(values: Any) -> Floats | None:
+    return None if values is None else np.array(values, dtype=np.float64)
