@@ -129,8 +129,8 @@ def resonance(page: Page) -> None:
     )
     page.data("resonances", rows)
     page.answer(
-        f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times at "
-        "a part that has 1 % or more of the mode's energy."
+        f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times "
+        "at a part that has 1 % or more of the mode's energy."
     )
 
 

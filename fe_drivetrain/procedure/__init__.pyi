@@ -59,6 +59,11 @@ from .slewing import printed_drive_torque as printed_drive_torque
 from .slewing import ring_torque as ring_torque
 from .slewing import shear_between as shear_between
 from .spectral_fit import spectral_fit as spectral_fit
+from .steps import STEPS as STEPS
+from .steps import Evidence as Evidence
+from .steps import Procedure as Procedure
+from .steps import Visit as Visit
+from .steps import require_complete as require_complete
 from .three_points import ThreePoints as ThreePoints
 from .three_points import three_point_loads as three_point_loads
 from .voltage_dips import Dip as Dip
