@@ -1,5 +1,8 @@
 """Identification of a known drivetrain: printed methods fail as theory says, fits do not."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -239,3 +242,11 @@ def test_three_to_five_times_the_frequency_does_not_alias() -> None:
     f = 2.546
     assert all(alias(f, 1 / rate) == pytest.approx(f) for rate in sampling_rates(f))
     assert alias(f, 1 / (1.5 * f)) == pytest.approx(0.5 * f)
+
+
+def test_the_example_of_the_docs_finds_what_it_says() -> None:
+    text = (Path(__file__).parents[1] / "docs" / "procedure.md").read_text("utf-8")
+    code = re.search(r"```python\n(.*?)```", text, re.DOTALL).group(1)
+    names: dict[str, object] = {}
+    exec(code, names)
+    assert names["found"] == pytest.approx([150.0 * 24.0 / 174.0, 20.0, 5300.0], rel=1e-9)
