@@ -37,7 +37,7 @@ class Motions:
     @property
     def time(self) -> Floats:
         """(samples,) from 0 [s]."""
-        return np.arange(self.angle.shape[1]) * self.step
+        return np.asarray(np.arange(self.angle.shape[1], dtype=np.float64) * self.step)
 
 
 def periodic_motions(system: Torsional, torques: Floats, step: float) -> Motions:
