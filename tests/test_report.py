@@ -17,14 +17,9 @@ from PIL import Image as Pixels
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.charts import density_chart
-from fe_drivetrain.report.page import (
-    error_text,
-    formatted,
-    safe_range,
-    tolerance_text,
-    write_index,
-    write_page,
-)
+from fe_drivetrain.report.index import write_index
+from fe_drivetrain.report.number_text import error_text, formatted, safe_range, tolerance_text
+from fe_drivetrain.report.page import write_page
 from fe_drivetrain.report.results import (
     AssumptionRow,
     Chart,
@@ -57,7 +52,7 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.elements.append((tag, dict(attrs)))
-        if tag not in ("meta", "link", "img", "br"):
+        if tag not in ("meta", "link", "img", "br", "input"):
             self.open.append(tag)
         if tag == "script":
             self.scripts.append((dict(attrs), ""))

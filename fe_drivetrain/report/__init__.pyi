@@ -5,12 +5,12 @@ from .charts import density_chart as density_chart
 from .charts import rounded as rounded
 from .charts import trace as trace
 from .environment import environment as environment
+from .index import write_index as write_index
 from .junit import write_junit as write_junit
 from .maps import LEVELS as LEVELS
 from .maps import dashed as dashed
 from .maps import map_traces as map_traces
-from .page import formatted as formatted
-from .page import write_index as write_index
+from .number_text import formatted as formatted
 from .page import write_page as write_page
 from .pictures import NoPictureError as NoPictureError
 from .pictures import can_draw as can_draw

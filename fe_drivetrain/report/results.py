@@ -1,5 +1,6 @@
 """What a case found, as data: written to results.json, and the page is made from that alone."""
 
+import math
 import statistics
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -78,6 +79,37 @@ def is_met(verdict: Verdict) -> bool:
         return verdict.upper is not None and reference <= computed <= verdict.upper
     size = abs(reference) if verdict.relative else 1.0
     return abs(computed - reference) <= verdict.tolerance * size
+
+
+def share_of_tolerance(verdict: Verdict) -> float:
+    """How much of what a check allows is used up: beyond 1 it fails.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The check. Of a bound it is the value over the bound, or the bound over the value; of a
+        range the distance from its middle over half its width; of a statement 0 or infinity.
+
+    Returns
+    -------
+    share : float
+        From 0 on; infinite where the computed value is not a number.
+    """
+    computed, reference = verdict.computed, verdict.reference
+    if verdict.check in ("equals", "vanishes"):
+        allowed = verdict.tolerance * (abs(reference) if verdict.relative else 1.0)
+        used = abs(computed - reference)
+    elif verdict.check == "between" and verdict.upper is not None:
+        used = abs(computed - 0.5 * (reference + verdict.upper))
+        allowed = 0.5 * (verdict.upper - reference)
+    elif verdict.check == "at most" and computed > 0.0 and reference > 0.0:
+        used, allowed = computed, reference
+    elif verdict.check == "at least" and computed > 0.0 and reference > 0.0:
+        used, allowed = reference, computed
+    else:
+        return 0.0 if verdict.passed else math.inf
+    share = used / allowed if allowed > 0.0 else (0.0 if verdict.passed else math.inf)
+    return share if math.isfinite(share) else math.inf
 
 
 def expectation(verdict: Verdict) -> str:
@@ -256,12 +288,16 @@ class Environment(_Result):
     code: str = Field(default="", description="SHA-256 of the program's sources")
 
 
+State = Literal["failed", "not run", "running", "planned", "skipped"]
+"""Of a case without results of this run: it ended by an error, or its turn never came since the run
+was stopped; it is at work; its turn comes; a program that it needs is not installed."""
+
+
 class Problem(NamedTuple):
     """Why a case has no results, or none of this run."""
 
     message: str
-    is_missing_tool: bool = False
-    is_pending: bool = False
+    state: State = "failed"
 
 
 class Results(_Result):
@@ -275,6 +311,10 @@ class Results(_Result):
         default=[], description="what must be known before any figure, in sentences"
     )
     summary: list[str] = Field(description="the answer first, in a few sentences")
+    headline: str = Field(
+        default="",
+        description="quantity of the check that answers what was asked; empty: the first",
+    )
     verdicts: list[Verdict]
     sections: list[Section]
     limits: list[Limit] = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import traceback
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Future
@@ -22,8 +23,10 @@ from fe_drivetrain.suite.result_folders import (
 )
 from fe_drivetrain.suite.settings import settings_by_case
 
-NOT_RUN = Problem("not run: the run has not come to its end", is_pending=True)
-"""Of a case that has not had its turn."""
+NOT_RUN = Problem("not run: the run has not come to its end", "not run")
+"""Of a case that has not had its turn, or not come to its end."""
+_PLANNED = Problem("waits for its turn", "planned")
+_RUNNING = Problem("at work", "running")
 
 
 def run_cases(
@@ -66,23 +69,34 @@ def run_cases(
     InputError
         A result folder cannot be written or holds something else, or no case takes a setting.
     """
-    from fe_drivetrain.report.page import write_index
+    from fe_drivetrain.report.index import write_index
 
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
     cases = [case for case in cases if case.name not in kept]
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
-    pending = {case.name: NOT_RUN for case in cases}
+    pending = {case.name: _PLANNED for case in cases}
+    writing = threading.Lock()  # steps are reported by several threads
+
+    def show(step: str, lane: int = 0) -> None:
+        name = step.partition(": ")[0]
+        if lane != OVERALL and pending.get(name) is _PLANNED:
+            with writing:
+                if name in pending:
+                    pending[name] = _RUNNING
+                    write_index(out, problems | pending)
+        report(step, lane)
 
     def finish(case: Case, problem: Problem | None) -> None:
-        if problem:
-            problems[case.name] = problem
-        else:
+        if not problem:
             put_in_place(folders[case.name], result_folder(out, case))
-        del pending[case.name]
+        with writing:
+            if problem:
+                problems[case.name] = problem
+            del pending[case.name]
+            write_index(out, problems | pending)  # a run that is killed later could not
         count()
-        write_index(out, problems | pending)  # a run that is killed later could not
 
     def count() -> None:
         if len(cases) > 1:
@@ -94,7 +108,7 @@ def run_cases(
         write_index(out, problems | pending)
         count()
         beside = [case for case in cases if not case.alone]
-        with Processes(len(beside), report, each_for_itself=True) as processes:
+        with Processes(len(beside), show, each_for_itself=True) as processes:
             jobs: dict[Future[Problem | None], Case] = {
                 processes.start(_run, case, folders[case.name].path, taken[case.name], quick): case
                 for case in beside
@@ -103,7 +117,7 @@ def run_cases(
                 finish(jobs[job], _outcome(job))
         for case in cases:
             if case.alone:
-                with Processes(1, report, always=True, each_for_itself=True) as processes:
+                with Processes(1, show, always=True, each_for_itself=True) as processes:
                     job = processes.start(
                         _run, case, folders[case.name].path, taken[case.name], quick
                     )
@@ -112,7 +126,7 @@ def run_cases(
         for folder in folders.values():
             folder.discard()
         if len(folders) == len(cases):  # else nothing was begun
-            write_index(out, problems | pending)
+            write_index(out, problems | dict.fromkeys(pending, NOT_RUN))
     return problems
 
 
@@ -135,7 +149,7 @@ def _run(
     try:
         run_into(case, folder, settings, quick, named)
     except InputError as error:
-        return Problem(str(error), isinstance(error, MissingToolError))
+        return Problem(str(error), "skipped" if isinstance(error, MissingToolError) else "failed")
     except Exception as error:
         sentence = sentence_about(error) if isinstance(error, OSError) else None
         if sentence is not None:
