@@ -96,7 +96,7 @@ def test_each_case_has_its_results_and_all_are_listed(tmp_path: Path, number_of_
     # times add up to what passed
     assert page.count('data-value="1.25">1.25</td>') == 3
     assert re.findall('<tr class="[^"]*" data-state="([^"]*)"', page) == ["fail", "pass", "pass"]
-    assert sorted(os.listdir(tmp_path)) == ["a", "b", "checks.html", "index.html"]
+    assert sorted(os.listdir(tmp_path)) == ["a", "b", "checks.html", "history.sqlite", "index.html"]
     assert sorted(os.listdir(tmp_path / "a")) == ["miss", "one"]
 
 
@@ -301,7 +301,12 @@ def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
         os.killpg(process.pid, sent) if sent == signal.SIGINT else process.send_signal(sent)
         assert process.wait(60) == status
         assert "Traceback" not in process.stderr.read()
-    assert sorted(os.listdir(tmp_path / "reports")) == ["a", "checks.html", "index.html"]
+    assert sorted(os.listdir(tmp_path / "reports")) == [
+        "a",
+        "checks.html",
+        "history.sqlite",
+        "index.html",
+    ]
     page = (tmp_path / "reports/index.html").read_text()
     assert '<p class="outcome fail">1 of 2 cases pass, 1 not run</p>' in page
     assert ">not run<" in page

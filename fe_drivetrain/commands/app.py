@@ -13,6 +13,7 @@ import typer
 
 from fe_drivetrain.commands.compare_runs import compare_runs_command
 from fe_drivetrain.commands.export import export_command
+from fe_drivetrain.commands.history import history_command
 from fe_drivetrain.commands.life import life_command
 from fe_drivetrain.commands.loads import loads_command
 from fe_drivetrain.commands.new_scene import new_command
@@ -51,6 +52,7 @@ app.command("loads")(loads_command)
 app.command("life")(life_command)
 app.command("list")(list_command)
 app.command("run")(run_command)
+app.command("history")(history_command)
 app.command("compare-runs")(compare_runs_command)
 app.command("export")(export_command)
 app.command("advise")(advise_command)

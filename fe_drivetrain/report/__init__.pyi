@@ -5,6 +5,8 @@ from .charts import density_chart as density_chart
 from .charts import rounded as rounded
 from .charts import trace as trace
 from .environment import environment as environment
+from .history import PastRun as PastRun
+from .history import past_runs as past_runs
 from .index import write_index as write_index
 from .junit import write_junit as write_junit
 from .maps import LEVELS as LEVELS

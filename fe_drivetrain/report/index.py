@@ -11,6 +11,7 @@ from typing import Any
 
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.report.answer import answer_sentence, headline
+from fe_drivetrain.report.history import Point, points_over_runs
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
 from fe_drivetrain.report.results import (
     Problem,
@@ -21,6 +22,7 @@ from fe_drivetrain.report.results import (
     results_below,
     share_of_tolerance,
 )
+from fe_drivetrain.report.trend import change_text, sparkline
 
 WORDS = {
     "fail": "FAIL",
@@ -54,6 +56,8 @@ class Row:
         The check that uses up most of what it allows.
     answer : Verdict or None
         The check that answers what was asked.
+    points : sequence of Point
+        Its quantity over the runs so far.
     """
 
     name: str
@@ -62,6 +66,7 @@ class Row:
     results: Results | None = None
     worst: Verdict | None = None
     answer: Verdict | None = None
+    points: Sequence[Point] = ()
 
     @property
     def group(self) -> str:
@@ -153,7 +158,9 @@ def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
             continue
         worst = max(results.verdicts, key=share_of_tolerance, default=None)
         state = "pass" if results.passed else "fail"
-        rows.append(Row(name, state, results=results, worst=worst, answer=headline(results)))
+        answer = headline(results)
+        points = points_over_runs(folder, results, answer) if answer else []
+        rows.append(Row(name, state, "", results, worst, answer, points))
     return rows
 
 
@@ -170,6 +177,8 @@ def _write(page: Path, template: str, **content: Any) -> None:
         "share": lambda verdict: min(share_of_tolerance(verdict), _MOST),
         "share_text": lambda share: f"{100 * share:.3g}\u00a0%" if share < _MOST else "∞",
         "answer": answer_sentence,
+        "sparkline": sparkline,
+        "change": change_text,
     }
     with atomic_path(page) as unfinished:
         text = environment.get_template(template).render(

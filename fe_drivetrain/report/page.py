@@ -22,13 +22,16 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 _CONTENTS_FROM = 5  # sections from which on a page has a table of contents
 
 
-def write_page(folder: Path) -> Path:
+def write_page(folder: Path, shared: Path | None = None) -> Path:
     """Write the page of a result folder.
 
     Parameters
     ----------
     folder : Path
         Holds results.json and the images that it names.
+    shared : Path or None
+        A folder above for what the pages of several cases share: the history of their runs. That
+        of the page itself where left out.
 
     Returns
     -------
@@ -42,11 +45,12 @@ def write_page(folder: Path) -> Path:
     """
     folder = Path(folder)
     page = folder / "report.html"
-    page.write_text(render(read_results(folder / "results.json"), folder), encoding="utf-8")
+    text = render(read_results(folder / "results.json"), folder, shared or folder)
+    page.write_text(text, encoding="utf-8")
     return page
 
 
-def render(results: Results, folder: Path) -> str:
+def render(results: Results, folder: Path, shared: Path) -> str:
     """The page as text; see `write_page`."""
     charts = [i for s in results.sections for i in s.items if isinstance(i, Chart)]
     scripts = []

@@ -69,7 +69,9 @@ def run_cases(
     InputError
         A result folder cannot be written or holds something else, or no case takes a setting.
     """
+    from fe_drivetrain.report.history import check_history, record_run
     from fe_drivetrain.report.index import write_index
+    from fe_drivetrain.report.results import read_results
 
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
@@ -89,12 +91,15 @@ def run_cases(
         report(step, lane)
 
     def finish(case: Case, problem: Problem | None) -> None:
-        if not problem:
+        if problem:
+            problems[case.name] = problem
+        else:
             put_in_place(folders[case.name], result_folder(out, case))
         with writing:
-            if problem:
-                problems[case.name] = problem
             del pending[case.name]
+        if not problem:
+            record_run(out, read_results(result_folder(out, case) / "results.json"))
+        with writing:
             write_index(out, problems | pending)  # a run that is killed later could not
         count()
 
@@ -105,12 +110,15 @@ def run_cases(
     try:
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
+        check_history(out)
         write_index(out, problems | pending)
         count()
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), show, each_for_itself=True) as processes:
             jobs: dict[Future[Problem | None], Case] = {
-                processes.start(_run, case, folders[case.name].path, taken[case.name], quick): case
+                processes.start(
+                    _run, case, folders[case.name].path, taken[case.name], quick, out
+                ): case
                 for case in beside
             }
             for job in processes.finished(jobs):
@@ -119,7 +127,7 @@ def run_cases(
             if case.alone:
                 with Processes(1, show, always=True, each_for_itself=True) as processes:
                     job = processes.start(
-                        _run, case, folders[case.name].path, taken[case.name], quick
+                        _run, case, folders[case.name].path, taken[case.name], quick, out
                     )
                     finish(case, _outcome(job))
     finally:
@@ -139,7 +147,12 @@ def _outcome(job: Future[Problem | None]) -> Problem | None:
 
 
 def _run(
-    report: Progress, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool
+    report: Progress,
+    case: Case,
+    folder: Path,
+    settings: Mapping[str, Any],
+    quick: bool,
+    shared: Path,
 ) -> Problem | None:
     """Run a case into a folder; why there are no results, if there are none."""
 
@@ -147,7 +160,7 @@ def _run(
         report(f"{case.name}: {step}" if step else "", lane)
 
     try:
-        run_into(case, folder, settings, quick, named)
+        run_into(case, folder, settings, quick, named, shared)
     except InputError as error:
         return Problem(str(error), "skipped" if isinstance(error, MissingToolError) else "failed")
     except Exception as error:
