@@ -85,6 +85,7 @@ def run(run: Run, page: Page) -> None:
     least = "minimum of the potential energy: under given forces, an element mesh is too stiff"
     page.meets(above, Target(title, 0.0, 0.0, strict, least))
     missed = {name: column(series, MISSED) for name, series in grouped(rows, "element")}
+    page.headline = "cantilever, hexahedra of 27 nodes: strain energy per width"
     page.answer(
         f"The cantilever stores {EXACT['cantilever']:.2f} J a metre of width; eight hexahedra of "
         f"27 nodes through its height miss {missed[NAMES[27]][-1]:.1e} of it, as many of 8 nodes "

@@ -87,6 +87,7 @@ def run(run: Run, page: Page) -> None:
         measure="stiffness",
         band=torsion.rigidity * change * ratio**4 / (1.0 - ratio**4),
     )
+    page.headline = "shaft, curved P2: order in torsional stiffness"
     page.answer(
         f"With {sides} elements round the shaft the torsional rigidity of straight-sided P2 has an "
         f"error of {straight:.1e} and converges with order {shafts[0].order(STIFFNESS)[0]:.2f}, "

@@ -66,6 +66,7 @@ def run(run: Run, page: Page) -> None:
     target = Target(MOVED, moved, tolerance, uniform, LAME, order=4.0)
     page.finest(MeshSeries(free, THROUGH), target, of="free ends")
     best = rows[-1]
+    page.headline = "hexahedra of 27 nodes: mean radial displacement of the bore, plane strain"
     page.answer(
         f"The bore opens by {REFERENCES[MOVED]:.2f} µm; {divisions[27][-1]} hexahedra of 27 "
         f"nodes through the wall are within {best[error_of(MOVED)]:.1e} of it, and its hoop "

@@ -6,7 +6,9 @@ Nothing heavy is imported before a command does its work, so that help is quick.
 
 from __future__ import annotations
 
+import shlex
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -107,7 +109,8 @@ def main_of_case(case: Case) -> None:
 
     @script.command(help=f"{case.title}\n\nSource: {case.source}")
     def run_script(out: OutFolder = None, set_: CaseSettings = None, quick: Quick = False) -> None:
-        raise typer.Exit(run_and_print(lambda: [case], out, set_ or (), quick))
+        typed = replace(case, command=shlex.join(["python", *sys.argv]))
+        raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))
 
     prepare_streams()
     script()

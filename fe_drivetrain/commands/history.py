@@ -77,7 +77,8 @@ def _cells(run: PastRun, before: PastRun | None) -> list[str]:
     band = "" if run.band is None else f" ± {run.band:.2g}"
     change = "" if before is None else "same"
     if before is not None:
-        moved = relative_change(math.nan if before.computed is None else before.computed, computed)
+        old = math.nan if before.computed is None else before.computed
+        moved = relative_change(old, computed, run.allowed)
         change = f"{100 * moved:+.2g} %" if moved else change
     return [
         run.date,

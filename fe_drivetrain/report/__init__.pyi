@@ -23,6 +23,7 @@ from .results import AssumptionRow as AssumptionRow
 from .results import Cell as Cell
 from .results import Chart as Chart
 from .results import Environment as Environment
+from .results import Figure as Figure
 from .results import Image as Image
 from .results import Limit as Limit
 from .results import Measure as Measure

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from fe_drivetrain.report.number_text import (
     error_text,
@@ -11,14 +12,18 @@ from fe_drivetrain.report.number_text import (
     tolerance_text,
     with_unit,
 )
-from fe_drivetrain.report.results import Results, Verdict
+from fe_drivetrain.report.results import Figure, Results, Verdict
 
 _DIGITS = 3  # of a value without a band
 _MOST_DIGITS = 7  # of a value with one
 
 
-def headline(results: Results) -> Verdict | None:
-    """The check that answers what was asked: the one that the case names, or its first.
+def headline(results: Results) -> Figure | Verdict | None:
+    """The value that answers what was asked.
+
+    It is the first of the case's answers; or else the check that the case names, the first value
+    with a band against an independent reference, the first without a band, the first number, or
+    the first check of all.
 
     Parameters
     ----------
@@ -27,29 +32,41 @@ def headline(results: Results) -> Verdict | None:
 
     Returns
     -------
-    verdict : Verdict or None
-        None of a case without checks.
+    found : Figure, Verdict or None
+        None of a case without either.
     """
-    named = (v for v in results.verdicts if v.quantity == results.headline)
-    numbers = (v for v in results.verdicts if v.check != "holds")
-    return next(named, next(numbers, next(iter(results.verdicts), None)))
+    if results.answers:
+        return results.answers[0]
+
+    def is_value(verdict: Verdict) -> bool:
+        is_equal = verdict.check == "equals" and verdict.reference != 0.0
+        return is_equal and verdict.basis == "independent" and verdict.measure != "identity"
+
+    ways: tuple[Callable[[Verdict], bool], ...] = (
+        lambda verdict: verdict.quantity == results.headline,
+        lambda verdict: is_value(verdict) and verdict.band is not None,
+        is_value,
+        lambda verdict: verdict.check != "holds",
+        lambda verdict: True,
+    )
+    return next((v for is_answer in ways for v in results.verdicts if is_answer(v)), None)
 
 
-def value_with_band(verdict: Verdict) -> str:
+def value_with_band(found: Figure | Verdict) -> str:
     """The computed value with its unit: three digits, or with a band those that it leaves certain.
 
     Parameters
     ----------
-    verdict : Verdict
-        The check; its band is shown with two digits.
+    found : Figure or Verdict
+        The value; its band is shown with two digits.
 
     Returns
     -------
     str
     """
-    if verdict.check == "holds":
-        return "yes" if verdict.computed == 1.0 else "no"
-    unit, value, band = verdict.unit, verdict.computed, verdict.band
+    if isinstance(found, Verdict) and found.check == "holds":
+        return "yes" if found.computed == 1.0 else "no"
+    unit, value, band = found.unit, found.computed, found.band
     if not band or not math.isfinite(value) or not math.isfinite(band):
         return with_unit(formatted(value, _DIGITS, unit), unit)
     # the last digit of the value is the last of the band's two
@@ -58,13 +75,13 @@ def value_with_band(verdict: Verdict) -> str:
     return with_unit(f"{formatted(value, digits, unit)} ± {formatted(band, 2, unit)}", unit)
 
 
-def answer_sentence(verdict: Verdict) -> str:
+def answer_sentence(verdict: Figure | Verdict) -> str:
     """What was found and what was expected, as a sentence without the verdict.
 
     Parameters
     ----------
-    verdict : Verdict
-        Of the check that answers.
+    verdict : Figure or Verdict
+        What answers.
 
     Returns
     -------
@@ -72,7 +89,7 @@ def answer_sentence(verdict: Verdict) -> str:
     """
     quantity = verdict.quantity[:1].upper() + verdict.quantity[1:]
     found = f"{quantity}: {value_with_band(verdict)}"
-    if verdict.check == "holds":
+    if isinstance(verdict, Figure) or verdict.check == "holds":
         return f"{found}."
     if verdict.check == "vanishes":
         return f"{found}; expected 0 within {tolerance_text(verdict)}."

@@ -1,7 +1,7 @@
 """The history of a folder of reports: every run with its checks, in one SQLite file.
 
 The file is read with any SQLite, too: table ``runs`` has a row for each run of a case, ``checks``
-one for each of its checks, in the order of the page.
+one for each of its answers and checks, in the order of the page.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.answer import headline
-from fe_drivetrain.report.results import Environment, Results, Verdict
+from fe_drivetrain.report.results import Environment, Figure, Results, Verdict
 
 FILE = "history.sqlite"
 """Its name, beside the pages that share it."""
@@ -43,6 +43,7 @@ CREATE TABLE IF NOT EXISTS checks (
     unit TEXT NOT NULL,
     computed REAL,
     band REAL,
+    allowed REAL NOT NULL,
     passed INTEGER NOT NULL,
     PRIMARY KEY (run, place)
 ) WITHOUT ROWID;
@@ -63,12 +64,15 @@ class Point(NamedTuple):
         The value; not a number where it was none.
     passed : bool
         Whether its check passed.
+    allowed : float
+        Error that the check tolerates, in the unit; 0 where that is relative to a reference.
     """
 
     date: str
     code: str
     computed: float
     passed: bool
+    allowed: float = 0.0
 
 
 class PastRun(NamedTuple):
@@ -96,6 +100,8 @@ class PastRun(NamedTuple):
         Of the check that answers what was asked; empty where there is none.
     computed, band : float or None
         Its value, and half width of the numerical uncertainty.
+    allowed : float
+        As of `Point`.
     """
 
     date: str
@@ -111,6 +117,7 @@ class PastRun(NamedTuple):
     unit: str
     computed: float | None
     band: float | None
+    allowed: float
 
 
 def check_history(folder: Path) -> None:
@@ -168,6 +175,7 @@ def record_run(folder: Path, results: Results) -> None:
         As of `check_history`.
     """
     environment, answer = results.environment, headline(results)
+    found: list[Figure | Verdict] = [*results.answers, *results.verdicts]
     with _opened(folder) as database:
         cursor = database.execute(
             "INSERT INTO runs (date, name, code, version, quick, settings, headline, checks, "
@@ -179,23 +187,37 @@ def record_run(folder: Path, results: Results) -> None:
                 environment.versions.get("fe-drivetrain", ""),
                 environment.quick,
                 _settings(environment),
-                None if answer is None else results.verdicts.index(answer),
+                None if answer is None else found.index(answer),
                 len(results.verdicts),
                 sum(not verdict.passed for verdict in results.verdicts),
                 sum(results.times.values()),
             ),
         )
         database.executemany(
-            "INSERT INTO checks VALUES (?, ?, ?, ?, ?, ?, ?)",
+            "INSERT INTO checks VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
             [
-                (cursor.lastrowid, place, v.quantity, v.unit, _finite(v.computed), v.band, v.passed)
-                for place, v in enumerate(results.verdicts)
+                (
+                    cursor.lastrowid,
+                    place,
+                    v.quantity,
+                    v.unit,
+                    _finite(v.computed),
+                    v.band,
+                    tolerated(v),
+                    not isinstance(v, Verdict) or v.passed,
+                )
+                for place, v in enumerate(found)
             ],
         )
 
 
+def tolerated(found: Figure | Verdict) -> float:
+    """The error that a check tolerates, in its unit; 0 where there is none or it is relative."""
+    return found.tolerance if isinstance(found, Verdict) and not found.relative else 0.0
+
+
 def points_over_runs(
-    folder: Path, results: Results, verdict: Verdict, most: int = 40
+    folder: Path, results: Results, found: Figure | Verdict, most: int = 40
 ) -> list[Point]:
     """One quantity of a case in the runs so far with the same settings in the same mode.
 
@@ -205,8 +227,8 @@ def points_over_runs(
         The folder of reports.
     results : Results
         Of the case.
-    verdict : Verdict
-        The check whose quantity it is.
+    found : Figure or Verdict
+        The answer or check whose quantity it is.
     most : int
         How many of the last runs.
 
@@ -220,21 +242,21 @@ def points_over_runs(
     environment = results.environment
     with _opened(folder) as database:
         rows = database.execute(
-            "SELECT date, code, computed, passed FROM runs JOIN checks USING (run) "
+            "SELECT date, code, computed, passed, allowed FROM runs JOIN checks USING (run) "
             "WHERE name = ? AND quick = ? AND settings = ? AND quantity = ? AND unit = ? "
             "ORDER BY run DESC LIMIT ?",
             (
                 results.case,
                 environment.quick,
                 _settings(environment),
-                verdict.quantity,
-                verdict.unit,
+                found.quantity,
+                found.unit,
                 most,
             ),
         ).fetchall()
     return [
-        Point(date, code, math.nan if computed is None else computed, bool(passed))
-        for date, code, computed, passed in reversed(rows)
+        Point(date, code, math.nan if computed is None else computed, bool(passed), allowed)
+        for date, code, computed, passed, allowed in reversed(rows)
     ]
 
 
@@ -262,8 +284,8 @@ def past_runs(folder: Path, name: str = "") -> list[PastRun]:
     with _opened(folder) as database:
         rows = database.execute(
             "SELECT date, name, code, version, quick, settings, runs.checks, failed, seconds, "
-            "coalesce(quantity, ''), coalesce(unit, ''), computed, band FROM runs LEFT JOIN checks "
-            "ON checks.run = runs.run AND checks.place = runs.headline "
+            "coalesce(quantity, ''), coalesce(unit, ''), computed, band, coalesce(allowed, 0.0) "
+            "FROM runs LEFT JOIN checks ON checks.run = runs.run AND checks.place = runs.headline "
             "WHERE ? IN ('', name) ORDER BY runs.run",
             (name,),
         ).fetchall()

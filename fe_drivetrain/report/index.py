@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.common.files import atomic_path
-from fe_drivetrain.report.answer import answer_sentence, headline
+from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
 from fe_drivetrain.report.history import Point, points_over_runs
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
 from fe_drivetrain.report.results import (
+    Figure,
     Problem,
     Results,
     Verdict,
@@ -54,8 +55,8 @@ class Row:
         What was found.
     worst : Verdict or None
         The check that uses up most of what it allows.
-    answer : Verdict or None
-        The check that answers what was asked.
+    answer : Figure, Verdict or None
+        The value that answers what was asked.
     points : sequence of Point
         Its quantity over the runs so far.
     """
@@ -65,7 +66,7 @@ class Row:
     problem: str = ""
     results: Results | None = None
     worst: Verdict | None = None
-    answer: Verdict | None = None
+    answer: Figure | Verdict | None = None
     points: Sequence[Point] = ()
 
     @property
@@ -177,6 +178,7 @@ def _write(page: Path, template: str, **content: Any) -> None:
         "share": lambda verdict: min(share_of_tolerance(verdict), _MOST),
         "share_text": lambda share: f"{100 * share:.3g}\u00a0%" if share < _MOST else "∞",
         "answer": answer_sentence,
+        "with_band": value_with_band,
         "sparkline": sparkline,
         "change": change_text,
     }

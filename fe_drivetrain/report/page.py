@@ -7,19 +7,47 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import re
 from pathlib import Path
+from urllib.parse import quote, unquote
 
 from markupsafe import Markup, escape
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
+from fe_drivetrain.report.bundle import place_plotly, plotly_file
 from fe_drivetrain.report.chart_style import chart_height, figure_as_json, is_number
+from fe_drivetrain.report.history import FILE, Point, points_over_runs, tolerated
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
-from fe_drivetrain.report.results import Cell, Chart, Image, Results, Table, read_results
+from fe_drivetrain.report.results import (
+    Cell,
+    Chart,
+    Figure,
+    Image,
+    Results,
+    Table,
+    Verdict,
+    read_results,
+)
+from fe_drivetrain.report.trend import change_text, sparkline
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _CONTENTS_FROM = 5  # sections from which on a page has a table of contents
+_QUANTITIES = 6  # of a case that are shown over its runs
+_FILES = 60  # to which a page links at most
+_KINDS = {
+    ".csv": "table, for any spreadsheet",
+    ".inp": "model for CalculiX and Abaqus",
+    ".json": "numbers with full precision",
+    ".msh": "mesh for gmsh",
+    ".mtx": "matrix, Matrix Market",
+    ".parquet": "table, Parquet",
+    ".png": "picture",
+    ".vtu": "mesh and fields for ParaView",
+    ".yaml": "scene",
+}
 
 
 def write_page(folder: Path, shared: Path | None = None) -> Path:
@@ -28,10 +56,10 @@ def write_page(folder: Path, shared: Path | None = None) -> Path:
     Parameters
     ----------
     folder : Path
-        Holds results.json and the images that it names.
+        Holds results.json and the images that it names, and the files to which the page links.
     shared : Path or None
-        A folder above for what the pages of several cases share: the history of their runs. That
-        of the page itself where left out.
+        A folder above for what the pages of several cases share: the history of their runs, and
+        the program that draws charts. The folder itself where left out.
 
     Returns
     -------
@@ -45,19 +73,18 @@ def write_page(folder: Path, shared: Path | None = None) -> Path:
     """
     folder = Path(folder)
     page = folder / "report.html"
-    text = render(read_results(folder / "results.json"), folder, shared or folder)
-    page.write_text(text, encoding="utf-8")
+    results = read_results(folder / "results.json")
+    if any(isinstance(item, Chart) for section in results.sections for item in section.items):
+        place_plotly(shared or folder)
+    page.write_text(render(results, folder, shared or folder), encoding="utf-8")
     return page
 
 
 def render(results: Results, folder: Path, shared: Path) -> str:
     """The page as text; see `write_page`."""
-    charts = [i for s in results.sections for i in s.items if isinstance(i, Chart)]
-    scripts = []
-    if charts:
-        from plotly.offline import get_plotlyjs
-
-        scripts = [get_plotlyjs(), read_template("charts.js")]
+    has_charts = any(isinstance(i, Chart) for s in results.sections for i in s.items)
+    scripts = [read_template("page.js"), *([read_template("charts.js")] if has_charts else [])]
+    above = Markup(quote(os.path.relpath(shared, folder)))
     environment = templates()
     environment.filters |= {
         "number": is_number,
@@ -68,15 +95,69 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         "height": chart_height,
         "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
         "data_url": lambda image: _as_data_url(image, folder),
+        "answer": answer_sentence,
+        "with_band": value_with_band,
+        "sparkline": sparkline,
+        "change": change_text,
+        "unquoted": lambda address: escape(unquote(address)),
     }
-    passed = sum(verdict.passed for verdict in results.verdicts)
+    answer = headline(results)
+    pictures = [i for s in results.sections for i in s.items if isinstance(i, Image)]
     return environment.get_template("report.html").render(
         results=results,
-        passed=passed,
+        passed=sum(verdict.passed for verdict in results.verdicts),
+        answer=answer,
+        picture=pictures[0] if pictures else None,
+        runs=runs_of_page(results, shared),
+        files=_files(folder),
+        index=above + "/index.html" if (shared / "index.html").is_file() else "",
         contents=len(results.sections) + 4 >= _CONTENTS_FROM,
-        scripts=[Markup(script) for script in scripts],
+        plotly=above + f"/{plotly_file()}" if has_charts else "",
+        scripts=scripts,
         script_hashes=[policy_hash(script) for script in scripts],
     )
+
+
+def runs_of_page(results: Results, shared: Path) -> list[tuple[Figure | Verdict, list[Point]]]:
+    """Quantities of a case over its runs so far, this one included: its answer and some others.
+
+    Parameters
+    ----------
+    results : Results
+        Of this run.
+    shared : Path
+        The folder of the history.
+
+    Returns
+    -------
+    list of tuple
+        Answers and checks, and what each run found; empty where this is the first.
+    """
+    environment, answer = results.environment, headline(results)
+    found: list[Figure | Verdict] = [answer] if answer else []
+    found += [figure for figure in results.answers if figure is not answer]
+    found += [v for v in results.verdicts if v.check == "equals" and v is not answer]
+    runs = []
+    for value in found[:_QUANTITIES]:
+        before = points_over_runs(shared, results, value)
+        passed = not isinstance(value, Verdict) or value.passed
+        now = Point(environment.date, environment.code, value.computed, passed, tolerated(value))
+        if before:
+            runs.append((value, [*before, now]))
+    return runs
+
+
+def _files(folder: Path) -> list[tuple[Markup, str, str]]:
+    """Address, kind and size of each file beside the page."""
+    return [
+        (
+            Markup(quote(str(file.relative_to(folder)))),
+            _KINDS.get(file.suffix, ""),
+            f"{formatted(max(file.stat().st_size / 1000, 0.1), 2)} kB",
+        )
+        for file in sorted(folder.rglob("*"))
+        if file.is_file() and file.name not in ("report.html", FILE, plotly_file())
+    ][:_FILES]
 
 
 def _as_given(value: object) -> str:

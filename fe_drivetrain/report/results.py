@@ -214,6 +214,19 @@ def bias_and_scatter(verdicts: Iterable[Verdict]) -> list[Statistic]:
     ]
 
 
+class Figure(_Result):
+    """A value that answers what was asked, and is not judged."""
+
+    model_config = ConfigDict(ser_json_inf_nan="strings")
+
+    quantity: str
+    unit: str
+    computed: float
+    band: float | None = Field(
+        default=None, ge=0, description="half width of its numerical uncertainty, in its unit"
+    )
+
+
 class Text(_Result):
     """A paragraph."""
 
@@ -286,6 +299,7 @@ class Environment(_Result):
     seed: int | None = None
     quick: bool = Field(default=False, description="whether the run was coarser and smaller")
     code: str = Field(default="", description="SHA-256 of the program's sources")
+    command: str = Field(default="", description="what to type to run it again")
 
 
 State = Literal["failed", "not run", "running", "planned", "skipped"]
@@ -311,6 +325,7 @@ class Results(_Result):
         default=[], description="what must be known before any figure, in sentences"
     )
     summary: list[str] = Field(description="the answer first, in a few sentences")
+    answers: list[Figure] = Field(default=[], description="values that answer what was asked")
     headline: str = Field(
         default="",
         description="quantity of the check that answers what was asked; empty: the first",
@@ -321,6 +336,7 @@ class Results(_Result):
     assumptions: list[AssumptionRow] = []
     times: dict[str, float] = Field(default={}, description="wall time of each step [s]")
     figures: dict[str, Any] = Field(default={}, description="named numbers for other programs")
+    scene: str = Field(default="", description="the scene as a file, of a case that has one")
     environment: Environment
 
     @property

@@ -11,18 +11,35 @@ from fe_drivetrain.report.history import Point
 from fe_drivetrain.report.number_text import formatted
 
 ROUND_OFF = 1e-9
-"""Relative change up to which a value counts as the same."""
+"""Change, relative to the size of a value, up to which it counts as the same."""
+
+_NOTHING = 0.01  # share of what a check allows, up to which what should vanish is the same
 
 _WIDTH, _HEIGHT, _EDGE = 96, 22, 3  # of the drawing, in its own units
 
 
-def relative_change(before: float, after: float) -> float:
-    """The change of a value over its size: 0 of round-off, infinite from or to no number."""
+def relative_change(before: float, after: float, allowed: float = 0.0) -> float:
+    """The change of a value over its size.
+
+    Parameters
+    ----------
+    before, after : float
+        The values.
+    allowed : float
+        Error that is tolerated, in their unit: of what is smaller this is the size.
+
+    Returns
+    -------
+    change : float
+        0 where it is round-off; infinite from or to what is no number.
+    """
     if before == after or (math.isnan(before) and math.isnan(after)):
         return 0.0
     if not (math.isfinite(before) and math.isfinite(after)):
         return math.inf
-    change = (after - before) / max(abs(before), abs(after))
+    if abs(after - before) <= _NOTHING * allowed:
+        return 0.0
+    change = (after - before) / max(abs(before), abs(after), allowed)
     return change if abs(change) > ROUND_OFF else 0.0
 
 
@@ -40,7 +57,7 @@ def change_text(points: Sequence[Point]) -> str:
         Empty of a single run.
     """
     for older, newer in zip(points[-2::-1], points[:0:-1], strict=True):
-        change = relative_change(older.computed, newer.computed)
+        change = relative_change(older.computed, newer.computed, newer.allowed)
         if change:
             size = (
                 f"{100 * change:+.2g}\u00a0%" if math.isfinite(change) else "to or from no number"
@@ -67,7 +84,7 @@ def sparkline(points: Sequence[Point]) -> Markup:
         return Markup("")
     values = [point.computed for point in points if math.isfinite(point.computed)]
     low, high = min(values, default=0.0), max(values, default=0.0)
-    level = not relative_change(low, high)
+    level = not relative_change(low, high, points[-1].allowed)
     places = []
     for number, point in enumerate(points):
         across = _EDGE + (_WIDTH - 2 * _EDGE) * number / (len(points) - 1)
