@@ -8,6 +8,7 @@ import re
 import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote
 
 import numpy as np
@@ -19,7 +20,7 @@ from PIL import Image as Pixels
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.bundle import plotly_file
-from fe_drivetrain.report.charts import density_chart
+from fe_drivetrain.report.charts import PALETTE, density_chart
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.number_text import error_text, formatted, safe_range, tolerance_text
 from fe_drivetrain.report.page import write_page
@@ -232,17 +233,59 @@ def test_figures_need_no_webgl_and_no_finite_numbers(tmp_path: Path) -> None:
     page = Page(page_of(tmp_path, results(sections=[section])))
     ((_, text),) = [s for s in page.scripts if s[0].get("type") == "application/json"]
     (trace,) = json.loads(text)["data"]
-    assert trace == {"type": "scatter", "y": [1.0, None, None]}
+    assert (trace["type"], trace["y"]) == ("scatter", [1.0, None, None])
 
 
-def test_more_traces_than_colours_are_told_apart_by_their_lines(tmp_path: Path) -> None:
-    traces = [{"type": "scatter", "name": str(k), "x": [0], "y": [k]} for k in range(9)]
-    section = Section(title="s", items=[Chart(caption="c", figure={"data": traces})])
-    page = Page(page_of(tmp_path, results(sections=[section])))
+def drawn(folder: Path, *traces: dict[str, object], **layout: object) -> dict[str, Any]:
+    """The figure of such traces as the page has it."""
+    figure = {"data": list(traces), "layout": layout}
+    section = Section(title="s", items=[Chart(caption="c", figure=figure)])
+    page = Page(page_of(folder, results(sections=[section])))
     ((_, text),) = [s for s in page.scripts if s[0].get("type") == "application/json"]
-    drawn = json.loads(text)["data"]
-    assert all("line" not in trace for trace in drawn[:7])
-    assert [trace["line"]["dash"] for trace in drawn[7:]] == ["dash", "dash"]
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def lines(*names: str) -> list[dict[str, object]]:
+    return [{"type": "scatter", "name": name, "x": [1, 2], "y": [1, 2]} for name in names]
+
+
+def test_no_two_traces_look_the_same(tmp_path: Path) -> None:
+    given = lines(*(str(k) for k in range(len(PALETTE) + 3)))
+    given[2]["line"] = {"color": PALETTE[0]}
+    traces = drawn(tmp_path, *given)["data"]
+    looks = [(trace["line"]["color"], trace["line"].get("dash")) for trace in traces]
+    assert len(set(looks)) == len(looks)
+    assert len({colour for colour, _ in looks}) == len(PALETTE)
+    assert [dash for _, dash in looks[-2:]] == ["dash", "dash"]
+
+
+def test_a_method_has_the_same_colour_in_every_chart(tmp_path: Path) -> None:
+    names = ("other", "hexahedra of 27 nodes", "level 2, meridian in harmonics", "another")
+    colours = []
+    for order in (names, names[::-1]):
+        traces = drawn(tmp_path, *lines(*order))["data"]
+        colours.append({trace["name"]: trace["line"]["color"] for trace in traces})
+        assert len(set(colours[-1].values())) == 4
+    for name in names[1:3]:
+        assert colours[0][name] == colours[1][name]
+
+
+def test_axes_are_equal_where_equal_is_a_diagonal_and_have_no_prefixes(tmp_path: Path) -> None:
+    layout = drawn(tmp_path, *lines("equal", "beam"), yaxis={"title": {"text": "F [kN]"}})["layout"]
+    assert layout["yaxis"]["scaleanchor"] == "x"
+    assert layout["yaxis"]["title"] == {"text": "F [kN]"}
+    assert layout["template"]["layout"]["yaxis"]["exponentformat"] == "power"
+    assert "scaleanchor" not in drawn(tmp_path, *lines("beam"))["layout"].get("yaxis", {})
+
+
+@pytest.mark.parametrize(("most", "tick"), [(5, "D1"), (50, "D2"), (1e5, 1), (1e20, 3)])
+def test_labels_of_a_logarithmic_axis_leave_each_other_room(
+    tmp_path: Path, most: float, tick: object
+) -> None:
+    trace = {"type": "scatter", "x": [1.0, most], "y": [0, 1]}
+    layout = drawn(tmp_path, trace, xaxis={"type": "log"})["layout"]
+    assert layout["xaxis"]["dtick"] == tick
 
 
 def test_the_policy_allows_the_scripts_of_the_page_and_nothing_else(tmp_path: Path) -> None:
@@ -373,7 +416,7 @@ def test_tables_have_headers_and_the_page_a_language(tmp_path: Path) -> None:
     assert page.all("html") == [{"lang": "en"}]
     assert all(head.get("scope") in ("col", "row") for head in page.all("th"))
     assert len(page.all("thead")) == len(page.all("table"))
-    assert all(chart["aria-label"] for chart in page.all("div") if chart.get("role") == "img")
+    assert [figure["aria-label"] for figure in page.all("figure") if "aria-label" in figure]
 
 
 def test_the_same_results_make_the_same_page(tmp_path: Path) -> None:

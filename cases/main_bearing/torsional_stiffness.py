@@ -113,16 +113,15 @@ def run(run: Run, page: Page) -> None:
             "The thesis gives 145 and 392 MN m/rad for a housing whose dimensions it does not "
             "state; this housing is another one, and nothing here is fitted to those values."
         )
-    band: list[float | None] = [None, None]
     if series.complete:
         percent = [series.percent(lambda f, p=p: float(f["K_R"][p, 1])) for p in range(len(PLANES))]
-        band = [p / 100 * k for p, k in zip(percent, (vertical, horizontal), strict=True)]
         page.answer(
             f"Numerical uncertainty from two coarser meshes: {percent[0]:.2g} % in the vertical "
             f"and {percent[1]:.2g} % in the horizontal plane (averaged seat)."
         )
-    page.found("K_R, vertical plane [MN m/rad]", vertical, band[0])
-    page.found("K_R, horizontal plane [MN m/rad]", horizontal, band[1])
+    for number, (plane, value) in enumerate((("vertical", vertical), ("horizontal", horizontal))):
+        band = percent[number] / 100.0 * value if series.complete else None
+        page.found(f"K_R, {plane} plane [MN m/rad]", value, band)
     load_factors = np.zeros(10)
     load_factors[4] = 1e6
     page.section("Model")

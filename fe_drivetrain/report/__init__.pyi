@@ -1,3 +1,4 @@
+from .charts import PALETTE as PALETTE
 from .charts import bars as bars
 from .charts import chart as chart
 from .charts import crosses as crosses

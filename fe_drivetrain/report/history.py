@@ -289,9 +289,7 @@ def past_runs(folder: Path, name: str = "") -> list[PastRun]:
             "WHERE ? IN ('', name) ORDER BY runs.run",
             (name,),
         ).fetchall()
-    return [
-        PastRun(*row[:4], bool(row[4]), json.loads(row[5]), *row[6:9], *row[9:]) for row in rows
-    ]
+    return [PastRun._make([*row[:4], bool(row[4]), json.loads(row[5]), *row[6:]]) for row in rows]
 
 
 @contextmanager

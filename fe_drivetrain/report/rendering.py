@@ -52,6 +52,7 @@ def templates() -> jinja2.Environment:
         "safe_range": safe_range,
         "page_of": lambda case: Markup(f"{quote(case)}/report.html"),
         "as_typed": escape,
+        "plain": lambda text: escape(typeset(text.replace("`", ""))),  # in attributes
     }
     environment.filters |= shared
     environment.globals["style"] = read_template("report.css")
