@@ -46,6 +46,10 @@
     for (const { place, text } of charts) {
       const plain = JSON.parse(text);
       const { data, layout } = dark.matches && !paper ? onDark(plain) : plain;
+      // half as many decades have labels where there is little room
+      const { xaxis } = layout;
+      const narrow = place.clientWidth < 500 && !paper;
+      if (narrow && xaxis && xaxis.type === "log" && typeof xaxis.dtick === "number") xaxis.dtick *= 2;
       // without this a chart keeps the width of the screen on paper
       if (paper) Object.assign(layout, { width: 680, autosize: false });
       Plotly.react(place, data, layout, config);
