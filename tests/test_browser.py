@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,13 +10,17 @@ from typing import Any
 from urllib.parse import unquote, urlparse
 
 import pytest
+from PIL import Image as Pixels
 from test_report import limit, lines, results, verdict
 
 from fe_drivetrain.report.bundle import plotly_file
 from fe_drivetrain.report.history import record_run
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.page import write_page
-from fe_drivetrain.report.results import Chart, Problem, Section, Table, Text
+from fe_drivetrain.report.results import Chart, Problem, Section, Solid, Table, Text
+from fe_drivetrain.report.solid_view import write_solid_view
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import Response
 
 pytestmark = [
     pytest.mark.needs("chromium", "playwright", "axe_playwright_python"),
@@ -47,7 +52,9 @@ SECTION = Section(
 
 
 @pytest.fixture(scope="module")
-def reports(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def reports(
+    tmp_path_factory: pytest.TempPathFactory, bonded_model: Model, bonded_response: Response
+) -> Path:
     """A folder of reports, with everything in it that a page can show."""
     folder = tmp_path_factory.mktemp("reports")
     for number, name in enumerate(("group/one", "group/two", "next/three")):
@@ -56,15 +63,24 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> Path:
         environment = content.environment.model_copy(
             update={"command": f"fe-drivetrain run {name} --quick", "quick": number == 2}
         )
+        sections = [SECTION]
+        (folder / name).mkdir(parents=True)
+        if number == 0:
+            mesh = bonded_model.mesh
+            u = -1e6 * bonded_response.displacements[..., 2]
+            steel = dict.fromkeys(mesh.part_names, (115e9, 77e9))
+            assert write_solid_view(mesh, u, steel, folder / name / "view.json")
+            Pixels.new("RGB", (8, 5), "teal").save(folder / name / "still.png")
+            solid = Solid(caption="Model under 1 MN", file="view.json", still="still.png")
+            sections.append(Section(title="Model", items=[solid]))
         content = content.model_copy(
             update={
                 "environment": environment,
-                "sections": [SECTION],
+                "sections": sections,
                 "limits": [limit()],
                 "scene": "shaft:\n  front: -2.145\n" * 20,
             }
         )
-        (folder / name).mkdir(parents=True)
         (folder / name / "results.json").write_text(content.model_dump_json(), "utf-8")
         record_run(folder, content)
         record_run(folder, content)
@@ -81,7 +97,8 @@ def browser() -> Iterator[Any]:
     with sync_playwright() as playwright:
         # the system's own: nothing is loaded for it
         started = playwright.chromium.launch(
-            executable_path=shutil.which("chromium"), args=["--no-sandbox", "--disable-gpu"]
+            executable_path=shutil.which("chromium"),
+            args=["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
         )
         yield started
         started.close()
@@ -217,7 +234,7 @@ def test_all_that_can_be_pressed_is_reached_by_the_keyboard(
 ) -> None:
     kinds = ("a[href]", "button", "input", "select", "summary", "[tabindex='0']")
     every = ", ".join(f"main {kind}" for kind in kinds)
-    can = f'Array.from(document.querySelectorAll("{every}")).filter(e => e.checkVisibility())'
+    can = f'Array.from(document.querySelectorAll("{every}")).filter(e => e.checkVisibility() && !e.disabled)'
     with Opened(browser, reports / name) as opened:
         page = opened.page
         expected = page.evaluate(f"{can}.length")
@@ -259,4 +276,89 @@ def test_a_page_without_the_program_of_the_charts_says_so(
     page.goto((tmp_path / "report.html").as_uri())
     assert plotly_file().partition("-")[0] in page.inner_text(".chart >> nth=0")
     assert page.is_visible("text=The chart needs the file")
+    context.close()
+
+
+def test_a_model_is_turned_cut_coloured_and_read(browser: Any, reports: Path) -> None:
+    with Opened(browser, reports / "group/one/report.html") as opened:
+        page = opened.page
+        canvas = page.locator(".solid canvas")
+        canvas.scroll_into_view_if_needed()
+        seen = [canvas.screenshot()]
+
+        def changes() -> None:
+            seen.append(canvas.screenshot())
+            assert seen[-1] != seen[-2]
+
+        box = canvas.bounding_box()
+        middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        read = page.locator(".solid > output")
+        page.mouse.click(*middle)
+        assert re.fullmatch(
+            r"(main bearing|main bearing.housing|shaft) at x .* m: displacement [\d.]+ mm, "
+            r"von Mises stress [\d.]+ MPa",
+            read.inner_text(),
+        )
+        assert page.input_value("input[aria-label='most value of the colours']") != "1"
+        page.select_option(".controls select >> nth=0", label="von Mises stress")
+        changes()
+        page.fill("input[aria-label='most value of the colours']", "1")
+        page.keyboard.press("Enter")
+        changes()
+        page.select_option(".controls select >> nth=0", label="part")
+        changes()
+        page.locator(".controls input[type=range] >> nth=0").fill("3")
+        changes()
+        page.select_option(".controls select >> nth=1", label="x")
+        changes()
+        page.mouse.move(*middle)
+        page.mouse.down()
+        page.mouse.move(middle[0] + 80, middle[1] + 20)
+        page.mouse.up()
+        changes()
+        canvas.focus()
+        for key in ("ArrowLeft", "+"):
+            page.keyboard.press(key)
+            changes()
+        for part in page.locator(".controls input[type=checkbox]").all():
+            part.uncheck()
+        changes()
+        page.keyboard.press("Enter")
+        assert page.locator(".for-paper").count() == 1
+        assert not page.locator(".for-paper").is_visible()
+        canvas.focus()
+        page.keyboard.press("Enter")
+        assert read.inner_text() == "There is nothing at that point."
+        page.emulate_media(media="print")
+        assert page.locator(".for-paper").is_visible()
+        assert not canvas.is_visible()
+        assert opened.said == []
+
+
+def test_the_largest_displacement_is_read_where_it_is(browser: Any, reports: Path) -> None:
+    """The hub's end of the shaft moves most, and the base of the housing not at all."""
+    with Opened(browser, reports / "group/one/report.html") as opened:
+        page = opened.page
+        canvas = page.locator(".solid canvas")
+        canvas.scroll_into_view_if_needed()
+        largest = float(page.input_value("input[aria-label='most value of the colours']"))
+        box = canvas.bounding_box()
+        found = []
+        for k in range(2, 30):
+            page.mouse.click(box["x"] + box["width"] * k / 32.0, box["y"] + box["height"] * 0.6)
+            text = page.locator(".solid > output").inner_text()
+            if number := re.search(r"displacement ([\d.]+) mm", text):
+                found.append(float(number[1]))
+        assert max(found) <= largest * 1.005
+        assert max(found) > 0.7 * largest
+        assert min(found) < 0.2 * largest
+
+
+def test_without_webgl_the_still_picture_stands_in(browser: Any, reports: Path) -> None:
+    context = browser.new_context()
+    page = context.new_page()
+    page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    page.goto((reports / "group/one/report.html").as_uri())
+    assert page.locator("figure img[alt='Model under 1 MN']").is_visible()
+    assert not page.locator(".solid").is_visible()
     context.close()

@@ -31,8 +31,11 @@ from .results import Measure as Measure
 from .results import Problem as Problem
 from .results import Results as Results
 from .results import Section as Section
+from .results import Solid as Solid
 from .results import Table as Table
 from .results import Text as Text
 from .results import Verdict as Verdict
 from .results import judge as judge
 from .results import read_results as read_results
+from .solid_view import deformed_shape as deformed_shape
+from .solid_view import write_solid_view as write_solid_view

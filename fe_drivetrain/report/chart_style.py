@@ -111,7 +111,12 @@ def figure_as_json(item: Chart) -> Markup:
         layout["yaxis"] = {"scaleanchor": "x", "constrain": "domain", **layout.get("yaxis", {})}
         layout["xaxis"] = {"constrain": "domain", **layout.get("xaxis", {})}
     content = {"data": _coloured(traces), "layout": layout}
-    text = json.dumps(_finite(content), ensure_ascii=True, allow_nan=False)
+    return script_json(_finite(content))
+
+
+def script_json(content: Any) -> Markup:
+    """Plain data as JSON that can stand inside a script element, whatever its texts say."""
+    text = json.dumps(content, ensure_ascii=True, allow_nan=False)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)

@@ -17,7 +17,7 @@ from markupsafe import Markup, escape
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
 from fe_drivetrain.report.bundle import place_plotly, plotly_file
-from fe_drivetrain.report.chart_style import chart_height, figure_as_json, is_number
+from fe_drivetrain.report.chart_style import chart_height, figure_as_json, is_number, script_json
 from fe_drivetrain.report.history import FILE, Point, points_over_runs, tolerated
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates
@@ -27,6 +27,7 @@ from fe_drivetrain.report.results import (
     Figure,
     Image,
     Results,
+    Solid,
     Table,
     Verdict,
     read_results,
@@ -82,8 +83,11 @@ def write_page(folder: Path, shared: Path | None = None) -> Path:
 
 def render(results: Results, folder: Path, shared: Path) -> str:
     """The page as text; see `write_page`."""
-    has_charts = any(isinstance(i, Chart) for s in results.sections for i in s.items)
-    scripts = [read_template("page.js"), *([read_template("charts.js")] if has_charts else [])]
+    items = [item for section in results.sections for item in section.items]
+    has_charts = any(isinstance(item, Chart) for item in items)
+    has_solids = any(isinstance(item, Solid) for item in items)
+    names = ("page.js", *(("charts.js",) * has_charts), *(("solid.js",) * has_solids))
+    scripts = [read_template(name) for name in names]
     above = Markup(quote(os.path.relpath(shared, folder)))
     environment = templates()
     environment.filters |= {
@@ -94,7 +98,8 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         "in_column": _in_column,
         "height": chart_height,
         "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
-        "data_url": lambda image: _as_data_url(image, folder),
+        "data_url": lambda file: _as_data_url(file, folder),
+        "solid_json": lambda solid: _as_script_data(solid, folder),
         "answer": answer_sentence,
         "with_band": value_with_band,
         "sparkline": sparkline,
@@ -102,7 +107,7 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         "unquoted": lambda address: escape(unquote(address)),
     }
     answer = headline(results)
-    pictures = [i for s in results.sections for i in s.items if isinstance(i, Image)]
+    pictures = [item for item in items if isinstance(item, Image)]
     return environment.get_template("report.html").render(
         results=results,
         passed=sum(verdict.passed for verdict in results.verdicts),
@@ -186,12 +191,21 @@ def _in_column(value: Cell, heading: str) -> str:
     return formatted(value, unit=unit)
 
 
-def _as_data_url(image: Image, folder: Path) -> Markup:
+def _as_data_url(name: str, folder: Path) -> Markup:
     """A PNG of the folder, embedded; Markup, for its letters and digits are no numbers to set."""
-    path = folder / image.file
-    if Path(image.file).name != image.file or not path.is_file() or path.is_symlink():
-        raise InputError(f"image {image.file!r} of results.json is not a file in {folder}")
-    content = path.read_bytes()
+    content = _file_of(name, folder).read_bytes()
     if not content.startswith(_PNG):
-        raise InputError(f"image {image.file!r} of results.json is no PNG: write it as one")
+        raise InputError(f"image {name!r} of results.json is no PNG: write it as one")
     return Markup(f"data:image/png;base64,{base64.b64encode(content).decode()}")
+
+
+def _as_script_data(solid: Solid, folder: Path) -> Markup:
+    """The file of a model in three dimensions as JSON that can stand inside a script element."""
+    return script_json(json.loads(_file_of(solid.file, folder).read_text(encoding="utf-8")))
+
+
+def _file_of(name: str, folder: Path) -> Path:
+    path = folder / name
+    if Path(name).name != name or not path.is_file() or path.is_symlink():
+        raise InputError(f"image {name!r} of results.json is not a file in {folder}")
+    return path

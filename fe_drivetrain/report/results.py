@@ -259,11 +259,20 @@ class Image(_Result):
     file: str
 
 
+class Solid(_Result):
+    """A deformed model in three dimensions, of `report.solid_view`, beside results.json."""
+
+    kind: Literal["solid"] = "solid"
+    caption: str
+    file: str
+    still: str = Field(default="", description="a PNG in its place, on paper and without WebGL")
+
+
 class Section(_Result):
     """A heading and what stands under it."""
 
     title: str
-    items: Sequence[Annotated[Text | Table | Chart | Image, Field(discriminator="kind")]]
+    items: Sequence[Annotated[Text | Table | Chart | Image | Solid, Field(discriminator="kind")]]
 
 
 class AssumptionRow(_Result):

@@ -18,6 +18,7 @@ from fe_drivetrain.report.results import (
     Limit,
     Measure,
     Section,
+    Solid,
     Table,
     Text,
     Verdict,
@@ -307,7 +308,7 @@ class Page:
         """Begin a section; what is added from now on stands under its heading."""
         self.sections.append(Section(title=title, items=[]))
 
-    def add(self, *items: Text | Table | Chart | Image) -> None:
+    def add(self, *items: Text | Table | Chart | Image | Solid) -> None:
         """Add to the section that was begun last; without one, to a section "Results"."""
         if not self.sections:
             self.section("Results")
