@@ -234,7 +234,8 @@ def test_all_that_can_be_pressed_is_reached_by_the_keyboard(
 ) -> None:
     kinds = ("a[href]", "button", "input", "select", "summary", "[tabindex='0']")
     every = ", ".join(f"main {kind}" for kind in kinds)
-    can = f'Array.from(document.querySelectorAll("{every}")).filter(e => e.checkVisibility() && !e.disabled)'
+    found = f'Array.from(document.querySelectorAll("{every}"))'
+    can = f"{found}.filter(e => e.checkVisibility() && !e.disabled)"
     with Opened(browser, reports / name) as opened:
         page = opened.page
         expected = page.evaluate(f"{can}.length")
