@@ -127,7 +127,8 @@ def test_the_share_of_a_tolerance_passes_one_where_the_check_fails(
     [
         (5.41327, 0.0413, "5.413 ± 0.041\u00a0N"),
         (5.41327, None, "5.41\u00a0N"),
-        (392280.4, 1234.5, "392\u202f280 ± 1\u202f234\u00a0N"),
+        (392280.4, 1234.5, "392\u202f300 ± 1\u202f200\u00a0N"),
+        (579.2, 140.9, "580 ± 140\u00a0N"),
         (1.0, 0.5, "1 ± 0.5\u00a0N"),
         (0.0, 0.5, "0 ± 0.5\u00a0N"),
         (math.nan, 0.5, "not a number\u00a0N"),
@@ -148,3 +149,12 @@ def test_the_answer_is_the_named_check_or_the_first_that_is_a_number() -> None:
     assert headline(results(verdicts=[])) is None
     plain = answer_sentence(verdict(1.004, band=0.001)).replace("\u00a0", " ")
     assert plain == "Force: 1.004 ± 0.001 N; expected 1 N (error +0.4 %, tolerance ±1 %)."
+
+
+def test_cases_without_results_here_are_named_and_do_not_count(tmp_path: Path) -> None:
+    put(tmp_path, "a/one", verdict(1.0))
+    page = write_index(tmp_path, {"a/two": Problem("waits", "planned")}, ["a/one", "a/two", "b/c"])
+    text = " ".join(Page(page.read_text("utf-8")).text().split())
+    assert "1 case of the program has no results here b/c" in text
+    assert "1 of 2 cases pass, 1 planned" in text
+    assert "no results here" not in write_index(tmp_path, {}, ["a/one"]).read_text("utf-8")

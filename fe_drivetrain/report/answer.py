@@ -70,7 +70,10 @@ def value_with_band(found: Figure | Verdict) -> str:
     if not band or not math.isfinite(value) or not math.isfinite(band):
         return with_unit(formatted(value, _DIGITS, unit), unit)
     # the last digit of the value is the last of the band's two
-    certain = math.floor(math.log10(abs(value) or band)) - math.floor(math.log10(band)) + 2
+    place = math.floor(math.log10(band)) - 1
+    if place > 0:
+        value, band = round(value, -place), round(band, -place)
+    certain = math.floor(math.log10(abs(value) or band)) - place + 1
     digits = min(max(certain, _DIGITS), _MOST_DIGITS)
     return with_unit(f"{formatted(value, digits, unit)} ± {formatted(band, 2, unit)}", unit)
 

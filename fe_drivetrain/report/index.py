@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -86,7 +86,9 @@ class Row:
         return list(WORDS).index(self.state), -share
 
 
-def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> Path:
+def write_index(
+    folder: Path, problems: Mapping[str, Problem] | None = None, known: Iterable[str] = ()
+) -> Path:
     """Write the pages of all results below a folder.
 
     index.html has a row for each case, worst first; checks.html beside it one for each check;
@@ -98,6 +100,8 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
         Holds GROUP/NAME/results.json of any number of cases.
     problems : Mapping[str, Problem] or None
         Why a case has no results now, or none of this run, by its name; it is listed with that.
+    known : Iterable[str]
+        Names of all cases of the program: those that are not in the folder are named apart.
 
     Returns
     -------
@@ -119,6 +123,7 @@ def write_index(folder: Path, problems: Mapping[str, Problem] | None = None) -> 
         folder / "index.html",
         "index.html",
         rows=rows,
+        missing=sorted(set(known) - {row.name for row in rows}),
         words=WORDS,
         states={state: states[state] for state in WORDS if states[state]},
         groups=Counter(sorted(row.group for row in rows)),

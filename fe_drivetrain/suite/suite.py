@@ -14,7 +14,7 @@ from fe_drivetrain.common.files import HiddenFolder, sentence_about
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.report.results import Problem
-from fe_drivetrain.suite.case import Case
+from fe_drivetrain.suite.case import Case, all_cases
 from fe_drivetrain.suite.result_folders import (
     new_folder,
     put_in_place,
@@ -76,6 +76,7 @@ def run_cases(
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
     cases = [case for case in cases if case.name not in kept]
+    known = list(all_cases())
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
     pending = {case.name: _PLANNED for case in cases}
@@ -87,7 +88,7 @@ def run_cases(
             with writing:
                 if name in pending:
                     pending[name] = _RUNNING
-                    write_index(out, problems | pending)
+                    write_index(out, problems | pending, known)
         report(step, lane)
 
     def finish(case: Case, problem: Problem | None) -> None:
@@ -100,7 +101,7 @@ def run_cases(
         if not problem:
             record_run(out, read_results(result_folder(out, case) / "results.json"))
         with writing:
-            write_index(out, problems | pending)  # a run that is killed later could not
+            write_index(out, problems | pending, known)  # a run that is killed later could not
         count()
 
     def count() -> None:
@@ -111,7 +112,7 @@ def run_cases(
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
         check_history(out)
-        write_index(out, problems | pending)
+        write_index(out, problems | pending, known)
         count()
         beside = [case for case in cases if not case.alone]
         with Processes(len(beside), show, each_for_itself=True) as processes:
@@ -134,7 +135,7 @@ def run_cases(
         for folder in folders.values():
             folder.discard()
         if len(folders) == len(cases):  # else nothing was begun
-            write_index(out, problems | dict.fromkeys(pending, NOT_RUN))
+            write_index(out, problems | dict.fromkeys(pending, NOT_RUN), known)
     return problems
 
 
