@@ -120,7 +120,8 @@ def run(run: Run, page: Page) -> None:
             f"and {percent[1]:.2g} % in the horizontal plane (averaged seat)."
         )
     for number, (plane, value) in enumerate((("vertical", vertical), ("horizontal", horizontal))):
-        band = percent[number] / 100.0 * value if series.complete else None
+        share = percent[number] if series.complete else None
+        band = None if share is None else share / 100.0 * value
         page.found(f"K_R, {plane} plane [MN m/rad]", value, band)
     load_factors = np.zeros(10)
     load_factors[4] = 1e6

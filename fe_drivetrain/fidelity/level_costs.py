@@ -112,7 +112,7 @@ def forecast(model: Model) -> list[Forecast]:
         for part, parts in solids.items()
     ]
     elimination = eliminate(model.constraints, model.n_dofs)
-    whole = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
+    whole = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination, model.springs)
     return [
         Forecast(0, statics.title, statics.cost.unknowns, statics.cost.seconds, None, "", True),
         Forecast(1, beam.title, beam.cost.unknowns, beam.cost.seconds, None, "", True),

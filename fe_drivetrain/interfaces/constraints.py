@@ -6,7 +6,7 @@ are the degrees of freedom that are left, so that stiffness contrast cannot spoi
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,11 +34,17 @@ class Constraint:
         (m, n_dofs) coefficients.
     pivots : Ints
         (m,) the degree of freedom that each row is solved for.
+    sums : Ints
+        Degrees of freedom that the rows bring in: sums over groups of nodes.
+    is_mean : bool
+        Whether a row takes a mean over a face.
     """
 
     name: str
     rows: sparse.csr_array
     pivots: Ints
+    sums: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    is_mean: bool = False
 
 
 @dataclass(frozen=True)
@@ -59,6 +65,11 @@ class ReferencePoint:
     name: str
     position: Floats
     motion: sparse.csr_array
+
+    @property
+    def is_mean(self) -> bool:
+        """Whether it moves as a face does on average, and not by degrees of freedom of its own."""
+        return bool(self.motion.nnz > self.motion.shape[0])
 
 
 def dofs(nodes: Ints) -> Ints:
@@ -172,7 +183,8 @@ def averaged_sphere(
             )
         )
         pivots += [*(3 * pivot_nodes + axis), int(sums[np.argmax(scale)])]
-    return Constraint(name, sparse.vstack(rows, format="csr"), np.array(pivots))
+    sums = first_dof + np.arange(3 * n_groups)
+    return Constraint(name, sparse.vstack(rows, format="csr"), np.array(pivots), sums, True)
 
 
 def centred_weights(weights: Floats, points: Floats, centre: Floats) -> Floats:
@@ -227,7 +239,8 @@ def shared_motion(
     shares = first + np.arange(6)[:, None] + 6 * np.arange(len(groups))
     total = _rows(np.ones(shares.shape), shares, n_dofs)
     stacked = sparse.vstack(rows, format="csr")
-    constraint = Constraint(f"{name} shares", stacked, np.concatenate(pivots))
+    own_dofs = shares.ravel()
+    constraint = Constraint(f"{name} shares", stacked, np.concatenate(pivots), own_dofs, True)
     return constraint, ReferencePoint(name, position, total)
 
 
@@ -243,13 +256,13 @@ def rigid_face(name: str, nodes: Ints, points: Floats, point: ReferencePoint) ->
 def equal_translations(name: str, first: ReferencePoint, second: ReferencePoint) -> Constraint:
     """Two reference points move together and turn freely."""
     rows = (first.motion[:3] - second.motion[:3]).tocsr()
-    return Constraint(name, rows, _pivots(rows))
+    return Constraint(name, rows, _pivots(rows), is_mean=first.is_mean or second.is_mean)
 
 
 def held(name: str, point: ReferencePoint, components: Sequence[int]) -> Constraint:
     """Motions of a reference point (0-2 displacements, 3-5 rotations) that are zero."""
     rows = point.motion[list(components)].tocsr()
-    return Constraint(name, rows, _pivots(rows))
+    return Constraint(name, rows, _pivots(rows), is_mean=point.is_mean)
 
 
 def rigid_point(name: str, position: Floats, first_dof: int, n_dofs: int) -> ReferencePoint:

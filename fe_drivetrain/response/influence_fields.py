@@ -63,6 +63,6 @@ def reaction_influences(
         moved[f"{name}.housing.base"] = rigid_motions(base, centre) @ chosen
     given = elimination.particular(moved) if moved else np.zeros_like(loads)
     stiffness = model.stiffness
-    system = reduce(model.mesh.points, model.mesh.cells, stiffness, elimination)
+    system = reduce(model.mesh.points, model.mesh.cells, stiffness, elimination, model.springs)
     right = elimination.T.T @ (loads - stiffness @ given)
     return np.asarray(elimination.T @ solve(system, right, method).x + given)

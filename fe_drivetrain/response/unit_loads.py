@@ -144,7 +144,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     K = model.stiffness
     elimination = eliminate(model.constraints, model.n_dofs)
     T = elimination.T
-    system = reduce(model.mesh.points, model.mesh.cells, K, elimination)
+    system = reduce(model.mesh.points, model.mesh.cells, K, elimination, model.springs)
     try:
         solution = solve(system, T.T @ F, method)
     except InputError as error:

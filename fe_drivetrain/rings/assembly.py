@@ -226,7 +226,7 @@ def roller_assembly(
     total = len(springs) // 2
     pushes = sparse.csr_array(contacts[:, :total] * np.sqrt(springs[:total]))
     K = model.stiffness + (pushes @ pushes.T).tobsr((3, 3))
-    system = reduce(model.mesh.points, model.mesh.cells, K, elimination)
+    system = reduce(model.mesh.points, model.mesh.cells, K, elimination, model.springs)
     F = np.hstack([contacts, model.unit_loads()])
     u = elimination.T @ solve(system, elimination.T.T @ F, method).x
     size = contacts.shape[1]

@@ -74,7 +74,7 @@ class Schwarz(NamedTuple):
 
 SCHWARZ = Schwarz(0.3, 6e-5, 40.0, 7e-10, 5e-10, 1600.0, 300.0)
 
-_THIN = 4.0  # iterations
+_ORDINARY, _THIN = 22.0, 4.0  # iterations
 
 
 @dataclass(frozen=True)
@@ -133,16 +133,13 @@ def predict(system: System, n_rhs: int) -> list[Cost]:
 
 
 def iterations(system: System) -> float:
-    """Iterations of multigrid to be expected, from how unlike its elements are, and how thin it is.
+    """Iterations of multigrid to be expected, from how thin the solid is.
 
-    Sixteen to 25 were seen on shafts, whose diagonal blocks differ by four, and 41 to 47 on
-    assemblies of small and large elements of several parts, whose blocks differ by 11 to 17. Thin
-    tubes and slender shafts: see `thinness`.
+    Sixteen to 30 were seen on shafts and assemblies of several parts; for thin tubes and slender
+    shafts see `thinness`.
     """
-    size = np.asarray(system.K.diagonal()).reshape(-1, 3).sum(axis=1)
-    low, high = np.quantile(size[size > 0.0], (0.01, 0.99))
     thin = 0.0 if system.elements is None else _THIN * thinness(system.elements)
-    return max(15.0, 18.0 * math.log(high / low) - 5.0, thin)
+    return max(_ORDINARY, thin)
 
 
 def thinness(elements: Elements) -> float:

@@ -238,7 +238,7 @@ def point_displacements(
     for at, k in springs:
         K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
     elimination = constraints.eliminate([*held, *solid.rigid_faces], solid.n_dofs)
-    system = reduce(solid.mesh.points, solid.cells, K, elimination)
+    system = reduce(solid.mesh.points, solid.cells, K, elimination, springs)
     return np.asarray(elimination.T @ solve(system, elimination.T.T @ solid.loads, method).x)
 
 

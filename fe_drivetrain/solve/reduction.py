@@ -5,7 +5,8 @@ stay blocks, whatever an interface took from them, and solvers learn of nodes, r
 corner nodes.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +14,15 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.spatial import rigid_motions
-from fe_drivetrain.interfaces.constraints import Elimination
+from fe_drivetrain.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import kernels
+from fe_drivetrain.solve.sums import Sums, sums_of
+
+#: Ground under the faces of joints, relative to the mean stiffness of a degree of freedom. It is in
+#: preconditioners alone: answers are without it.
+_GROUND = 1e-4
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,8 @@ class System:
         Number of degrees of freedom that are left.
     elements : Elements or None
         What it was made of; None where that is not known.
+    joints : Joints or None
+        Its joints that take means over faces, apart from its bodies; None where there are none.
     """
 
     K: sparse.bsr_array
@@ -72,9 +80,35 @@ class System:
     body: Ints
     n_free: int
     elements: Elements | None = None
+    joints: "Joints | None" = None
 
 
-def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimination) -> System:
+@dataclass(frozen=True)
+class Joints:
+    """Bodies without those of their joints that take means over faces, and these joints.
+
+    Attributes
+    ----------
+    bodies : System
+        On a soft ground under the joints' faces, for without the joints they may float.
+    sums : Sums
+        The joints.
+    free : NDArray[np.bool_]
+        (n,) degrees of freedom that are left where the joints' conditions hold, too.
+    """
+
+    bodies: System
+    sums: Sums
+    free: NDArray[np.bool_]
+
+
+def reduce(
+    points: Floats,
+    cells: Ints,
+    K: sparse.bsr_array,
+    elimination: Elimination,
+    springs: Sequence[tuple[ReferencePoint, Floats]] = (),
+) -> System:
     """Eliminate the constraints from a stiffness.
 
     Parameters
@@ -88,7 +122,28 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
         [N/m].
     elimination : Elimination
         The constraints.
+    springs : sequence of (ReferencePoint, ndarray (6, 6))
+        Those of K's springs that may be between means of faces: multigrid takes them apart again.
     """
+    elements = Elements(
+        points, cells, diagonal_blocks(K)[: len(points)], elimination.T, elimination.free
+    )
+    sums = sums_of(elimination, springs)
+    joints = None
+    if sums is not None:
+        faces = np.diff(sums.rows.tocsc().indptr) > 0
+        ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
+        bodies = reduced_stiffness(K - sums.springs.tobsr((3, 3)), sums.elimination)
+        on_ground = in_blocks(bodies + ground.tocsr().tobsr((3, 3)))
+        joints = Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
+    system = _system(points, cells, reduced_stiffness(K, elimination), elimination)
+    return replace(system, elements=elements, joints=joints)
+
+
+def _system(
+    points: Floats, cells: Ints, reduced: sparse.bsr_array, elimination: Elimination
+) -> System:
+    """A reduced stiffness with its corners, motions and bodies."""
     T, free = elimination.T, elimination.free
     motions = _motions_with_points(points, elimination)
     body = np.full(len(free) // 3, -1)
@@ -97,9 +152,7 @@ def reduce(points: Floats, cells: Ints, K: sparse.bsr_array, elimination: Elimin
     if cells.shape[1] not in (4, 8):
         prolongation, corners = _prolongation(cells, len(points), T, free)
         motions, body = motions[corners], body[corners[::3] // 3]
-    reduced = reduced_stiffness(K, elimination)
-    elements = Elements(points, cells, diagonal_blocks(K)[: len(points)], T, free)
-    return System(reduced, prolongation, motions, body, int(free.sum()), elements)
+    return System(reduced, prolongation, motions, body, int(free.sum()))
 
 
 def diagonal_blocks(K: sparse.bsr_array) -> Floats:

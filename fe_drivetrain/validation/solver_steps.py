@@ -90,7 +90,7 @@ def main_bearing(quick: bool) -> Problem:
     load = VERTICAL.moment
     elimination = eliminate(model.constraints, model.n_dofs)
     T = elimination.T
-    system = reduce(mesh.points, mesh.cells, model.stiffness, elimination)
+    system = reduce(mesh.points, mesh.cells, model.stiffness, elimination, model.springs)
     unit = model.unit_loads()[:, [LOADS.index("hub.My")]]
     F = np.asarray(T.T @ unit)
     x = factorise(system, "superlu").solve(F).x

@@ -1,0 +1,17 @@
+from .bodies import ALL as ALL
+from .bodies import PLANE as PLANE
+from .bodies import Body as Body
+from .bodies import Superelement as Superelement
+from .bodies import assemble as assemble
+from .bodies import disc as disc
+from .bodies import stretched as stretched
+from .springs import Mesh as Mesh
+from .springs import Place as Place
+from .springs import Spring as Spring
+from .springs import bushing as bushing
+from .springs import directed as directed
+from .springs import gear_mesh as gear_mesh
+from .springs import line_of_action as line_of_action
+from .springs import uniform_shaft as uniform_shaft
+from .system import System as System
+from .system import with_stiffness as with_stiffness

@@ -1,0 +1,288 @@
+"""Springs between rigid bodies: k h h^T, with the row h of a spring's elongation by their motions.
+
+Each row is that of a relative motion at one point in space, which both bodies feel as rigid bodies
+do, so that a common rigid motion stretches nothing.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_drivetrain.beam.frame import CrossSection
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import diagonal_roots
+from fe_drivetrain.common.spatial import along_x, wrench_transport
+from fe_drivetrain.scene.materials import Material
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring and damper.
+
+    Attributes
+    ----------
+    name : str
+        Unique in its system.
+    by : Mapping[str, Floats]
+        Elongation (6,) by the motion of each body about its centre [m/m, m/rad, ...].
+    stiffness, damping : float
+        Force per elongation [N/m, or N m/rad] and per its rate [N s/m, or N m s/rad].
+    """
+
+    name: str
+    by: Mapping[str, Floats]
+    stiffness: float
+    damping: float = 0.0
+
+
+@dataclass(frozen=True)
+class Place:
+    """A body and the centre that its motions are about.
+
+    Attributes
+    ----------
+    body : str
+        Name.
+    centre : tuple[float, float, float]
+        [m].
+    """
+
+    body: str
+    centre: tuple[float, float, float]
+
+
+def _row(direction: Floats, point: ArrayLike, centre: ArrayLike) -> Floats:
+    """(6,) what a body's motion moves its point along a generalised direction (6,)."""
+    arm = np.subtract(np.asarray(point, dtype=float), np.asarray(centre, dtype=float))
+    return np.asarray(wrench_transport(arm) @ direction)
+
+
+def directed(
+    name: str,
+    one: Place,
+    other: Place | None,
+    point: ArrayLike,
+    direction: Floats,
+    stiffness: float,
+    damping: float = 0.0,
+) -> Spring:
+    """A spring on the motion of one body against another, at a point and along a direction.
+
+    Parameters
+    ----------
+    name : str
+        Of the spring.
+    one : Place
+        Body whose motion counts positive.
+    other : Place or None
+        Body whose motion is taken off; none is the ground.
+    point : array_like, (3,)
+        Where the two meet [m].
+    direction : ndarray, (6,)
+        Of the translation, then of the rotation, that stretches it.
+    stiffness, damping : float
+        As in `Spring`.
+    """
+    by = {one.body: _row(direction, point, one.centre)}
+    if other is not None:
+        if other.body == one.body:
+            raise InputError(f"spring {name!r} joins {one.body!r} to itself: name two bodies")
+        by[other.body] = -_row(direction, point, other.centre)
+    return Spring(name, by, stiffness, damping)
+
+
+def bushing(
+    name: str,
+    one: Place,
+    other: Place | None,
+    point: ArrayLike,
+    stiffness: ArrayLike,
+    damping: ArrayLike = 0.0,
+) -> list[Spring]:
+    """Springs of a bearing, coupling or hinge: six stiffnesses, or a matrix with cross terms.
+
+    Parameters
+    ----------
+    name : str
+        Springs are called after it, "NAME ux" and so on.
+    one, other : Place, Place or None
+        As in `directed`.
+    point : array_like, (3,)
+        Where the stiffness is given [m].
+    stiffness : array_like, (6,) or (6, 6)
+        Along and about x, y, z [N/m, N, N m/rad]; a matrix is symmetric and has no negative
+        eigenvalue.
+    damping : array_like, (6,) or scalar
+        Of the same springs [N s/m, N m s/rad]; of a matrix, must be 0.
+
+    Returns
+    -------
+    Of a matrix, springs along its eigenvectors, "NAME 1" and so on, scaled to a unit diagonal first
+    since metres and radians do not compare.
+
+    Raises
+    ------
+    InputError
+        The matrix is not symmetric, or has a negative eigenvalue; or a stiffness is negative.
+    """
+    k = np.asarray(stiffness, dtype=float)
+    if k.ndim == 1:
+        c = np.broadcast_to(np.asarray(damping, dtype=float), 6)
+        if (k < 0).any():
+            raise InputError(f"{name}: stiffness {k.min():g} must be at least 0 N/m: change it")
+        return [
+            directed(f"{name} {m}", one, other, point, np.eye(6)[i], float(k[i]), float(c[i]))
+            for i, m in enumerate(MOTIONS)
+            if k[i] > 0 or c[i] > 0
+        ]
+    if np.abs(k - k.T).max() > 1e-9 * np.abs(k).max():
+        raise InputError(f"{name}: the stiffness matrix must be symmetric: make it so")
+    root = diagonal_roots(k.diagonal())
+    values, vectors = np.linalg.eigh(k / np.outer(root, root))
+    if values[0] < -1e-9 * values[-1]:
+        raise InputError(
+            f"{name}: the stiffness matrix has an eigenvalue of {values[0]:g} (on a unit diagonal) "
+            "but none may be negative: correct it"
+        )
+    return [
+        directed(f"{name} {i + 1}", one, other, point, root * vectors[:, i], float(value))
+        for i, value in enumerate(values)
+        if value > 1e-12 * values[-1]
+    ]
+
+
+def uniform_shaft(
+    name: str,
+    one: Place,
+    other: Place,
+    ends: tuple[ArrayLike, ArrayLike],
+    section: CrossSection,
+    material: Material,
+) -> list[Spring]:
+    """A round Timoshenko beam along x as six springs at its middle, which is exact.
+
+    About the middle of a uniform beam, stretching, twisting, a constant moment and a constant shear
+    force with its antisymmetric moment do no work on each other: E A / L, G J / L, E I / L, and
+    12 E I / (L^3 (1 + Phi)) with Phi = 12 E I / (G A_s L^2) (Przemieniecki 1968, section 5.6).
+
+    Parameters
+    ----------
+    name : str
+        Springs are called after it.
+    one, other : Place
+        Bodies that its ends are fixed to.
+    ends : tuple of array_like, (3,)
+        Where it begins and ends [m], along x.
+    section : CrossSection
+        With the same stiffness about y and z.
+    material : Material
+        Of the shaft.
+
+    Raises
+    ------
+    InputError
+        The ends are not on a line along x.
+    """
+    begin, end = (np.asarray(at, dtype=float) for at in ends)
+    length = float(end[0] - begin[0])
+    if length == 0 or np.abs((end - begin)[1:]).max() > 1e-9 * abs(length):
+        raise InputError(f"shaft {name!r} must lie along x and have a length: correct its ends")
+    L, E, G = abs(length), material.youngs_modulus, material.shear_modulus
+    bending, shear = E * section.inertias[0], G * section.shear_areas[0]
+    across = 12 * bending / (L**3 * (1 + 12 * bending / (shear * L**2)))
+    k = [E * section.area / L, across, across, G * section.torsion / L, bending / L, bending / L]
+    return bushing(name, one, other, (begin + end) / 2, k)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Contact of two gears with axes along x.
+
+    Attributes
+    ----------
+    pressure_angle : float
+        Transverse, working [rad].
+    base_helix : float
+        [rad]; positive where the first gear has right-hand teeth.
+    face_width : float
+        In contact [m]; slices are spread over it.
+    """
+
+    pressure_angle: float
+    base_helix: float = 0.0
+    face_width: float = 0.0
+
+
+def line_of_action(mesh: Mesh, to_pitch: ArrayLike, flank: int = 1) -> Floats:
+    """(3,) unit normal of the contact, from the first gear into the second.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Angles.
+    to_pitch : array_like, (3,)
+        From the centre of the first gear to the pitch point: to the second gear if external, away
+        from the second one's centre if that is a ring.
+    flank : int
+        1 where the first gear pushes as it turns about +x, -1 where it does turning back.
+    """
+    e = np.asarray(to_pitch, dtype=float)
+    e = e / np.linalg.norm(e)
+    along_x = np.array([1.0, 0.0, 0.0])
+    tangent = np.cross(along_x, e)
+    a, b = mesh.pressure_angle, mesh.base_helix
+    # the tooth of a right-hand gear is a surface angle - x tan(helix) / radius = constant
+    inclined = cos(b) * cos(a) * tangent - sin(b) * along_x
+    return np.asarray(flank * inclined + cos(b) * sin(a) * e)
+
+
+def gear_mesh(
+    name: str,
+    one: Place,
+    other: Place,
+    pitch_point: ArrayLike,
+    mesh: Mesh,
+    stiffness: float,
+    damping: float = 0.0,
+    flank: int = 1,
+    slices: int = 1,
+) -> list[Spring]:
+    """Springs of a gear mesh along its line of action, in slices over the face width.
+
+    The elongation is how far the first gear goes into the second: positive where teeth press. Its
+    row turns each gear by its base radius times cos(base helix). With one slice, the mesh has no
+    stiffness against tilt; n slices have b^2 (1 - 1/n^2) / 12 of their stiffness.
+
+    Parameters
+    ----------
+    name : str
+        Of the mesh; slices are "NAME slice 1" and so on where there are more than one.
+    one, other : Place
+        The gears; the first is the external one where the other is a ring.
+    pitch_point : array_like, (3,)
+        At the middle of the face [m].
+    mesh : Mesh
+        Angles and width.
+    stiffness, damping : float
+        Of the whole mesh along the line of action [N/m, N s/m].
+    flank : int
+        As in `line_of_action`.
+    slices : int
+        Over the face width.
+    """
+    pitch = np.asarray(pitch_point, dtype=float)
+    to_pitch = pitch - np.asarray(one.centre)
+    normal = np.zeros(6)
+    normal[:3] = line_of_action(mesh, to_pitch * [0.0, 1.0, 1.0], flank)
+    found = []
+    for i in range(slices):
+        at = pitch + along_x(((i + 0.5) / slices - 0.5) * mesh.face_width)
+        label = name if slices == 1 else f"{name} slice {i + 1}"
+        k, c = stiffness / slices, damping / slices
+        found.append(directed(label, one, other, at, normal, k, c))
+    return found

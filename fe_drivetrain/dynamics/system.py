@@ -1,0 +1,150 @@
+"""Linear systems of bodies and springs: mass, gyroscopic terms, and a row for each spring.
+
+A spring's elongation is ``h . q`` with its row h, so that K = sum k h h^T is symmetric, has no
+negative stiffness, and is zero for every motion that no row feels. Beside the springs there may be
+a dense stiffness, of superelements. In a frame that turns at the speed W about x, the motion obeys
+
+    M q'' + (C + W G) q' + (K - W^2 Z) q = f
+
+with the skew gyroscopic matrix G and the centripetal matrix Z, both for 1 rad/s.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+
+
+@dataclass(frozen=True)
+class System:
+    """Bodies on springs.
+
+    Attributes
+    ----------
+    names : tuple[str, ...]
+        (n,) of the degrees of freedom, body and motion: "sun ux", ..., "sun rx".
+    mass : Floats
+        (n, n) [kg, kg m, kg m^2].
+    gyroscopic : Floats
+        (n, n), skew, for a reference speed of 1 rad/s [kg, kg m, kg m^2].
+    centripetal : Floats
+        (n, n) for a reference speed of 1 rad/s, taken off the stiffness [kg, kg m, kg m^2].
+    rows : Floats
+        (m, n) elongation of each spring [m, or rad] by the degrees of freedom.
+    stiffness : Floats
+        (m,) of each spring [N/m, or N m/rad].
+    damping : Floats
+        (m,) of each spring [N s/m, or N m s/rad].
+    spring_names : tuple[str, ...]
+        (m,) of each spring.
+    extra : Floats
+        (n, n) stiffness of superelements, dense.
+    bodies : tuple[str, ...]
+        (b,) names of all bodies, those that are held or tied, too.
+    expansion : Floats
+        (6 b, n) motions of all bodies by the degrees of freedom.
+    body_mass : Floats
+        (b,) [kg].
+    """
+
+    names: tuple[str, ...]
+    mass: Floats
+    gyroscopic: Floats
+    centripetal: Floats
+    rows: Floats
+    stiffness: Floats
+    damping: Floats
+    spring_names: tuple[str, ...]
+    extra: Floats
+    bodies: tuple[str, ...]
+    expansion: Floats
+    body_mass: Floats
+
+    @property
+    def K(self) -> Floats:
+        """(n, n) stiffness at rest [N/m, N, N m/rad]."""
+        return np.asarray(self.rows.T @ (self.stiffness[:, None] * self.rows)) + self.extra
+
+    @property
+    def C(self) -> Floats:
+        """(n, n) damping of the springs [N s/m, N s, N m s/rad]."""
+        return np.asarray(self.rows.T @ (self.damping[:, None] * self.rows))
+
+    def place(self, name: str) -> int:
+        """Number of a degree of freedom.
+
+        Raises
+        ------
+        InputError
+            There is none of that name.
+        """
+        if name not in self.names:
+            raise InputError(
+                f"no degree of freedom {name!r}: use one of {', '.join(self.names[:40])}"
+            )
+        return self.names.index(name)
+
+    def spring(self, name: str) -> int:
+        """Number of a spring.
+
+        Raises
+        ------
+        InputError
+            There is none of that name.
+        """
+        if name not in self.spring_names:
+            raise InputError(f"no spring {name!r}: use one of {', '.join(self.spring_names[:40])}")
+        return self.spring_names.index(name)
+
+    def motion_of(self, body: str, q: Floats) -> Floats:
+        """(6, ...) motion of a body that belongs to degrees of freedom (n, ...).
+
+        Raises
+        ------
+        InputError
+            There is no such body.
+        """
+        return np.asarray(self.expansion[self._rows_of(body)] @ q)
+
+    def load_on(self, body: str, wrench: Floats) -> Floats:
+        """(n,) generalised load of a force and moment (6,) at a body's centre [N, N m].
+
+        Raises
+        ------
+        InputError
+            There is no such body.
+        """
+        return np.asarray(self.expansion[self._rows_of(body)].T @ np.asarray(wrench, dtype=float))
+
+    def gravity(self, acceleration: Floats) -> Floats:
+        """(n,) load of a uniform acceleration (3,) on all bodies [N, N m]."""
+        wrenches = np.zeros((len(self.bodies), 6))
+        wrenches[:, :3] = self.body_mass[:, None] * np.asarray(acceleration, dtype=float)
+        return np.asarray(self.expansion.T @ wrenches.ravel())
+
+    @property
+    def body_of(self) -> Ints:
+        """(n,) number of the body that each degree of freedom belongs to."""
+        return np.array([self.bodies.index(n.rpartition(" ")[0]) for n in self.names])
+
+    def _rows_of(self, body: str) -> slice:
+        if body not in self.bodies:
+            raise InputError(f"no body {body!r}: use one of {', '.join(self.bodies)}")
+        first = 6 * self.bodies.index(body)
+        return slice(first, first + 6)
+
+
+def with_stiffness(system: System, stiffness: dict[str, float]) -> System:
+    """The system with other stiffnesses of some springs, by name [N/m, or N m/rad].
+
+    Raises
+    ------
+    InputError
+        A name is no spring.
+    """
+    values = system.stiffness.copy()
+    for name, value in stiffness.items():
+        values[system.spring(name)] = value
+    return replace(system, stiffness=values)

@@ -1,0 +1,12 @@
+from .involute import ContactPath as ContactPath
+from .involute import Gear as Gear
+from .involute import Pair as Pair
+from .involute import Rack as Rack
+from .involute import inverse_involute as inverse_involute
+from .involute import involute_of as involute_of
+from .involute import meshing_without_backlash as meshing_without_backlash
+from .planets import assembly_positions as assembly_positions
+from .planets import equally_spaced as equally_spaced
+from .planets import ring_phases as ring_phases
+from .planets import sequence as sequence
+from .planets import sun_phases as sun_phases

@@ -1,0 +1,168 @@
+"""What the teeth of a planetary stage fix: where planets fit, and the phases of their meshes.
+
+Phases are in periods of the mesh, between 0 and 1, against those of the first planet. The carrier
+turns positively, the sun with it; planets are counted at their angles in that sense.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+
+
+def equally_spaced(sun: int, ring: int, planets: int) -> bool:
+    """Whether equally spaced planets can be assembled.
+
+    Parameters
+    ----------
+    sun : int
+        Teeth of the sun.
+    ring : int
+        Teeth of the ring, counted positive.
+    planets : int
+        How many.
+
+    Returns
+    -------
+    bool
+        (sun + ring) / planets is whole.
+    """
+    _check_teeth(sun, ring, planets)
+    return (sun + ring) % planets == 0
+
+
+def assembly_positions(sun: int, ring: int, planets: int) -> Floats:
+    """Angles nearest to equal spacing at which planets can be assembled.
+
+    Parameters
+    ----------
+    sun : int
+        Teeth of the sun.
+    ring : int
+        Teeth of the ring, counted positive.
+    planets : int
+        How many.
+
+    Returns
+    -------
+    (planets,) array
+        Angles [rad], whole multiples of 2 pi / (sun + ring) from the first, at 0.
+    """
+    _check_teeth(sun, ring, planets)
+    least = 2.0 * pi / (sun + ring)
+    equal = 2.0 * pi * np.arange(planets) / planets
+    return np.asarray(np.round(equal / least) * least, dtype=np.float64)
+
+
+def sun_phases(sun: int, ring: int, places: Floats) -> Floats:
+    """Phases of the sun's meshes: how far planet n's is ahead of the first one's.
+
+    Parameters
+    ----------
+    sun : int
+        Teeth of the sun.
+    ring : int
+        Teeth of the ring, counted positive.
+    places : (n,) array
+        Angles of the planets [rad].
+
+    Returns
+    -------
+    (n,) array
+        z_s psi / 2 pi, in periods. In the carrier's frame the sun turns positively with a fixed
+        ring: a tooth reaches a planet further on later, so that stiffness there is k(t - phase)
+        with the time in periods (Parker and Lin 2004, whose sign of this case it is).
+    """
+    _check_places(sun, ring, places)
+    return _whole_apart(sun * np.asarray(places, dtype=np.float64) / (2.0 * pi))
+
+
+def ring_phases(sun: int, ring: int, places: Floats) -> Floats:
+    """Phases of the ring's meshes: as `sun_phases`, the ring turning the other way.
+
+    Parameters
+    ----------
+    sun : int
+        Teeth of the sun.
+    ring : int
+        Teeth of the ring, counted positive.
+    places : (n,) array
+        Angles of the planets [rad].
+
+    Returns
+    -------
+    (n,) array
+        -z_r psi / 2 pi, in periods: equal to those of the sun, since the sum of teeth times the
+        angle is whole where planets fit.
+    """
+    _check_places(sun, ring, places)
+    return _whole_apart(-ring * np.asarray(places, dtype=np.float64) / (2.0 * pi))
+
+
+def sequence(sun: int, ring: int, planets: int) -> str:
+    """Kind of phasing of equally spaced planets.
+
+    Parameters
+    ----------
+    sun : int
+        Teeth of the sun.
+    ring : int
+        Teeth of the ring, counted positive.
+    planets : int
+        How many.
+
+    Returns
+    -------
+    str
+        "in phase", "sequential" (phases 1/planets apart), "counter-phased" (opposite pairs), or
+        "mixed".
+
+    Raises
+    ------
+    InputError
+        If equally spaced planets cannot be assembled.
+    """
+    if not equally_spaced(sun, ring, planets):
+        raise InputError(
+            f"{planets} equally spaced planets cannot be assembled between a sun of {sun} and a "
+            f"ring of {ring} teeth: their sum, {sun + ring}, must be a multiple of {planets}"
+        )
+    step = sun % planets
+    if step == 0:
+        return "in phase"
+    if 2 * step == planets:
+        return "counter-phased"
+    return "sequential" if np.gcd(step, planets) == 1 else "mixed"
+
+
+def _whole_apart(phases: Floats) -> Floats:
+    """Between 0 and 1; what is 1 to round-off is 0."""
+    rest = phases - phases[0]
+    rest = rest - np.floor(rest + 1e-9)
+    return np.asarray(np.maximum(rest, 0.0), dtype=np.float64)
+
+
+def _check_places(sun: int, ring: int, places: Floats) -> None:
+    _check_teeth(sun, ring, len(places))
+    turns = (np.asarray(places) - places[0]) * (sun + ring) / (2.0 * pi)
+    wrong = np.abs(turns - np.round(turns)) > 1e-6
+    if wrong.any():
+        n = int(np.argmax(wrong))
+        raise InputError(
+            f"planet {n + 1} at {np.degrees(places[n]):.6g} degrees cannot be assembled between a "
+            f"sun of {sun} and a ring of {ring} teeth: planets stand at multiples of "
+            f"{360.0 / (sun + ring):.6g} degrees from the first"
+        )
+
+
+def _check_teeth(sun: int, ring: int, planets: int) -> None:
+    if not 0 < sun < ring:
+        raise InputError(
+            f"a sun of {sun} teeth in a ring of {ring}: give both positive, more for the ring"
+        )
+    if planets < 1:
+        raise InputError(f"{planets} planets: give at least one")
