@@ -104,7 +104,7 @@ def run(run: Run, page: Page) -> None:
         torque = np.zeros(len(ladder.top.compliance))
         torque[3] = TORQUE
         what = f"Torque of {TORQUE:g} N m at the ring"
-        show_picture(run, page, ladder.solid, ladder.top.compliance @ torque, what)
+        show_picture(run, page, component, ladder.solid, ladder.top.compliance @ torque, what)
     band = ladder.band(torsion)
     whole = torsion(ladder.top) / 1e6
     page.found(

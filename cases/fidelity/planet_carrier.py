@@ -117,7 +117,7 @@ def run(run: Run, page: Page) -> None:
             _compare_walls(run, page, component, ladder, bands)
         what = f"Rated torque of {RATED:.4g} N m, shared equally by the pins; the flange is held"
         motions = under_torque(component, ladder.top, RATED)
-        show_picture(run, page, ladder.solid, motions, what)
+        show_picture(run, page, component, ladder.solid, motions, what)
     page.data("wind-up", {m.title: wind_up(m) for m in ladder.models if m.points})
     page.data("tilt at 1 N m", {m.title: 1e-12 * tilt(m) for m in ladder.models if m.points})
     page.data("wind-up band", bands[0].uncertainty)
