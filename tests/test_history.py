@@ -166,7 +166,7 @@ def test_the_command_prints_runs_and_what_moved(invoke: Callable[..., Result]) -
     ]
     assert ["same" in line for line in lines] == [False, True, False]
     assert ["quick" in line for line in lines] == [False, False, True]
-    assert all("one 1.01 N m/rad" in line and "pass" in line for line in lines)
+    assert all("one: 1.01\u00a0N m/rad" in line and "pass" in line for line in lines)
     code, _, error = invoke("history", "tinny")
     assert code == 2
     assert "did you mean" in error

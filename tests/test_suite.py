@@ -196,7 +196,12 @@ def test_results_that_cannot_be_read_are_listed_as_such(tmp_path: Path) -> None:
 
 def read_the_index(run: Run, page: Page) -> None:
     page.answer((run.folder.parents[1] / "index.html").read_text())
-    count(run, page)
+    count(run, page)  # which is a step
+    end = time.monotonic() + 10.0
+    while "1 running" not in (said := (run.folder.parents[1] / "index.html").read_text()):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    page.answer(said)
 
 
 def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
@@ -242,8 +247,9 @@ def test_what_a_kill_would_leave_looks_incomplete(tmp_path: Path) -> None:
     run_cases([a_case("a/one", count), a_case("a/two", count)], tmp_path)
     cases = [a_case("a/one", count, alone=True), a_case("a/two", read_the_index, alone=True)]
     run_cases(cases, tmp_path)
-    (meanwhile,) = read_results(tmp_path / "a/two/results.json").summary
-    assert '<p class="outcome fail">1 of 2 cases pass, 1 planned</p>' in meanwhile
+    before, meanwhile = read_results(tmp_path / "a/two/results.json").summary
+    assert '<p class="outcome fail">1 of 2 cases pass, 1 planned</p>' in before
+    assert '<p class="outcome fail">1 of 2 cases pass, 1 running</p>' in meanwhile
     after = (tmp_path / "index.html").read_text()
     assert '<p class="outcome pass">2 of 2 cases pass</p>' in after
     assert "not run" not in after

@@ -71,10 +71,12 @@ def history_text(runs: Sequence[PastRun]) -> str:
 
 
 def _cells(run: PastRun, before: PastRun | None) -> list[str]:
+    from fe_drivetrain.report.answer import value_with_band
+    from fe_drivetrain.report.results import Figure
     from fe_drivetrain.report.trend import relative_change
 
     computed = math.nan if run.computed is None else run.computed
-    band = "" if run.band is None else f" ± {run.band:.2g}"
+    found = Figure(quantity=run.quantity, unit=run.unit, computed=computed, band=run.band)
     change = "" if before is None else "same"
     if before is not None:
         old = math.nan if before.computed is None else before.computed
@@ -86,7 +88,7 @@ def _cells(run: PastRun, before: PastRun | None) -> list[str]:
         run.code[:8],
         "quick" if run.quick else "full",
         "pass" if not run.failed else f"FAIL {run.failed} of {run.checks}",
-        f"{run.quantity} {computed:.6g}{band} {run.unit}".strip() if run.quantity else "no checks",
+        f"{run.quantity}: {value_with_band(found)}" if run.quantity else "no checks",
         change,
         f"{run.seconds:.1f} s",
     ]

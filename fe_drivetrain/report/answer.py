@@ -9,10 +9,12 @@ from fe_drivetrain.report.number_text import (
     error_text,
     expected_text,
     formatted,
+    power_of_ten,
     tolerance_text,
     with_unit,
 )
 from fe_drivetrain.report.results import Figure, Results, Verdict
+from fe_drivetrain.report.typeset import superscript
 
 _DIGITS = 3  # of a value without a band
 _MOST_DIGITS = 7  # of a value with one
@@ -69,13 +71,18 @@ def value_with_band(found: Figure | Verdict) -> str:
     unit, value, band = found.unit, found.computed, found.band
     if not band or not math.isfinite(value) or not math.isfinite(band):
         return with_unit(formatted(value, _DIGITS, unit), unit)
+    power = power_of_ten(value or band, unit)
+    value, band = value / 10.0**power, band / 10.0**power
     # the last digit of the value is the last of the band's two
     place = math.floor(math.log10(band)) - 1
     if place > 0:
         value, band = round(value, -place), round(band, -place)
     certain = math.floor(math.log10(abs(value) or band)) - place + 1
     digits = min(max(certain, _DIGITS), _MOST_DIGITS)
-    return with_unit(f"{formatted(value, digits, unit)} ± {formatted(band, 2, unit)}", unit)
+    text = f"{formatted(value, digits, unit)} ± {formatted(band, 2, unit)}"
+    if power:
+        text = f"({text})\u00a0×\u00a010{superscript(power)}"
+    return with_unit(text, unit)
 
 
 def answer_sentence(verdict: Figure | Verdict) -> str:

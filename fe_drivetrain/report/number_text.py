@@ -35,8 +35,7 @@ def formatted(
     # rounded first: 999 999.9 has another exponent than it seems
     rounded, _, exponent_text = f"{value:.{digits - 1}e}".partition("e")
     exponent = int(exponent_text)
-    step = 1 if unit in ("%", "", "-") else 3
-    power = 0 if -3 <= exponent < 6 else step * (exponent // step)
+    power = _shown_power(exponent, unit)
     decimals = max(digits - 1 - exponent + power, 0)
     shown = float(rounded) * 10 ** (exponent - power) if power else value
     number = f"{shown:,.{decimals}f}"
@@ -44,6 +43,28 @@ def formatted(
         number = number.rstrip("0").rstrip(".")
     number = number.replace(",", THIN_SPACE).replace("-", MINUS)
     return f"{number}\u00a0×\u00a010{superscript(power)}" if power else number
+
+
+def power_of_ten(value: float, unit: str | None = None) -> int:
+    """The power of ten that a number is written with; 0 of most.
+
+    Parameters
+    ----------
+    value : float
+        The number, other than 0.
+    unit : str or None
+        As of `formatted`.
+
+    Returns
+    -------
+    int
+    """
+    return _shown_power(math.floor(math.log10(abs(value))), unit)
+
+
+def _shown_power(exponent: int, unit: str | None) -> int:
+    step = 1 if unit in ("%", "", "-") else 3
+    return 0 if -3 <= exponent < 6 else step * (exponent // step)
 
 
 def computed_text(verdict: Verdict) -> str:

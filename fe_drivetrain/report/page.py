@@ -39,6 +39,7 @@ _CONTENTS_FROM = 5  # sections from which on a page has a table of contents
 _QUANTITIES = 6  # of a case that are shown over its runs
 _FILES = 60  # to which a page links at most
 _KINDS = {
+    ".3d.json": "what the page shows in three dimensions",
     ".csv": "table, for any spreadsheet",
     ".inp": "model for CalculiX and Abaqus",
     ".json": "numbers with full precision",
@@ -157,7 +158,7 @@ def _files(folder: Path) -> list[tuple[Markup, str, str]]:
     return [
         (
             Markup(quote(str(file.relative_to(folder)))),
-            _KINDS.get(file.suffix, ""),
+            next((kind for end, kind in _KINDS.items() if file.name.endswith(end)), ""),
             f"{formatted(max(file.stat().st_size / 1000, 0.1), 2)} kB",
         )
         for file in sorted(folder.rglob("*"))
