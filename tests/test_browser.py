@@ -193,6 +193,20 @@ def test_cases_are_searched_filtered_and_sorted(browser: Any, reports: Path) -> 
         assert opened.shown() == worst_first
 
 
+def test_paper_has_all_rows_and_nothing_to_press(browser: Any, reports: Path) -> None:
+    with Opened(browser, reports / "index.html") as opened:
+        opened.page.fill("#search", "three")
+        opened.page.emulate_media(media="print")
+        assert len(opened.shown()) == 7
+        assert not opened.page.is_visible("#search")
+    with Opened(browser, reports / "group/one/report.html", scheme="dark") as opened:
+        opened.page.emulate_media(media="print", color_scheme="dark")
+        for button in opened.page.locator("button").all():
+            assert not button.is_visible()
+        background = "getComputedStyle(document.body).backgroundColor"
+        assert opened.page.evaluate(background) == "rgb(255, 255, 255)"
+
+
 def test_the_head_of_a_long_list_stays_in_sight(browser: Any, reports: Path) -> None:
     with Opened(browser, reports / "checks.html") as opened:
         opened.page.set_viewport_size({"width": WIDE, "height": 160})
