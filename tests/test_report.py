@@ -250,6 +250,19 @@ def lines(*names: str) -> list[dict[str, object]]:
     return [{"type": "scatter", "name": name, "x": [1, 2], "y": [1, 2]} for name in names]
 
 
+def test_no_page_has_a_raw_backtick(tmp_path: Path) -> None:
+    said = "run `fe-drivetrain history` now"
+    chart = Chart(caption=said, figure={"data": lines(said), "layout": {"title": {"text": said}}})
+    table = Table(caption=said, columns=[said], rows=[[said]])
+    content = results(said, sections=[Section(title=said, items=[chart, table, Text(text=said)])])
+    page = Page(page_of(tmp_path, content.model_copy(update={"case": "a/b", "scene": ""})))
+    plain = [t for tag, t in page.texts if tag not in ("style", "code", "dd", "td", "pre")]
+    assert not any("`" in text for text in plain)
+    assert all("`" not in (v or "") for _, attributes in page.elements for v in attributes.values())
+    (figure,) = [t for attributes, t in page.scripts if "data-chart" in attributes]
+    assert "`" not in figure
+
+
 def test_no_two_traces_look_the_same(tmp_path: Path) -> None:
     given = lines(*(str(k) for k in range(len(PALETTE) + 3)))
     given[2]["line"] = {"color": PALETTE[0]}

@@ -185,7 +185,7 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(inner) for inner in value]
     if isinstance(value, str):
-        return typeset(value)
+        return typeset(value.replace("`", ""))  # a chart has no code in it
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
