@@ -1,18 +1,20 @@
 """Involute gears against published gearboxes, and against what the geometry must keep."""
 
+import re
 from dataclasses import replace
 from math import cos, degrees, pi, radians, sin, tan
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.gear.functions import inverse_involute, involute_of
 from fe_drivetrain.gear.involute import (
     Gear,
     Pair,
     Rack,
-    inverse_involute,
-    involute_of,
     meshing_without_backlash,
 )
 from fe_drivetrain.gear.planets import (
@@ -22,49 +24,27 @@ from fe_drivetrain.gear.planets import (
     sequence,
     sun_phases,
 )
-
-
-def nrel_5mw() -> dict[str, Pair]:
-    """Gearbox of Nejad, Guo, Gao and Moan 2016, tip diameters as its KISSsoft reports print."""
-    m = 1e-3
-    sun = Gear(19, 45 * m, 491 * m, shift=0.617, tip_diameter=978.808 * m)
-    planet = Gear(17, 45 * m, 491 * m, shift=0.8021, tip_diameter=905.470 * m)
-    ring = Gear(-56, 45 * m, 491 * m, shift=-0.5013, tip_diameter=2475.118 * m)
-    sun_2 = Gear(18, 21 * m, 550 * m, shift=0.389, tip_diameter=432.838 * m)
-    planet_2 = Gear(36, 21 * m, 550 * m, shift=0.5039, tip_diameter=815.668 * m)
-    ring_2 = Gear(-93, 21 * m, 550 * m, shift=0.1171, tip_diameter=1906.086 * m)
-    ten = radians(10.0)
-    pinion = Gear(24, 14 * m, 360 * m, ten, 0.480, tip_diameter=380.747 * m)
-    wheel = Gear(95, 14 * m, 360 * m, -ten, 0.6691, tip_diameter=1395.376 * m)
-    return {
-        "sun 1": Pair(sun, planet, 0.863),
-        "ring 1": Pair(planet, ring, 0.863),
-        "sun 2": Pair(sun_2, planet_2, 0.584),
-        "ring 2": Pair(planet_2, ring_2, 0.584),
-        "stage 3": Pair(pinion, wheel, 0.861),
-    }
-
+from fe_drivetrain.validation.published_gears import (
+    NREL_5MW_PRINTED,
+    iso_example_1,
+    nrel_5mw,
+    nrel_750kw,
+)
 
 PAIRS = nrel_5mw()
 
 
-@pytest.mark.parametrize(
-    ("name", "ratio"),
-    [("sun 1", 1.115), ("ring 1", 1.278), ("sun 2", 1.370), ("ring 2", 1.618), ("stage 3", 1.463)],
-)
-def test_contact_ratios_of_a_gearbox_are_those_printed(name: str, ratio: float) -> None:
-    assert round(PAIRS[name].transverse_ratio, 3) == ratio
+@pytest.mark.parametrize("name", PAIRS)
+def test_contact_ratios_of_a_gearbox_are_those_printed(name: str) -> None:
+    assert round(PAIRS[name].transverse_ratio, 3) == NREL_5MW_PRINTED[name].transverse_ratio
+    assert round(PAIRS[name].overlap_ratio, 3) == NREL_5MW_PRINTED[name].overlap_ratio
 
 
-def test_overlap_and_printed_forces_and_shifts() -> None:
-    assert round(PAIRS["stage 3"].overlap_ratio, 3) == 1.421
-    # torques are printed to 0.1 N m
-    for name, torque, force in (
-        ("sun 1", 999650.9 / 3.0, 779454.877),
-        ("sun 2", 162105.5 / 3.0, 285900.438),
-        ("stage 3", 40953.0, 240064.4),
-    ):
-        assert PAIRS[name].tangential_force(torque) == pytest.approx(force, rel=1.3e-6)
+def test_printed_forces_and_shifts() -> None:
+    for name, printed in NREL_5MW_PRINTED.items():
+        if printed.torque is not None:  # torques are printed to 0.1 N m
+            force = PAIRS[name].tangential_force(printed.torque)
+            assert force == pytest.approx(printed.force, rel=1.3e-6)
     for pair in PAIRS.values():  # shifts are printed to four digits
         assert pair.shift_sum == pytest.approx(pair.first.shift + pair.second.shift, abs=1e-4)
 
@@ -85,13 +65,10 @@ def test_tips_without_a_given_diameter() -> None:
 
 
 def test_example_1_of_iso_tr_6336_30() -> None:
-    rack = Rack(dedendum=1.4, fillet=0.39)
-    helix = radians(15.8)
-    pinion = Gear(17, 8e-3, 0.1, helix, 0.145, rack=rack)
-    wheel = Gear(103, 8e-3, 0.1, -helix, 0.0, rack=rack)
+    pair = iso_example_1()
+    pinion, wheel = pair.first, pair.second
     assert round(pinion.virtual_teeth, 3) == 18.905
     assert round(wheel.virtual_teeth, 3) == 114.543
-    pair = Pair(pinion, wheel, 0.5)
     assert pair.tangential_force(9000.0) == pytest.approx(127352, abs=0.6)
     # Z_epsilon .803 = sqrt(1 / epsilon_alpha), epsilon_beta being above 1
     assert pair.overlap_ratio > 1.0
@@ -101,56 +78,32 @@ def test_example_1_of_iso_tr_6336_30() -> None:
 
 
 @pytest.mark.parametrize(
-    ("gears", "module", "helix", "centre", "shifts", "angle", "bases", "ratio"),
+    ("name", "shifts", "angle", "bases", "ratio", "overlap"),
     [
-        # teeth, shift, tip radius [mm]
-        (((21, 0.176, 118), (39, 0.399, 211)), 10, 7.5, 308, 0.575, 22.74, (99.42, 184.63), 1.57),
-        (
-            ((39, 0.399, 211), (-99, -0.974, 498)),
-            10,
-            7.5,
-            308,
-            -0.575,
-            22.74,
-            (184.63, 468.69),
-            1.78,
-        ),
-        (
-            ((23, 0.154, 107.7), (82, 0.296, 359.7)),
-            8.25,
-            14,
-            450,
-            0.4505,
-            21.76,
-            (91.55, 326.40),
-            1.64,
-        ),
-        (((22, 0.166, 63), (88, 0.156, 233)), 5, 14, 285, 0.3224, 21.39, (53.07, 212.29), 1.72),
+        ("sun", 0.575, 22.74, (99.42, 184.63), 1.57, 0.914),
+        ("ring", -0.575, 22.74, (184.63, 468.69), 1.78, 0.945),
+        ("intermediate", 0.4505, 21.76, (91.55, 326.40), 1.64, 1.587),
+        ("high speed", 0.3224, 21.39, (53.07, 212.29), 1.72, 1.694),
     ],
 )
 def test_gearbox_of_the_nrel_750_kw_machine(
-    gears: tuple[tuple[int, float, float], ...],
-    module: float,
-    helix: float,
-    centre: float,
+    name: str,
     shifts: float,
     angle: float,
     bases: tuple[float, float],
     ratio: float,
+    overlap: float,
 ) -> None:
-    # tips are assumed at a clearance of 0.4 modules from the other's published root circles
-    rack = Rack(dedendum=1.467)
-    hands = (1, 1 if gears[1][0] < 0 else -1)
-    made = [
-        Gear(z, module * 1e-3, 0.1, hand * radians(helix), x, rack=rack, tip_diameter=2e-3 * tip)
-        for hand, (z, x, tip) in zip(hands, gears, strict=True)
-    ]
-    pair = Pair(made[0], made[1], centre * 1e-3)
+    pair = nrel_750kw()[name]
     assert pair.shift_sum == pytest.approx(shifts, abs=6e-4)
     assert degrees(pair.working_angle) == pytest.approx(angle, abs=0.005)
-    for gear, base in zip(made, bases, strict=True):
+    for gear, base in zip((pair.first, pair.second), bases, strict=True):
         assert 1e3 * gear.base_radius == pytest.approx(base, abs=0.005)
     assert round(pair.transverse_ratio, 2) == ratio
+    assert round(pair.overlap_ratio, 3) == overlap
+    roots = {21: 186, 39: 372, -99: 1047, 23: 174, 82: 678, 22: 100, 88: 440}
+    for gear in (pair.first, pair.second):  # published as whole millimetres
+        assert 2e3 * gear.root_radius == pytest.approx(roots[gear.teeth], abs=0.6)
 
 
 def test_without_backlash_both_ways() -> None:
@@ -282,3 +235,14 @@ def test_phases_of_planets(sun: int, ring: int, planets: int, kind: str) -> None
     phases = sun_phases(sun, ring, places)
     assert np.allclose(phases, ring_phases(sun, ring, places))
     assert np.allclose(phases, (sun % planets) * np.arange(planets) / planets % 1.0)
+
+
+def test_example_of_the_docs() -> None:
+    text = (Path(__file__).parents[1] / "docs" / "gears.md").read_text(encoding="utf-8")
+    found = re.search(r"```python\n(.*?)```", text, re.DOTALL)
+    assert found is not None
+    names: dict[str, Any] = {}
+    exec(found.group(1), names)
+    assert round(names["pair"].transverse_ratio, 3) == 1.463
+    assert round(names["iso"].mesh / 1e9, 2) == 18.63
+    assert float(names["series"].at(0.3)) > 0.0

@@ -24,8 +24,8 @@ FLOORS = (
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"dynamics", "fidelity", "peers", "report", "rings", "validation"},
-    {"coupled", "export", "suite", "uncertainty"},
+    {"dynamics", "fidelity", "peers", "report", "rings"},
+    {"coupled", "export", "suite", "uncertainty", "validation"},
     {"commands"},
     {"cases"},
 )

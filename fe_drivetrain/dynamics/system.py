@@ -15,6 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_solve
 
 
 @dataclass(frozen=True)
@@ -148,3 +149,62 @@ def with_stiffness(system: System, stiffness: dict[str, float]) -> System:
     for name, value in stiffness.items():
         values[system.spring(name)] = value
     return replace(system, stiffness=values)
+
+
+def with_proportional_damping(system: System, seconds: float) -> System:
+    """The system with dampers of a time times the stiffness in all springs, as Rayleigh's second.
+
+    A mode of frequency f then has the damping ratio pi f times that time.
+
+    Parameters
+    ----------
+    system : System
+        Without superelements, which have no dampers.
+    seconds : float
+        Damping over stiffness [s].
+
+    Raises
+    ------
+    InputError
+        The time is negative.
+    """
+    if not seconds >= 0:
+        raise InputError(
+            f"damping over stiffness is {seconds:g} s but must be at least 0 s: change it"
+        )
+    return replace(system, damping=seconds * system.stiffness)
+
+
+def without_massless(system: System) -> System:
+    """The system with what has no mass eliminated, which is exact for linear springs.
+
+    Nodes of a shaft without mass follow what they are connected to; nothing may load them.
+    """
+    empty = system.mass.diagonal() <= 0
+    if not empty.any():
+        return system
+    kept, gone = np.flatnonzero(~empty), np.flatnonzero(empty)
+    K = system.K
+    S = np.zeros((len(system.names), len(kept)))
+    S[kept, np.arange(len(kept))] = 1.0
+    held = K[np.ix_(gone, gone)]
+    loose = gone[held.diagonal() <= 0]
+    if loose.size:
+        raise InputError(
+            f"{system.names[int(loose[0])]} has neither mass nor stiffness: give it one, or hold it"
+        )
+    S[gone] = -scaled_solve(held, K[np.ix_(gone, kept)])
+
+    def on(A: Floats) -> Floats:
+        return np.asarray(S.T @ A @ S)
+
+    return replace(
+        system,
+        names=tuple(system.names[int(k)] for k in kept),
+        mass=on(system.mass),
+        gyroscopic=on(system.gyroscopic),
+        centripetal=on(system.centripetal),
+        rows=np.asarray(system.rows @ S),
+        extra=on(system.extra),
+        expansion=np.asarray(system.expansion @ S),
+    )

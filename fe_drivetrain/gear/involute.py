@@ -15,56 +15,11 @@ from dataclasses import dataclass, field
 from math import acos, asin, atan, cos, degrees, hypot, isfinite, pi, radians, sin, sqrt, tan
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-
-
-def involute_of(angle: float | Floats) -> Floats:
-    """Involute function, tan(angle) - angle.
-
-    Parameters
-    ----------
-    angle : float or (n,) array
-        Profile angles [rad].
-
-    Returns
-    -------
-    array
-        Polar angles of the involute's points from its start on the base circle [rad].
-    """
-    return np.asarray(np.tan(angle) - angle, dtype=np.float64)
-
-
-def inverse_involute(value: float) -> float:
-    """Profile angle at which the involute function has a value.
-
-    Parameters
-    ----------
-    value : float
-        Of the involute function [rad], zero or positive.
-
-    Returns
-    -------
-    float
-        Profile angle [rad], below pi/2.
-
-    Raises
-    ------
-    InputError
-        If the value is negative: no profile has it.
-    """
-    if not (isfinite(value) and value >= 0.0):
-        raise InputError(
-            f"an involute function of {value:g}: it is zero or positive; give less negative "
-            "profile shifts"
-        )
-    if value == 0.0:
-        return 0.0
-    # the tangent of the angle lies between these; tan(x) - x < value below, > value above
-    low, high = atan(value), atan(value + pi / 2.0)
-    return float(brentq(lambda x: tan(x) - x - value, low, high, xtol=1e-15, rtol=1e-14))
+from fe_drivetrain.gear.functions import inverse_involute, involute_of, spare_angle_of_tips
+from fe_drivetrain.gear.path import ContactPath
 
 
 @dataclass(frozen=True)
@@ -284,31 +239,6 @@ def _check_numbers(gear: Gear) -> None:
 
 
 @dataclass(frozen=True)
-class ContactPath:
-    """Points of the path of contact, by their distance from T1 [m].
-
-    Attributes
-    ----------
-    start : float
-        A, where the tip of the second gear touches the root of the first.
-    single_start : float
-        B, from which one pair carries alone (E less a base pitch).
-    pitch : float
-        C, the pitch point.
-    single_end : float
-        D, up to which one pair carries alone (A and a base pitch).
-    end : float
-        E, the tip of the first gear.
-    """
-
-    start: float
-    single_start: float
-    pitch: float
-    single_end: float
-    end: float
-
-
-@dataclass(frozen=True)
 class Pair:
     """Two gears in mesh.
 
@@ -344,11 +274,6 @@ class Pair:
     def face_width(self) -> float:
         """Common one: the smaller of both [m]."""
         return min(self.first.face_width, self.second.face_width)
-
-    @property
-    def ratio(self) -> float:
-        """Teeth of the second gear over those of the first, negative with an internal gear."""
-        return self.second.teeth / self.first.teeth
 
     @property
     def signed_base_sum(self) -> float:
@@ -533,10 +458,13 @@ def _check_interference(pair: Pair) -> None:
             f"{1e3 * pair.centre_distance:.6g} mm do not reach each other: give another centre "
             "distance"
         )
-    for name, gear, mate in (("first", first, "second"), ("second", second, "first")):
-        other = second if gear is first else first
-        gap = _radial_clearance(pair, gear, other)
-        if gap < -1e-9 * gear.normal_module:
+    at = second.sign
+    for name, mate, of_both in (
+        ("first", "second", first.root_radius + at * second.tip_radius),
+        ("second", "first", at * second.root_radius + first.tip_radius),
+    ):
+        gap = at * pair.centre_distance - of_both
+        if gap < -1e-9 * first.normal_module:
             raise InputError(
                 f"the tips of the {mate} gear of a pair enter the root circle of the {name} by "
                 f"{-1e3 * gap:.4g} mm: give a larger dedendum, or shorten the tips"
@@ -556,37 +484,11 @@ def _check_interference(pair: Pair) -> None:
             f"second, whose involute begins at {1e3 * second.form_curvature:.4g} mm: shorten the "
             "tips of the first, or shift the second further out"
         )
-    if second.internal and _tip_interference(pair) < 0.0:
+    teeth = (first.teeth, -second.teeth)
+    bases, tips = (first.base_radius, second.base_radius), (first.tip_radius, second.tip_radius)
+    if second.internal and spare_angle_of_tips(teeth, bases, tips, pair.centre_distance) < 0.0:
         raise InputError(
             f"the tips of a pinion of {first.teeth} teeth cut those of an internal gear of "
             f"{-second.teeth} outside the path of contact: give a larger difference of teeth, or "
             "shorten the tips"
         )
-
-
-def _radial_clearance(pair: Pair, gear: Gear, other: Gear) -> float:
-    """From the tips of one gear to the root circle of the other [m]."""
-    if not pair.internal:
-        return pair.centre_distance - gear.root_radius - other.tip_radius
-    if gear.internal:
-        return gear.root_radius - other.tip_radius - pair.centre_distance
-    return other.tip_radius - gear.root_radius - pair.centre_distance
-
-
-def _tip_interference(pair: Pair) -> float:
-    """Spare angle of the pinion's tip corners as they leave an internal gear's space [rad].
-
-    Both tip corners at the crossing of the tip circles: the internal gear's must be ahead (Maitra
-    1994, Handbook of gear design, sec. 2.27).
-    """
-    first, second, a = pair.first, pair.second, pair.centre_distance
-    one, two = first.tip_radius, second.tip_radius
-    if two - one >= a:  # the tip circles do not cross
-        return 0.0
-    at_first = acos((two**2 - one**2 - a**2) / (2.0 * a * one))
-    at_second = acos((two**2 - one**2 + a**2) / (2.0 * a * two))
-    tips = [float(involute_of(acos(g.base_radius / g.tip_radius))) for g in (first, second)]
-    teeth = -second.teeth
-    working = float(involute_of(pair.working_angle))
-    spare = first.teeth * (tips[0] + at_first) - teeth * (tips[1] + at_second)
-    return (spare + (teeth - first.teeth) * working) / teeth

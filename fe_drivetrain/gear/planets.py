@@ -1,17 +1,21 @@
 """What the teeth of a planetary stage fix: where planets fit, and the phases of their meshes.
 
-Phases are in periods of the mesh, between 0 and 1, against those of the first planet. The carrier
-turns positively, the sun with it; planets are counted at their angles in that sense.
+Phases are delays in periods of the mesh, between 0 and 1, against the first planet: the stiffness
+of planet n's mesh at the time t is that of the first planet's at t - phase (Parker and Lin 2004).
+Seen from the carrier the sun turns positively and the ring negatively, as where the ring is held;
+angles of planets are counted in that sense.
 """
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sin, tan
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.gear.functions import involute_of
+from fe_drivetrain.gear.involute import Pair
 
 
 def equally_spaced(sun: int, ring: int, planets: int) -> bool:
@@ -59,7 +63,7 @@ def assembly_positions(sun: int, ring: int, planets: int) -> Floats:
 
 
 def sun_phases(sun: int, ring: int, places: Floats) -> Floats:
-    """Phases of the sun's meshes: how far planet n's is ahead of the first one's.
+    """Phases of the sun's meshes: how far planet n's is behind the first one's.
 
     Parameters
     ----------
@@ -73,16 +77,14 @@ def sun_phases(sun: int, ring: int, places: Floats) -> Floats:
     Returns
     -------
     (n,) array
-        z_s psi / 2 pi, in periods. In the carrier's frame the sun turns positively with a fixed
-        ring: a tooth reaches a planet further on later, so that stiffness there is k(t - phase)
-        with the time in periods (Parker and Lin 2004, whose sign of this case it is).
+        z_s psi / 2 pi, in periods: a tooth of the sun reaches a planet further on later.
     """
     _check_places(sun, ring, places)
     return _whole_apart(sun * np.asarray(places, dtype=np.float64) / (2.0 * pi))
 
 
 def ring_phases(sun: int, ring: int, places: Floats) -> Floats:
-    """Phases of the ring's meshes: as `sun_phases`, the ring turning the other way.
+    """Phases of the ring's meshes, as `sun_phases`; the ring turns the other way.
 
     Parameters
     ----------
@@ -101,6 +103,49 @@ def ring_phases(sun: int, ring: int, places: Floats) -> Floats:
     """
     _check_places(sun, ring, places)
     return _whole_apart(-ring * np.asarray(places, dtype=np.float64) / (2.0 * pi))
+
+
+def ring_after_sun(sun: Pair, ring: Pair) -> float:
+    """Phase of a planet's mesh with the ring against its mesh with the sun.
+
+    Both flanks of the planet's teeth are loaded, one by the sun, the other by the ring, so that it
+    follows from the thickness of its teeth. Each mesh has phase 0 where a pair comes into contact
+    at the start of the path of contact that `Pair.path` has.
+
+    Parameters
+    ----------
+    sun : Pair
+        Sun and planet.
+    ring : Pair
+        The planet and the ring.
+
+    Returns
+    -------
+    float
+        By how much the ring's mesh is behind, in periods, between 0 and 1 (gamma_rs of Parker and
+        Lin 2004, there as a lead).
+
+    Raises
+    ------
+    InputError
+        If the planet of one is not the planet of the other.
+    """
+    planet = ring.first
+    if sun.second != planet:
+        raise InputError(
+            f"the sun meshes with a planet of {sun.second.teeth} teeth, the ring with one of "
+            f"{planet.teeth}: they must be one gear"
+        )
+    pitch, turn = planet.base_pitch, planet.teeth / (2.0 * pi)
+    shifts = 2.0 * planet.shift * tan(planet.pressure_angle)
+    half = (0.5 * pi + shifts) / planet.teeth + float(involute_of(planet.transverse_angle))
+    # places of contact on the planet, from T on its base circle, of a tooth whose middle has turned
+    # to the angle 0 against the line of centres, sun below and ring above
+    at_sun = turn * (sun.working_angle + half - 0.5 * pi) * pitch
+    at_ring = turn * (ring.working_angle + half - 0.5 * pi) * pitch
+    from_sun = sun.centre_distance * sin(sun.working_angle) - at_sun
+    difference = (from_sun - sun.path.start) - (at_ring - ring.path.start)
+    return float(difference / pitch % 1.0)
 
 
 def sequence(sun: int, ring: int, planets: int) -> str:

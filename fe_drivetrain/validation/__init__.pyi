@@ -36,8 +36,10 @@ from . import other_precisions as other_precisions
 from . import patched_interfaces as patched_interfaces
 from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
+from . import plane_teeth as plane_teeth
 from . import pressed_plate as pressed_plate
 from . import published_drivetrains as published_drivetrains
+from . import published_gears as published_gears
 from . import quarter_disc as quarter_disc
 from . import random_shafts as random_shafts
 from . import rigid_ended_shafts as rigid_ended_shafts

@@ -1,0 +1,1 @@
+"""Drivetrains in three dimensions: planetary stages, orders, levels of one machine."""

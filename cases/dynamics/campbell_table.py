@@ -1,0 +1,236 @@
+"""Mesh orders and all crossings with natural frequencies of Al-Hamadani's drivetrains A to D."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import InputError
+from fe_drivetrain.dynamics import (
+    Crossing,
+    absolute_sun_orders,
+    check_assembly,
+    crossings,
+    equal_angles,
+    excited_motion,
+    mesh_orders,
+)
+from fe_drivetrain.gear import equally_spaced, sequence, sun_phases
+from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import gear_masses, natural_modes
+from fe_drivetrain.validation import published_drivetrains as published
+
+TABLE_4_8 = {"A": ("146", "730"), "B": ("154", "707.259", "2419.575"), "C": ("174", "648", "2664")}
+#: Least, rated and largest speed of the rotor [rpm], Table 4.1.
+SPEEDS = {
+    "A": (8.6, 14.8, 18.4),
+    "B": (8.6, 16.1, 18.4),
+    "C": (10.8, 16.0, 19.1),
+    "D": (14.8, 18.6, 22.1),
+}
+Stages = list[tuple[str, tuple[int, int]]]
+
+
+class Train(NamedTuple):
+    """A drivetrain: kinds and teeth of its stages, and frequencies as printed and of its inputs."""
+
+    stages: Stages
+    printed: tuple[float, ...]
+    computed: tuple[float, ...]
+
+
+def trains() -> dict[str, Train]:
+    """Teeth of Table 4.7 (of D, of public drawings), frequencies of Tables 6.4 and 6.1 [Hz]."""
+    found = {}
+    for letter, printed in published.OTHERS.items():
+        table = published.table(f"drivetrain_{letter.lower()}")
+        stages = [(s.kind, s.teeth) for s in table.stages if s.teeth]
+        modes = natural_modes(gear_masses(table, "free"))
+        computed = modes.frequencies[published.observable(modes)]
+        found[letter] = Train(
+            [(kind, (a, b)) for kind, (a, b) in stages],
+            tuple(float(f) for f in printed[1:]),
+            tuple(float(f) for f in computed[1:]),
+        )
+    teeth: Stages = [("planetary", (99, 21)), ("parallel", (82, 23)), ("parallel", (88, 22))]
+    modes = natural_modes(gear_masses(published.table("nrel_750kw"), "free"))
+    computed = modes.frequencies[published.observable(modes)]
+    own = tuple(float(f) for f in published.ELEVEN["free"][1:])
+    return {**found, "D": Train(teeth, own, tuple(float(f) for f in computed[1:]))}
+
+
+@case(
+    "Mesh orders of drivetrains A to D, as printed and right, and all their crossings",
+    source="Al-Hamadani 2018, Tables 4.1, 4.7, 4.8, 6.1 and 6.4, section 6.2.2",
+)
+def run(run: Run, page: Page) -> None:
+    """What Table 4.8 is, what it should be, and which crossings change with it."""
+    found = trains()
+    rows: list[Record] = []
+    for letter, train in found.items():
+        right, printed = mesh_orders(train.stages), absolute_sun_orders(train.stages)
+        check_orders(page, letter, train, right, printed)
+        for number, name in enumerate(right):
+            kind, (large, small) = train.stages[number]
+            rows.append(
+                {
+                    "drivetrain": letter,
+                    "stage": name,
+                    "kind": kind,
+                    "teeth": f"{large}/{small}",
+                    "Table 4.8": TABLE_4_8[letter][number] if letter in TABLE_4_8 else "",
+                    "ring and sun together": round(printed[name], 3),
+                    "right": round(right[name], 3),
+                    "printed over right": round(printed[name] / right[name], 3),
+                }
+            )
+    page.section("Orders of the rotor's speed")
+    page.table("Mesh frequencies over the rotor's", rows)
+    page.text(
+        "The mesh frequency of a planetary stage with its ring standing is the ring's teeth times "
+        "the carrier's speed, which equals the sun's teeth times its speed against the carrier. "
+        "Table 4.8 has the sun's teeth times its absolute speed: it counts the carrier's turn, too."
+    )
+    counts = show_crossings(page, found)
+    show_assembly(page, found)
+    page.answer(
+        "Table 4.8 is too high for all planetary stages, by 18 to 21 %: it counts the teeth of "
+        "ring and sun together where the ring's alone pass the planets.",
+        f"With the right orders there are {counts['right']} crossings of the first three harmonics "
+        f"within the speed ranges of A, B, C and D, with the printed ones {counts['printed']}.",
+        "Three of the five planetary stages of A, B and C cannot be put together with three "
+        "planets at equal angles.",
+    )
+
+
+def check_orders(
+    page: Page, letter: str, train: Train, right: dict[str, float], printed: dict[str, float]
+) -> None:
+    """The print is ring and sun together; ring and sun sides of the right order agree."""
+    for number, name in enumerate(right):
+        if letter in TABLE_4_8:
+            digits = TABLE_4_8[letter][number]
+            page.equals(
+                f"{letter}, {name}: order as Table 4.8 counts it",
+                printed[name],
+                float(digits),
+                within=5e-6,
+                why="the print has ratios rounded to their third digit",
+                source="Al-Hamadani 2018, Table 4.8",
+            )
+        kind, (large, small) = train.stages[number]
+        if kind == "planetary":
+            before = right[name] / large
+            ratio = 1 + large / small
+            page.equals(
+                f"{letter}, {name}: order from the sun's side",
+                small * (ratio - 1) * before,
+                right[name],
+                within=1e-12,
+                why="round-off; the sun's teeth times its speed against the carrier",
+                source="kinematics",
+                basis="self-consistency",
+            )
+
+
+def show_crossings(page: Page, found: dict[str, Train]) -> dict[str, int]:
+    """Tables and charts of each drivetrain; how many crossings there are either way."""
+    counts = {"right": 0, "printed": 0}
+    for letter, train in found.items():
+        page.section(f"Drivetrain {letter}")
+        low, rated, high = SPEEDS[letter]
+        right = crossings(train.printed, mesh_orders(train.stages), (low, high))
+        other = crossings(train.printed, absolute_sun_orders(train.stages), (low, high))
+        own = crossings(train.computed, mesh_orders(train.stages), (low, high))
+        counts["right"] += len(right)
+        counts["printed"] += len(other)
+        keys = sorted({key(c) for c in (*right, *other, *own)})
+        by_right, by_other, by_own = ({key(c): c for c in group} for group in (right, other, own))
+        rows: list[Record] = []
+        for order, harmonic, mode in keys:
+            at = (order, harmonic, mode)
+            rows.append(
+                {
+                    "stage": order,
+                    "harmonic": harmonic,
+                    "frequency as printed [Hz]": train.printed[mode],
+                    "speed by the orders of Table 4.8 [rpm]": speed(by_other.get(at)),
+                    "speed, right [rpm]": speed(by_right.get(at)),
+                    "right, with the frequency of the inputs [rpm]": speed(by_own.get(at)),
+                }
+            )
+        if rows:
+            page.table(
+                f"Crossings between {low} and {high} rpm (rated {rated}); empty: outside the range",
+                rows,
+            )
+        else:
+            page.text("No crossing within the range of speeds.")
+        page.data(f"crossings_{letter}", rows)
+        traces = []
+        for name, turns in mesh_orders(train.stages).items():
+            for harmonic in (1, 2, 3):
+                ends = [turns * harmonic * s / 60 for s in (low, high)]
+                traces.append(trace(f"{name} x{harmonic}", [low, high], ends))
+        for number, frequency in enumerate(train.printed):
+            if frequency < 1.1 * max(t["y"][1] for t in traces):
+                traces.append(
+                    trace(f"mode {number + 1}", [low, high], [frequency] * 2, line={"dash": "dot"})
+                )
+        traces.append(crosses("crossings", [c.speed for c in right], [c.frequency for c in right]))
+        page.chart(
+            "Right mesh orders (lines) and natural frequencies (dotted)",
+            traces,
+            "rotor [rpm]",
+            "frequency [Hz]",
+            ("y",),
+        )
+    return counts
+
+
+def key(crossing: Crossing) -> tuple[str, int, int]:
+    """What tells crossings apart."""
+    return crossing.order, crossing.harmonic, crossing.mode
+
+
+def speed(crossing: Crossing | None) -> float | None:
+    """[rpm], where there is one."""
+    return None if crossing is None else round(crossing.speed, 2)
+
+
+def show_assembly(page: Page, found: dict[str, Train]) -> None:
+    """Which planetary stages can be put together, and what their meshes excite."""
+    page.section("Assembly and phases")
+    rows: list[Record] = []
+    refused = []
+    for letter, train in found.items():
+        for number, (kind, (ring, sun)) in enumerate(train.stages, start=1):
+            if kind != "planetary":
+                continue
+            try:
+                check_assembly(f"stage {number} of {letter}", sun, ring, 3)
+                reason = "can be put together"
+            except InputError as error:
+                reason = str(error)
+                refused.append((letter, number))
+            fits = equally_spaced(sun, ring, 3)
+            phases = sun_phases(sun, ring, np.array(equal_angles(3))) if fits else np.zeros(0)
+            rows.append(
+                {
+                    "drivetrain": letter,
+                    "stage": number,
+                    "(z_s + z_r) / 3": round((sun + ring) / 3, 2),
+                    "phases of the sun's meshes": ", ".join(f"{p:.2f}" for p in phases),
+                    "sequence": sequence(sun, ring, 3) if fits else "",
+                    "first harmonic gives the sun a": excited_motion(sun, 3) if fits else "",
+                    "verdict": reason,
+                }
+            )
+    page.holds(
+        "stage 1 of A and stages 1 and 2 of B cannot be put together",
+        refused == [("A", 1), ("B", 1), ("B", 2)],
+        why="a model in three dimensions with equal planets would be of no machine",
+        source="(z_s + z_r) / N is no integer: 48.67, 51.33 and 41.33",
+    )
+    page.table("Three planets at equal angles", rows)

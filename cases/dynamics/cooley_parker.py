@@ -1,0 +1,112 @@
+"""A planetary stage that turns fast: Cooley and Parker 2012, at rest and with gyroscopic terms."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.dynamics import (
+    distinct,
+    divergence_speeds,
+    system_modes,
+    turning_modes,
+)
+from fe_drivetrain.report import crosses
+from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation.published_planetary import (
+    COOLEY_PARKER,
+    COOLEY_PARKER_PRINTED,
+    COOLEY_PARKER_STAGE,
+    plane_system,
+    printed_values,
+)
+
+CENTRAL = ("carrier", "ring", "sun")
+UNIT = float(np.sqrt(COOLEY_PARKER_STAGE.pin / COOLEY_PARKER_STAGE.masses[3]))  # rad/s
+
+
+@case(
+    "A planetary stage that turns fast: frequencies at rest, and what the turning frame adds",
+    source="Cooley and Parker 2012, J. Vib. Acoust. 134, 061014; Lin and Parker 1999, Eq 1",
+)
+def run(run: Run, page: Page) -> None:
+    """Frequencies at rest against the print; pairs that part, and speeds of divergence."""
+    for planets in (3, 4, 5):
+        with run.step(f"{planets} planets at rest"):
+            found = 2 * np.pi * system_modes(plane_system(COOLEY_PARKER_STAGE, planets)).frequencies
+        printed = printed_values(COOLEY_PARKER_PRINTED[planets], planets)
+        page.vanishes(
+            f"{planets} planets at rest: largest relative difference from the print",
+            float(np.abs(found / UNIT / printed - 1).max()),
+            within=5e-4,
+            why="four digits are printed, of the smallest 0.6992: 0.7 in ten thousand, and inputs "
+            "of three digits",
+            source=COOLEY_PARKER,
+            basis="second-hand",
+        )
+    system = plane_system(COOLEY_PARKER_STAGE, 5)
+    with run.step("speeds"):
+        limits = divergence_speeds(system) / UNIT
+        speeds = np.linspace(0.0, 1.2 * limits[0], 13 if run.quick else 61)
+        modes = [turning_modes(system, s * UNIT, damped=False) for s in speeds]
+    check_turning(page, limits[0])
+    page.answer(
+        "At rest the printed frequencies come out to their four digits.",
+        "In the frame of the carrier Coriolis terms part every pair of translational modes in "
+        "proportion to the speed, and leave the planet modes, in which the central bodies stand "
+        f"still, N - 3 fold. The first frequency is zero at {limits[0]:.4f} of sqrt(k_p / m_p).",
+    )
+    page.section("Frequencies by speed")
+    x = np.concatenate([np.full(len(m.frequencies), s) for s, m in zip(speeds, modes, strict=True)])
+    y = np.concatenate([2 * np.pi * m.frequencies / UNIT for m in modes])
+    page.chart(
+        "Frequencies seen from the carrier, five planets, against its speed",
+        [crosses("modes", x[y < 2.5], y[y < 2.5])],
+        "speed of the carrier over sqrt(k_p / m_p)",
+        "frequency over sqrt(k_p / m_p)",
+    )
+    page.data("divergence_speeds", limits)
+    page.text(
+        "The paper's figures at speed were not found with numbers: what is checked there are "
+        "consequences of its equations, M q'' + W G q' + (K - W^2 Z) q = 0."
+    )
+
+
+def check_turning(page: Page, first: float) -> None:
+    """Perturbation, multiplicities, and the static speed, each by a way of its own."""
+    three = plane_system(COOLEY_PARKER_STAGE, 3)
+    pair = system_modes(three).shapes[:, :2]
+    expected = float(abs(pair[:, 0] @ three.gyroscopic @ pair[:, 1]))
+    found = turning_modes(three, 1.0).eigenvalues.imag
+    page.equals(
+        "three planets: parting of the first pair by speed",
+        float(found[1] - found[0]),
+        expected,
+        within=1e-4,
+        why="the next order of perturbation is the speed over the frequency, 1 in 2000",
+        source="first-order perturbation, phi_1^T G phi_2, of the modes at rest",
+    )
+    five = plane_system(COOLEY_PARKER_STAGE, 5)
+    turning = turning_modes(five, 0.2 * UNIT)
+    central = [k for k, name in enumerate(five.names) if name.rpartition(" ")[0] in CENTRAL]
+    still = np.abs(turning.shapes[central]).max(axis=0) < 1e-6
+    groups = distinct(turning.frequencies[still], 1e-6)
+    page.holds(
+        "five planets at speed: three planet modes, each twice, central bodies at rest",
+        [count for _, count in groups] == [2, 2, 2],
+        why="the Coriolis terms of equal planets have the same symmetry as their springs",
+        source="Cooley and Parker 2012, on planet modes",
+    )
+    moving = turning.frequencies[~still]
+    page.holds(
+        "five planets at speed: no other frequency is there twice",
+        len(distinct(moving, 1e-6)) == len(moving),
+        why="forward and backward whirls are seen at different frequencies",
+        source="Cooley and Parker 2012, on translational modes",
+    )
+    near = turning_modes(five, first * UNIT * (1 - 1e-3)).frequencies[0]
+    page.vanishes(
+        "lowest frequency a thousandth below the divergence speed, over that at rest",
+        float(near / turning_modes(five, 0.0).frequencies[0]),
+        within=5e-3,
+        why="the backward whirl goes through zero there, in proportion to the distance",
+        source="det(K - W^2 Z) = 0, an eigenproblem of its own",
+    )

@@ -1,0 +1,253 @@
+"""One drivetrain as torsional, rigid and flexible model: what each level answers, and its cost."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.fidelity.component_page import COARSER, coarser
+from fe_drivetrain.dynamics import (
+    QUESTIONS,
+    RUNGS,
+    Answer,
+    Flexible,
+    Housing,
+    Level,
+    Machine,
+    Operation,
+    Rung,
+    direction_kinds,
+    ladder,
+    library_machine,
+    machine_system,
+    needed_level,
+    system_modes,
+    torsional,
+    turning_modes,
+)
+from fe_drivetrain.fidelity import solid_component
+from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
+from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
+from fe_drivetrain.report import trace
+from fe_drivetrain.scene import CarrierComponent, HousingComponent, library_component
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
+from fe_drivetrain.validation import published_drivetrains as published
+
+#: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
+OPERATIONS = {
+    "nrel_5mw": Operation(3.946e6, 2.0e6),
+    "nrel_750kw": Operation(3.25e5, 3.0e5),
+    "synthetic_2mw": Operation(1.055e6, 1.0e6),
+}
+TOLERANCE = 0.05
+FIRST = "first torsional frequency [Hz]"
+
+
+@case(
+    "Levels of one drivetrain: torsional, rigid bodies, flexible shafts",
+    source="Al-Hamadani 2018, chapters 4 and 5; Nejad et al. 2016 for the 5 MW gearbox",
+)
+def run(run: Run, page: Page) -> None:
+    """Tables recovered, answers of each level beside its cost, and which level is needed."""
+    recover(run, page)
+    needed: list[Record] = []
+    for name, operation in OPERATIONS.items():
+        machine = library_machine(name)
+        rungs = [*RUNGS, *more_rungs(run, name)]
+        with run.step(f"ladder of {name}"):
+            answers = ladder(machine, operation, rungs)
+        page.section(machine.title)
+        rows: list[Record] = []
+        finest = answers[-1].values
+        for answer in answers:
+            row: Record = {
+                "level": answer.name,
+                "degrees of freedom": answer.degrees,
+                "time [s]": round(answer.seconds, 2),
+            }
+            for question, value in answer.values.items():
+                row[question] = value
+                best = finest[question]
+                row[f"error of {question.partition(' [')[0]} [%]"] = (
+                    None if value is None or best is None else 100 * (value / best - 1)
+                )
+            rows.append(row)
+        page.table("Answers, and their differences from the finest level", rows)
+        page.data(f"ladder_{name}", rows)
+        page.chart(
+            "Difference from the finest level against the time that a level takes",
+            error_curves(answers),
+            "time [s]",
+            "difference [%]",
+            ("x", "y"),
+        )
+        for question in QUESTIONS:
+            level = needed_level(answers, question, TOLERANCE)
+            needed.append({"drivetrain": name, "question": question, "level": level})
+        first = [float(a.values[FIRST] or 0.0) for a in answers]
+        page.holds(
+            f"{name}: the first torsional frequency falls as more may move",
+            first[0] >= first[1] * (1 - 1e-9),
+            why="what is let go adds compliance",
+            source="Rayleigh's principle of constraints",
+        )
+        show_modes(page, machine)
+        show_turning(page, name, machine)
+        if name == "nrel_5mw":
+            stiffness_of_5mw(page)
+        for text in machine.assumed:
+            page.assume(f"{name}: {text.partition(':')[0]}", "", "", text)
+    page.section("Which level a question needs")
+    page.table(f"The simplest level within {100 * TOLERANCE:g} % of the finest", needed)
+    page.text(
+        "Torsional frequencies need a torsional model, and loads of bearings, of planets and along "
+        "the face rigid bodies at least: a torsional one has no answer. Times are of this run."
+    )
+    page.answer(
+        "All levels are one assembly: the torsional tables come back to round-off from it.",
+        "The 5 MW gearbox, within 5 % of the finest level: "
+        + "; ".join(
+            f"{str(row['question']).partition(' [')[0]}: {row['level']}"
+            for row in needed[: len(QUESTIONS)]
+        )
+        + ".",
+    )
+
+
+def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
+    """One curve a question: time and difference from the finest of the levels that answer it."""
+    curves = []
+    for question, finest in answers[-1].values.items():
+        points = [
+            (answer.seconds, 100 * abs(value / finest - 1))
+            for answer in answers[:-1]
+            if finest and (value := answer.values[question]) is not None
+        ]
+        shown = [(t, e) for t, e in points if e > 1e-6]
+        curves.append(
+            trace(
+                question.partition(" [")[0],
+                [t for t, _ in shown],
+                [e for _, e in shown],
+                mode="lines+markers",
+            )
+        )
+    return curves
+
+
+def more_rungs(run: Run, name: str) -> list[Rung]:
+    """Flexible carrier of the 5 MW gearbox, of beams and of finite elements; housing of C."""
+    found = []
+    if name == "nrel_5mw":
+        component = library_component("planet_carrier")
+        assert isinstance(component, CarrierComponent)
+        with run.step("carrier of beams"):
+            beams = Flexible({1: carrier_frame(component)})
+        found.append(Rung(Level.FLEXIBLE, beams, "flexible shafts, carrier of beams"))
+        if not run.quick:
+            with run.step("carrier of finite elements"):
+                solid = solid_component(coarser(component, COARSER[0]))
+            elements = Flexible({1: solid.body})
+            found.append(Rung(Level.FLEXIBLE, elements, "flexible shafts, carrier of FE"))
+    if name == "synthetic_2mw":
+        housing = library_component("gearbox_housing")
+        assert isinstance(housing, HousingComponent)
+        body = housing_frame(housing, True)
+        spring = stiffness_on_supports(body, housing.supports, ["ring"])
+        x = library_machine(name).axes[1][0]
+        mass = float(np.abs(body.gravity[::6, 0]).sum())
+        own = Housing((x, 0.0, 0.0), spring, mass, mass * 0.86**2, mass * 0.86**2 / 2)
+        arms = Flexible(housing=own)
+        found.append(Rung(Level.FLEXIBLE, arms, "flexible shafts, housing on torque arms"))
+    return found
+
+
+def recover(run: Run, page: Page) -> None:
+    """The standing tables of C and D from the assembly in three dimensions, all else held."""
+    for name, table, state in (
+        ("synthetic_2mw", published.table("drivetrain_c"), "free"),
+        ("nrel_750kw", with_teeth(published.table("nrel_750kw")), "fixed"),
+    ):
+        with run.step(f"torsional level of {name}"):
+            data = library_machine(name).model_dump(exclude_none=True)
+            data["stages"][0]["planet"]["mass"] = 0.0  # in the table's carrier already
+            found = natural_modes(torsional(Machine.model_validate(data))).frequencies
+        expected = natural_modes(gear_masses(table, "free" if state == "free" else "fixed"))
+        moving = expected.frequencies > 0
+        page.vanishes(
+            f"{name}: torsional level against the gear table, relative difference",
+            float(np.abs(found[moving] / expected.frequencies[moving] - 1).max()),
+            within=1e-12,
+            why="round-off: rows of lines of action in place of ratios of radii",
+            source="gear_masses of Table 4.3, and of Table 4.2 with the teeth in place of ratios",
+        )
+
+
+def stiffness_of_5mw(page: Page) -> None:
+    """Beside the torsional spring of the turbine that the gearbox was designed for."""
+    machine = library_machine("nrel_5mw")
+    found = torsional(machine)
+    stiffness = static_stiffness(found, "rotor", "generator") / 1e6
+    first = natural_modes(found).frequencies[1]
+    generator = machine.speeds[-1] ** 2 * machine.generator.inertia
+    both = 1 / machine.rotor.inertia + 1 / generator
+    two = float(np.sqrt(1e6 * stiffness * both) / (2 * np.pi))
+    page.text(
+        f"From rotor to held generator the 5 MW table has {stiffness:.1f} MN m/rad in torsion, and "
+        f"{first:.3f} Hz with both ends free. The turbine's shaft is given 867.637 MN m/rad "
+        "(Jonkman 2009, NREL/TP-500-38060), and 2.18 Hz with two masses of the same rotor and "
+        f"generator. With these inertias alone it would be {two:.2f} Hz here; the rest, down to "
+        f"{first:.2f} Hz, is that of the gearbox's own inertias."
+    )
+    page.data("nrel_5mw_stiffness_MN_m_per_rad", stiffness)
+
+
+def with_teeth(table: Drivetrain) -> Drivetrain:
+    """Table 4.2 with the teeth that its ratios are rounded from."""
+    data = table.model_dump(exclude_none=True)
+    for stage, teeth in zip(data["stages"], ((99, 21), (82, 23), (88, 22)), strict=True):
+        del stage["ratio"]
+        stage["teeth"] = teeth
+    return Drivetrain.model_validate(data)
+
+
+RPM = {"nrel_5mw": 12.1, "nrel_750kw": 22.1, "synthetic_2mw": 18.1}
+
+
+def show_turning(page: Page, name: str, machine: Machine) -> None:
+    """What spinning adds to the frequencies at rated speed, by the gyroscopic terms."""
+    system = machine_system(machine, Level.RIGID)
+    at_rest = turning_modes(system, 0.0, damped=False).frequencies
+    turning = turning_modes(system, RPM[name] * 2 * np.pi / 60, damped=False).frequencies
+    count = min(len(at_rest), len(turning))
+    change = float(np.abs(turning[-count:] / at_rest[-count:] - 1).max())
+    page.data(f"gyroscopic_change_{name}", change)
+    page.text(
+        f"At {RPM[name]} rpm of the rotor the gyroscopic terms of all spinning bodies change no "
+        f"frequency by more than {100 * change:.2g} %."
+    )
+
+
+def show_modes(page: Page, machine: Machine) -> None:
+    """The first modes with flexible shafts: kind, and where the energy is."""
+    system = machine_system(machine, Level.FLEXIBLE)
+    modes = system_modes(system)
+    kinds = direction_kinds(system, modes)
+    rows: list[Record] = []
+    for number in range(14):
+        kinetic, strain = modes.kinetic_shares[:, number], modes.strain_shares[:, number]
+        rows.append(
+            {
+                "frequency [Hz]": float(modes.frequencies[number]),
+                "kind": kinds[number],
+                "most kinetic energy": system.bodies[int(kinetic.argmax())],
+                "its share": float(kinetic.max()),
+                "most strain energy": system.spring_names[int(strain.argmax())]
+                if strain.max() > 0
+                else "none",
+                "share of it": float(strain.max()),
+            }
+        )
+    page.table("The first modes with flexible shafts", rows)

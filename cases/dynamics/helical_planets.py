@@ -1,0 +1,72 @@
+"""Helical planets in three dimensions: kinds of modes, and how often each is there."""
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.dynamics import distinct, planetary_kinds, system_modes
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.published_planetary import helical_system
+
+CENTRAL = ("carrier", "ring", "sun")
+
+
+@case(
+    "Helical planets in three dimensions: rotational-axial, translational-tilting, planet modes",
+    source="Eritenel and Parker 2009, J. Sound Vib. 325, 397-420",
+)
+def run(run: Run, page: Page) -> None:
+    """Count the modes of each kind with three to six planets, and show the frequencies."""
+    rows: list[Record] = []
+    for planets in (3, 4, 5, 6):
+        with run.step(f"{planets} planets"):
+            system = helical_system(planets)
+            modes = system_modes(system)
+            kinds = planetary_kinds(system, modes, CENTRAL)
+        counts = {kind: kinds.count(kind) for kind in ("rotational", "translational", "planet")}
+        page.holds(
+            f"{planets} planets: 12 rotational-axial modes, 12 pairs of translational-tilting "
+            f"ones, 6 planet modes {planets - 3} times each",
+            counts == {"rotational": 12, "translational": 24, "planet": 6 * (planets - 3)},
+            why="else the assembly would not have the symmetry of equal planets",
+            source="Eritenel and Parker 2009, section 4",
+        )
+        start = 0
+        for frequency, times in distinct(modes.frequencies, 1e-7):
+            energy = modes.kinetic_shares[:, start]
+            most = int(energy.argmax())
+            rows.append(
+                {
+                    "planets": planets,
+                    "kind": kinds[start],
+                    "times": times,
+                    "frequency [Hz]": round(frequency, 2),
+                    "most kinetic energy in": system.bodies[most].rpartition(" ")[0]
+                    if "planet" in system.bodies[most]
+                    else system.bodies[most],
+                    "share": round(float(energy[most]), 3),
+                }
+            )
+            start += times
+    middle = helical_system(3, offset=0.0)
+    kinds = planetary_kinds(middle, system_modes(middle), CENTRAL)
+    page.holds(
+        "planets in the very middle of their bearings: one of the twelve is the planets' alone",
+        (kinds.count("rotational"), kinds.count("planet")) == (11, 1),
+        why="planets that tilt in step about their radii push neither sun nor ring",
+        source="symmetry of a mesh about the middle of its face",
+    )
+    page.answer(
+        "Helical planets in three dimensions have twelve rotational-axial modes, twelve pairs of "
+        "translational-tilting ones, and six planet modes N - 3 times each, as proved for equal, "
+        "equally spaced planets.",
+        "With bearings in the middle of the faces one more symmetry leaves the central bodies at "
+        "rest in one of the twelve.",
+    )
+    page.section("Modes")
+    page.table("Each frequency of the assumed stage, and where its energy is", rows)
+    page.assume(
+        "helix, face width, stiffness along the axis and against tilt",
+        "20 deg, 30 mm, 5e7 N/m, 1e8 N/m on the radius",
+        "",
+        "the stage has the other numbers of Lin and Parker 1999; kinds and numbers of modes do not "
+        "depend on them",
+    )
+    page.data("frequencies", rows)

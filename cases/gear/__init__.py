@@ -1,0 +1,1 @@
+"""Involute gears by themselves: geometry, stiffness of teeth in mesh."""

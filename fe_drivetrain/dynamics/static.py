@@ -1,0 +1,199 @@
+"""Statics: spring forces under loads and with gaps, contacts that only press, over a turn."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
+from fe_drivetrain.dynamics.system import System
+
+#: Of the stiffness on a unit diagonal: an eigenvalue below is that of a free motion.
+FREE = 1e-12
+
+
+@dataclass(frozen=True)
+class Static:
+    """An equilibrium.
+
+    Attributes
+    ----------
+    system : System
+        That it is of.
+    q : Floats
+        (n,) [m, rad].
+    forces : Floats
+        (m,) of the springs, positive where they are stretched, which presses a mesh [N, N m].
+    closed : Bools
+        (m,) the springs that carry; False of contacts that are apart.
+    """
+
+    system: System
+    q: Floats
+    forces: Floats
+    closed: Bools
+
+    def force(self, name: str) -> float:
+        """Of a spring, or of all slices of a mesh.
+
+        Raises
+        ------
+        InputError
+            There is no such spring.
+        """
+        names = self.system.spring_names
+        chosen = [k for k, n in enumerate(names) if n == name or n.startswith(f"{name} slice ")]
+        if not chosen:
+            raise InputError(f"no spring {name!r}: use one of {', '.join(names[:40])}")
+        return float(self.forces[chosen].sum())
+
+
+def static(
+    system: System,
+    load: Floats,
+    gaps: Mapping[str, float] | None = None,
+    contacts: Sequence[str] = (),
+) -> Static:
+    """Equilibrium of K q = f, springs being short of contact by a gap each.
+
+    The force of a spring is ``k (h . q - gap)``; one that is a contact is apart while this would
+    pull. Which contacts are closed is found by opening all that pull and closing all that overlap,
+    until none does: the energy is convex, so that this equilibrium is the only one.
+
+    Parameters
+    ----------
+    system : System
+        With springs that hold every motion.
+    load : ndarray, (n,)
+        Generalised [N, N m].
+    gaps : mapping of str to float
+        Of springs by name [m, rad]; negative of one that presses before the load comes.
+    contacts : sequence of str
+        Names of the springs that only press.
+
+    Raises
+    ------
+    InputError
+        Something moves freely, a name is no spring, or the contacts do not settle.
+    """
+    short = np.zeros(len(system.spring_names))
+    for name, gap in (gaps or {}).items():
+        short[system.spring(name)] = gap
+    one_sided = np.zeros(len(short), dtype=bool)
+    one_sided[[system.spring(name) for name in contacts]] = True
+    closed = np.ones(len(short), dtype=bool)
+    tried: set[bytes] = set()
+    while True:
+        tried.add(closed.tobytes())
+        k = np.where(closed, system.stiffness, 0.0)
+        K = system.rows.T @ (k[:, None] * system.rows) + system.extra
+        q = _solved(system, K, load + system.rows.T @ (k * short))
+        stretch = system.rows @ q - short
+        tiny = 1e-12 * float(np.abs(stretch).max(initial=0.0))
+        wanted = np.where(one_sided, stretch > -tiny, True)
+        if np.array_equal(wanted, closed):
+            return Static(system, q, k * stretch, closed)
+        closed = wanted
+        if closed.tobytes() in tried:
+            raise InputError(
+                "the contacts of the system do not settle: the same ones open and close in turn; "
+                "give the bodies that they hold a weak bearing, or less load"
+            )
+
+
+def _solved(system: System, K: Floats, f: Floats) -> Floats:
+    root = diagonal_roots(np.where(K.diagonal() > 0, K.diagonal(), 1.0))
+    loose = np.flatnonzero(K.diagonal() <= 0)
+    scaled = scaled_to_unit_diagonal(K, root**2)
+    values, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
+    if loose.size or values[0] < FREE:
+        moving = int(loose[0]) if loose.size else int(np.abs(vectors[:, 0]).argmax())
+        raise InputError(
+            f"{system.names[moving]} can move freely, so that there is no equilibrium: hold it, or "
+            "give it a spring"
+        )
+    right = f / root
+    q = vectors @ ((vectors.T @ right) / values)
+    q += vectors @ ((vectors.T @ (right - scaled @ q)) / values)
+    return np.asarray(q / root)
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Equilibria over one turn of a carrier.
+
+    Attributes
+    ----------
+    azimuths : Floats
+        (s,) of the carrier [rad].
+    spring_names : tuple[str, ...]
+        (m,).
+    forces : Floats
+        (s, m) of the springs [N, N m].
+    """
+
+    azimuths: Floats
+    spring_names: tuple[str, ...]
+    forces: Floats
+
+    def of(self, name: str) -> Floats:
+        """(s,) force of a spring, or of all slices of a mesh.
+
+        Raises
+        ------
+        InputError
+            There is no such spring.
+        """
+        chosen = [
+            k
+            for k, n in enumerate(self.spring_names)
+            if n == name or n.startswith(f"{name} slice ")
+        ]
+        if not chosen:
+            raise InputError(f"no spring {name!r}: use one of {', '.join(self.spring_names[:40])}")
+        return np.asarray(self.forces[:, chosen].sum(axis=1))
+
+    def resultant(self, name: str) -> Floats:
+        """(s,) radial load of a bearing, by its springs NAME uy and NAME uz [N]."""
+        return np.hypot(self.of(f"{name} uy"), self.of(f"{name} uz"))
+
+    def amplitudes(self, values: Floats) -> Floats:
+        """Of the orders 0P, 1P and so on, of values at equal steps of one turn."""
+        found = np.abs(np.fft.rfft(values)) / len(values)
+        found[1:] *= 2
+        return np.asarray(found)
+
+
+def over_a_turn(
+    at: Callable[[float], System],
+    loads: Callable[[System], Floats],
+    azimuths: Floats,
+    gaps: Mapping[str, float] | None = None,
+    contacts: Sequence[str] = (),
+) -> Turn:
+    """Equilibria with the carrier at one azimuth after the other, inertia left out.
+
+    Parameters
+    ----------
+    at : callable
+        From the azimuth [rad] to the system in the frame that stands still.
+    loads : callable
+        From that system to its load (n,), such as gravity, torque and hub moments.
+    azimuths : ndarray, (s,)
+        Equally spaced over a turn, its end left out [rad].
+    gaps, contacts : mapping, sequence
+        As of `static`.
+    """
+    forces, names = [], None
+    for azimuth in azimuths:
+        system = at(float(azimuth))
+        forces.append(static(system, loads(system), gaps, contacts).forces)
+        names = system.spring_names
+    return Turn(np.asarray(azimuths, dtype=float), names or (), np.array(forces))
+
+
+def load_sharing(forces: Floats) -> float:
+    """K_gamma: the largest load of a planet over the mean."""
+    return float(np.max(forces) / np.mean(forces))
