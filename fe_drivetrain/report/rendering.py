@@ -41,7 +41,7 @@ def templates() -> jinja2.Environment:
         finalize=lambda value: _printed(value) if type(value) is str else value,
     )
     shared: dict[str, Callable[..., str]] = {
-        "seconds": lambda s: f"{s:.3g}" if abs(s) < 1000 else f"{s:.0f}",
+        "seconds": _seconds,
         "percent": lambda share: formatted(100 * share, 3),
         "cell": formatted,
         "band": band_text,
@@ -68,6 +68,12 @@ def policy_hash(script: str) -> Markup:
     """How a content-security policy names a script that stands on the page."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return Markup(f"'sha256-{digest}'")
+
+
+def _seconds(seconds: float) -> str:
+    if 0.0 < seconds < 0.01:
+        return "<\u00a00.01"
+    return f"{seconds:.3g}" if seconds < 1000 else f"{seconds:.0f}"
 
 
 def _printed(text: str) -> str:
