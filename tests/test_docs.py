@@ -69,3 +69,14 @@ def test_the_example_of_load_histories_runs_and_the_mapping_is_valid(tmp_path: P
     assert mapping.rotating
     for key in ChannelMap.model_fields:
         assert f"`{key}`" in text or f"{key}:" in text
+
+
+def test_the_example_of_gear_rating_runs() -> None:
+    text = (ROOT / "docs" / "gear_rating.md").read_text(encoding="utf-8")
+    code = re.search(r"```python\n(.*?)```", text, re.DOTALL).group(1)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    K_Hbeta, S_H, flank, back = (float(x) for x in done.stdout.split())
+    assert 1.0 < K_Hbeta < 2.0
+    assert S_H > 1.0
+    assert flank > back >= 0.0

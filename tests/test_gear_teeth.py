@@ -170,7 +170,12 @@ def test_bodies_couple_two_pairs_in_contact(meshed: MeshedPair) -> None:
     assert coupled[~two] == pytest.approx(apart[~two])
     assert (coupled[two] < 0.9 * apart[two]).all()
     single = meshed.single(LOAD)
-    assert apart[0] == pytest.approx(single[0] + single[8], rel=5e-4)  # one mesh a tooth
+    # each tooth has a mesh of its own, and these differ by so much
+    own = np.arange(len(meshed.places))
+    bodies = (meshed.first, meshed.second)
+    by_mesh = max(np.abs(b[0, own, 0, own] / b[1, own, 1, own] - 1.0).max() for b in bodies)
+    assert by_mesh < 5e-3
+    assert apart[0] == pytest.approx(single[0] + single[8], rel=by_mesh)
 
 
 def test_contact_apart_from_the_tooth_against_pressure_on_its_surface() -> None:

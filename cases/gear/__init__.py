@@ -1,1 +1,1 @@
-"""Involute gears by themselves: geometry, stiffness of teeth in mesh."""
+"""Involute gears by themselves: geometry, stiffness, load over the face width, rating, damage."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fe_drivetrain.commands.compare_runs import compare_runs_command
+from fe_drivetrain.commands.designs import compare_command
 from fe_drivetrain.commands.export import export_command
 from fe_drivetrain.commands.history import history_command
 from fe_drivetrain.commands.life import life_command
@@ -58,6 +59,7 @@ app.command("history")(history_command)
 app.command("compare-runs")(compare_runs_command)
 app.command("export")(export_command)
 app.command("advise")(advise_command)
+app.command("compare")(compare_command)
 app.command("uncertainty")(uncertainty_command)
 
 

@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from fe_drivetrain.suite.page import Page
     from fe_drivetrain.suite.run import Run
 
-_OutFolder = Annotated[
+OutFolder = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/COMMAND/SCENE."),
 ]
 
 
-def check_command(scene: SceneName, out: _OutFolder = None, set_: SceneSettings = None) -> None:
+def check_command(scene: SceneName, out: OutFolder = None, set_: SceneSettings = None) -> None:
     """Check a scene, describe and draw it, and predict what each level of the ladder costs.
 
     Prints parts, bearings, supports, masses and costs; the report has the picture, too.
@@ -81,7 +81,7 @@ def study_command(
         ),
     ] = True,
     quick: Quick = False,
-    out: _OutFolder = None,
+    out: OutFolder = None,
     set_: SceneSettings = None,
 ) -> None:
     """Study any scene over hub loads: K_R of its bearing units, reactions, beams against FE.
@@ -114,7 +114,7 @@ def study_command(
 
         # before the work: a fault in a file is reported at once
         own = None if loads is None else own_loads(loads, skip, found, names)
-        return _run_on_scene(
+        return run_on_scene(
             "study",
             scene,
             f"{found.title}: stiffness, reactions, and beams against FE",
@@ -146,7 +146,7 @@ def advise_command(
             "--to-the-top", help="Run every level, even if a cheaper one is accurate enough."
         ),
     ] = False,
-    out: _OutFolder = None,
+    out: OutFolder = None,
     set_: SceneSettings = None,
 ) -> None:
     """Find the cheapest model of a scene that is accurate enough for a quantity.
@@ -169,7 +169,7 @@ def advise_command(
         asked = Quantity(name, parse_loads(load or (), scene_loads(found)))
         asked.check(found)
         share = parse_tolerance(tolerance)
-        return _run_on_scene(
+        return run_on_scene(
             "advise",
             scene,
             f"{found.title}: the model level that {name} needs",
@@ -225,7 +225,7 @@ def uncertainty_command(
             "values.",
         ),
     ] = False,
-    out: _OutFolder = None,
+    out: OutFolder = None,
     set_: SceneSettings = None,
 ) -> None:
     """Propagate the uncertainty of a scene's values to its reactions and stiffnesses.
@@ -246,7 +246,7 @@ def uncertainty_command(
         factors = parse_loads(load or (), scene_loads(found))
         share = parse_tolerance(tolerance)
         sobol_samples = 2 ** (samples.bit_length() - 1) if sobol else 0
-        return _run_on_scene(
+        return run_on_scene(
             "uncertainty",
             scene,
             f"{found.title}: uncertainty of the results",
@@ -268,7 +268,7 @@ def uncertainty_command(
     raise typer.Exit(guarded(work))
 
 
-def _run_on_scene(
+def run_on_scene(
     command: str,
     scene: str,
     title: str,
@@ -276,7 +276,28 @@ def _run_on_scene(
     study: Callable[[Run, Page], None],
     quick: bool = False,
 ) -> int:
-    """Run a study as a case of its own and print its outcome; returns the exit status."""
+    """Run a study as a case of its own and print its outcome.
+
+    Parameters
+    ----------
+    command : str
+        What is done, for the folder.
+    scene : str
+        Name or file of the scene, for the folder.
+    title : str
+        Of the page.
+    out : Path or None
+        The folder, where the user named one.
+    study : callable
+        Fills the page.
+    quick : bool
+        Whether it is a quick run.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
     results, page = _results_of_scene(command, scene, title, out, study, quick)
     write(sys.stdout, results_text(results, page))
     return PASSED if results.passed else FAILED

@@ -22,6 +22,10 @@ from .component_levels import solid_level as solid_level
 from .component_levels import torque_share as torque_share
 from .component_solid import SolidComponent as SolidComponent
 from .component_solid import solid_component as solid_component
+from .designs import Difference as Difference
+from .designs import Value as Value
+from .designs import compare_designs as compare_designs
+from .designs import scene_changes as scene_changes
 from .energy_sensitivities import compliance as compliance
 from .energy_sensitivities import energy_slopes as energy_slopes
 from .energy_sensitivities import hub_elasticities as hub_elasticities

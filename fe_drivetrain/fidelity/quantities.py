@@ -24,7 +24,8 @@ from fe_drivetrain.solve.condensation import Condensed, keep_points
 #: Of the free shaft between hub and gearbox, the gearbox end held; place among six components.
 SHAFT = {"axial": 0, "lateral": 2, "torsional": 3, "bending": 4}
 
-_NOISE = 1e-3  # a housing's mesh is not quite symmetric: a reaction below it is zero
+#: A housing's mesh is not quite symmetric: reactions that are less, of a load, are zero.
+NOISE = 1e-3
 
 _CARRIES = 1e-6  # of the largest resistance: below it there is none
 _LEVER = 1e-4  # [m] what springs of a unit do at this distance is no resistance to a rotation
@@ -199,7 +200,7 @@ def _vanishes(number: Number, solved: Solved) -> bool:
         float(np.abs(matrix[:, load != 0] * load[load != 0]).max())
         for matrix in solved.model.reaction_matrices.values()
     )
-    return value <= _NOISE * size
+    return value <= NOISE * size
 
 
 def _of_shaft(part: str) -> Callable[[Solved], float]:

@@ -271,6 +271,11 @@ class Pair:
         return self.second.internal
 
     @property
+    def ratio(self) -> float:
+        """Teeth of the second gear over those of the first, negative with an internal gear."""
+        return self.second.teeth / self.first.teeth
+
+    @property
     def face_width(self) -> float:
         """Common one: the smaller of both [m]."""
         return min(self.first.face_width, self.second.face_width)

@@ -42,6 +42,7 @@ from . import published_drivetrains as published_drivetrains
 from . import published_gears as published_gears
 from . import quarter_disc as quarter_disc
 from . import random_shafts as random_shafts
+from . import rated_gears as rated_gears
 from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_slices as ring_slices
 from . import ring_solids as ring_solids

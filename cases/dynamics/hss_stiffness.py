@@ -1,0 +1,123 @@
+"""High-speed shaft from a tenth to ten times its stiffness: frequencies and torques of A to D."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.drivetrains import Rated, drivetrains
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import decades
+from fe_drivetrain.dynamics import StopSequence, shutdown
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import (
+    Torsional,
+    changed,
+    gear_masses,
+    natural_modes,
+)
+from fe_drivetrain.validation import published_drivetrains as published
+
+FACTOR = "stiffness of the high-speed shaft over the tabled one"
+#: A generator's spring over its inertia, of drivetrain D: that of A is not printed.
+SPRING = 2.81e4 / 24.0
+
+
+@case(
+    "Stiffness of the high-speed shaft from 10 to 1000 %: frequencies and torque after a loss of "
+    "the generator",
+    source="Al-Hamadani 2018, section 6.2.4, Figure 6.20, Tables 4.2 and 4.3",
+)
+def run(run: Run, page: Page) -> None:
+    """Sweep the shaft of all four drivetrains; A with the generator's spring, too."""
+    factors = decades(-1.0, 1.0, 8 if run.quick else 40)
+    with run.step("frequencies"):
+        fixed = published.with_values(
+            drivetrains()[0].table,
+            {"generator.stiffness": SPRING * drivetrains()[0].table.generator.inertia},
+        )
+        systems = {"A, generator fixed": gear_masses(fixed, "fixed")}
+        systems |= {
+            f"{one.letter}, generator free": gear_masses(one.table, "free") for one in drivetrains()
+        }
+        rows = [sweep(page, name, system, factors) for name, system in systems.items()]
+    with run.step("torque"):
+        torques = [torque_row(one, run.quick) for one in drivetrains()]
+    first = rows[0]
+    page.answer(
+        "From a tenth to ten times the stiffness, the frequency of A that rises most is that of "
+        f"{first['rises most, as tabled [Hz]']:.0f} Hz, by {first['by [%]']:.0f} %; its highest "
+        f"rises by {first['highest rises by [%]']:.2g} %, and its lowest by "
+        f"{first['lowest rises by [%]']:.2g} %. The thesis says that the stiffness shifts the "
+        "modes of the shaft and the gearbox and not the highest.",
+    )
+    page.assume(
+        "generator's spring of A",
+        "as that of D for its inertia",
+        "",
+        "the thesis does not print it",
+    )
+    page.section("What moves")
+    page.table("Frequencies of a shaft ten times as stiff over those of a tenth", rows)
+    page.section("Torque after a loss of the generator")
+    page.table("Least torque of the high-speed shaft over rated", torques)
+
+
+def sweep(page: Page, name: str, system: Torsional, factors: Floats) -> Record:
+    """Frequencies over the stiffness, monotone, with slopes of half the energy share."""
+    tabled = next(e.stiffness for e in system.elements if e.name == "HSS")
+    f = np.array([natural_modes(changed(system, {"HSS": k * tabled})).frequencies for k in factors])
+    page.holds(
+        f"{name}: no frequency falls when the shaft is stiffened",
+        bool((np.diff(f, axis=0) >= -1e-9 * f.max()).all()),
+        why="a stiffness adds to Rayleigh's quotient of every motion",
+        source="Courant and Fischer",
+    )
+    step = 1e-4
+    up, down = (
+        natural_modes(changed(system, {"HSS": (1.0 + s) * tabled})).frequencies
+        for s in (step, -step)
+    )
+    modes = natural_modes(system)
+    place = [e.name for e in system.elements].index("HSS")
+    swings = modes.frequencies > 0.0
+    slope = np.log(up[swings] / down[swings]) / (2.0 * step)
+    page.vanishes(
+        f"{name}: slopes ln f over ln k less half of the strain energy's share, largest",
+        float(np.abs(slope - modes.stiffness_shares[place, swings] / 2.0).max()),
+        within=1e-6,
+        why="differences over 1e-4 leave their square",
+        source="Rayleigh's quotient is stationary",
+    )
+    chosen = np.flatnonzero(swings & (np.ptp(np.log(np.maximum(f, 1e-9)), axis=0) > 1e-3))
+    page.section(name)
+    page.chart(
+        f"{name}: frequencies that move by more than 0.1 %",
+        [trace(f"{modes.frequencies[m]:.4g} Hz as tabled", factors, f[:, m]) for m in chosen],
+        FACTOR,
+        "frequency [Hz]",
+        "xy",
+    )
+    page.data(name, {"factor": factors, "frequencies": f})
+    rise = 100.0 * (f[-1, swings] / f[0, swings] - 1.0)
+    return {
+        "drivetrain": name,
+        "lowest rises by [%]": float(rise[0]),
+        "rises most, as tabled [Hz]": float(modes.frequencies[swings][rise.argmax()]),
+        "by [%]": float(rise.max()),
+        "highest rises by [%]": float(rise[-1]),
+    }
+
+
+def torque_row(one: Rated, quick: bool) -> Record:
+    """Least torque after loss of the generator, for three stiffnesses."""
+    when = StopSequence(off=0.1, pitched=1e3, left=1.0, end=1.5)
+    row: Record = {"drivetrain": one.letter}
+    last = len(one.table.shafts) - 1
+    for factor in (0.1, 1.0, 10.0):
+        k = factor * one.table.shafts[last].stiffness
+        table = published.with_values(one.table, {f"shafts.{last}.stiffness": k})
+        found = shutdown(
+            table, one.torque, one.speed, 0.0, when, dt=2e-3 if quick else 5e-4, ratios=one.ratios
+        )
+        row[f"{100 * factor:g} %"] = float(found.ratio("HSS").min())
+    return row

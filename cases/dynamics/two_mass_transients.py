@@ -1,0 +1,171 @@
+"""Two masses on a shaft: loss of the generator, a brake, a step of torque, against exact motion."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.drivetrains import drivetrains
+from fe_drivetrain.common import Floats
+from fe_drivetrain.dynamics import (
+    AVERAGE,
+    Brake,
+    Phase,
+    Scheme,
+    State,
+    equations_of_motion,
+    generalised_alpha,
+    integrate,
+    spring_laws,
+    steady,
+    transient,
+    wind_up,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import two_masses
+
+PER_PERIOD = (20, 40, 80, 160)
+QUICK = (20, 40)
+
+
+@case(
+    "Exact transients of two masses: loss of the generator, brake and stick, torque step",
+    source="Al-Hamadani 2018, Tables 4.2 and 4.3, as two masses; closed forms",
+)
+def run(run: Run, page: Page) -> None:
+    """Four drivetrains, two schemes, ever shorter steps."""
+    rows: list[Record] = []
+    for one in drivetrains():
+        with run.step(f"drivetrain {one.letter}"):
+            system = two_masses(one.table, "free")
+            J, k = system.J, float(system.k[0])
+            rows += [
+                transients(page, one.letter, J, k, one.torque, n, scheme)
+                for n in (QUICK if run.quick else PER_PERIOD)
+                for scheme in (AVERAGE, generalised_alpha(0.8))
+            ]
+    last = rows[-1]["steps a period"]
+    finest = [row for row in rows if row["steps a period"] == last]
+    page.answer(
+        f"With {last} steps a period, torques of two masses are right to "
+        f"{max(row['error of the torque, loss [%]'] for row in finest):.2g} % of rated over three "
+        "periods after a loss of the generator, by either method.",
+        "The brake step winds the shaft up to twice its mean, and where the disc stands it holds "
+        "what the shaft carries and no more than its friction.",
+    )
+    page.section("Error over the step")
+    page.table("Two masses", rows)
+    page.data("transients", rows)
+    show(page)
+
+
+def transients(
+    page: Page, letter: str, J: Floats, k: float, torque: float, steps: int, scheme: Scheme
+) -> Record:
+    """One drivetrain: errors of torque over rated, and its checks with the finest steps."""
+    omega = float(np.sqrt(k * (1.0 / J[0] + 1.0 / J[1])))
+    period = 2.0 * np.pi / omega
+    dt = period / steps
+    shaft = equations_of_motion(J, spring_laws([[1.0, -1.0]], k))
+    begin = wind_up(shaft, [torque, -torque])
+    zero = np.zeros(2)
+    loss = integrate(
+        shaft, steady([torque, 0.0]), 3 * period, dt, scheme, State(begin.q, zero, zero)
+    )
+    mean = J[1] / J.sum()
+    exact = torque * (mean + (1.0 - mean) * np.cos(omega * loss.times))
+    braked = integrate(shaft, steady([0.0, -torque]), period, dt, scheme)
+    share = J[0] / J.sum()
+    row: Record = {
+        "drivetrain": letter,
+        "method": scheme.name,
+        "steps a period": steps,
+        "frequency [Hz]": 1.0 / period,
+        "least torque after loss, over rated": float(loss.forces.min() / torque),
+        "closed form": float((J[1] - J[0]) / J.sum()),
+        "error of the torque, loss [%]": 100.0
+        * float(np.abs(loss.forces[:, 0] - exact).max() / torque),
+        "peak by the brake over its mean": float(braked.forces.max() / (share * torque)),
+        "momentum, relative error": float(
+            np.abs(loss.velocity @ J - torque * loss.times).max() / (torque * loss.times[-1])
+        ),
+    }
+    if scheme is AVERAGE:
+        late = 2.0 * np.pi * 3.0 * (omega * dt) ** 2 / 12.0
+        page.vanishes(
+            f"drivetrain {letter}, {steps} steps a period: error of torque after loss, over rated",
+            row["error of the torque, loss [%]"] / 100.0,
+            within=1.1 * (1.0 - mean) * late,
+            why="phase lost in three periods by a period that is (w dt)^2 / 12 too long",
+            source="T (J2 + J1 cos w t) / (J1 + J2)",
+        )
+        page.vanishes(
+            f"drivetrain {letter}, {steps} steps a period: momentum about the free axis",
+            row["momentum, relative error"],
+            within=1e-9,
+            why="round-off, of angles that grow to many times their winding",
+            source="T t",
+        )
+    return row
+
+
+def show(page: Page) -> None:
+    """Drivetrain D with a brake that slips, sticks and lets go."""
+    one = drivetrains()[3]
+    system = two_masses(one.table, "free")
+    J, k = system.J, float(system.k[0])
+    shaft = equations_of_motion(J, spring_laws([[1.0, -1.0]], k))
+    disc = np.array([0.0, 1.0])
+    brake = Brake(disc, 1.2 * one.torque, 0.5)
+    speed = np.full(2, one.speed)
+    zero = np.zeros(2)
+    found = transient([Phase(16.0, shaft, steady(zero), brake)], 2e-3, State(zero, speed, zero))
+    motion = found.motion
+    slipping = (motion.times > 0.5) & (motion.times < found.events[0][0])
+    page.equals(
+        "drivetrain D, brake of 1.2 rated: largest torque of the shaft over rated",
+        float(motion.forces[slipping].max() / one.torque),
+        2.0 * 1.2 * J[0] / J.sum(),
+        within=1e-3,
+        why="a highest point between two steps",
+        source="twice the mean T_b J1 / (J1 + J2)",
+    )
+    page.vanishes(
+        "drivetrain D: torque of the brake that holds less that of the shaft, over rated",
+        float(np.abs(found.brake + motion.forces[:, 0])[found.held].max() / one.torque),
+        within=1e-7,
+        why="round-off of a step in which the disc stops",
+        source="equilibrium of a disc that stands",
+    )
+    page.at_most(
+        "drivetrain D: largest torque of the brake over its friction",
+        float(np.abs(found.brake).max() / brake.torque),
+        1.0 + 1e-7,
+        why="the instant of slipping is found to a billionth of a step",
+        source="dry friction",
+        measure="identity",
+    )
+    held = np.sqrt(k / J[0]) / (2.0 * np.pi)
+    after = motion.times > found.events[-1][0]
+    turned = motion.times[after][1:][np.diff(np.sign(motion.velocity[after, 0])) != 0]
+    page.equals(
+        "drivetrain D, disc held: frequency of the rotor [Hz]",
+        float(0.5 / np.diff(turned).mean()),
+        float(held),
+        within=1e-3,
+        why="crossings are found to a step",
+        source="sqrt(k / J1) / 2 pi",
+    )
+    page.section("A brake that slips, sticks and lets go")
+    page.chart(
+        "Drivetrain D as two masses: "
+        + ", ".join(f"{what} at {when:.3f} s" for when, what in found.events),
+        [
+            trace("shaft", motion.times, motion.forces[:, 0] / one.torque),
+            trace("brake", motion.times, found.brake / one.torque),
+            trace(
+                "generator's speed over its first", motion.times, motion.velocity[:, 1] / one.speed
+            ),
+        ],
+        "time [s]",
+        "torque over rated; speed",
+    )

@@ -1,0 +1,155 @@
+"""Stress below the flanks of the NREL 750 kW gearbox, and the constants of a line contact."""
+
+from math import cos
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.gear import (
+    LineContact,
+    Pair,
+    reduced_modulus,
+    shear_stress,
+    tooth_contact,
+    von_mises,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.published_gears import nrel_750kw
+
+STEEL = reduced_modulus()
+TORQUE = 325e3  # N m of the low-speed shaft
+PLANETS, STAGE = 3, 1.0 + 99.0 / 21.0
+SOURCE = (
+    "teeth, modules, helix angles and face widths of the GRC gearbox, NREL/TP-5000-47773 and 66594 "
+    "as digested in gfsReboucas/Drivetrain; pressures recomputed independently from them"
+)
+HERTZ = "Hertz; Johnson 1985, Contact mechanics, section 4.2"
+
+
+def meshes() -> dict[str, tuple[Pair, float, float, float]]:
+    """By name: pair, force per face width [N/m], and what was recomputed [MPa, mm]."""
+    pairs = nrel_750kw()
+    sun, ring, second, third = (pairs[n] for n in ("sun", "ring", "intermediate", "high speed"))
+    planet = TORQUE / (2 * PLANETS) / sun.centre_distance / cos(sun.working_angle)
+    shaft = TORQUE / STAGE
+    high = shaft * second.first.teeth / second.second.teeth
+    return {
+        "ring and planet": (ring, planet / ring.face_width, 484, 0.87),
+        "sun and planet": (sun, planet / sun.face_width, 1070, 0.41),
+        "intermediate": (
+            second,
+            shaft / second.second.base_radius / second.face_width,
+            1123,
+            0.46,
+        ),
+        "high speed": (third, high / third.second.base_radius / third.face_width, 1200, 0.28),
+    }
+
+
+@case(
+    "Stress below the flanks of gears: NREL 750 kW at 325 kN m",
+    source="Al-Hamadani 2018, Eq 5.13 to 5.22; Johnson 1985, Contact mechanics, ch. 4",
+)
+def run(run: Run, page: Page) -> None:
+    """Constants of the field, pressures and depths of four meshes, ratios of the thesis."""
+    unit = LineContact(1e6, 0.02, STEEL)
+    shear, depth = unit.largest_shear
+    mises, deep = unit.largest_von_mises()
+    for name, ours, exact in (
+        ("largest shear stress over the pressure", shear / unit.pressure, 0.3003),
+        ("its depth over the half width", depth / unit.half_width, 0.7862),
+        ("largest von Mises stress over the pressure", mises / unit.pressure, 0.5575),
+        ("depth of that over the half width", deep / unit.half_width, 0.704),
+    ):
+        page.equals(
+            name,
+            ours,
+            exact,
+            within=5e-4,
+            why="the digits of the constant",
+            source=HERTZ,
+        )
+    found = {
+        name: tooth_contact(mesh, mesh.path.pitch, load, STEEL)
+        for name, (mesh, load, _, _) in meshes().items()
+    }
+    rows: list[Record] = []
+    for name, (mesh, load, pressure, at) in meshes().items():
+        contact = found[name]
+        rows.append(
+            {
+                "mesh": name,
+                "load [kN/m]": load / 1e3,
+                "radius [mm]": 1e3 * contact.radius,
+                "half width [mm]": 1e3 * contact.half_width,
+                "pressure [MPa]": contact.pressure / 1e6,
+                "largest shear stress [MPa]": contact.largest_shear[0] / 1e6,
+                "depth of it [mm]": 1e3 * contact.largest_shear[1],
+                "working angle [deg]": float(np.degrees(mesh.working_angle)),
+            }
+        )
+        page.equals(
+            f"{name}: pressure at the pitch point [MPa]",
+            contact.pressure / 1e6,
+            pressure,
+            within=0.5 / pressure + 2e-4,
+            why="three or four digits, and a centre distance read from a drawing",
+            source=SOURCE,
+        )
+        page.equals(
+            f"{name}: depth of the largest shear stress [mm]",
+            rows[-1]["depth of it [mm]"],
+            at,
+            within=0.005,
+            relative=False,
+            why="two digits",
+            source=SOURCE,
+        )
+    highest = found["high speed"].pressure
+    ratios = [
+        {
+            "ratio": f"high speed over {name}",
+            "ours, GRC": highest / found[name].pressure,
+            "Al-Hamadani 2018, 2 MW": printed,
+        }
+        for name, printed in (("ring and planet", 2.32), ("sun and planet", 1.32))
+    ]
+    ratios.append(
+        {
+            "ratio": "high speed over intermediate",
+            "ours, GRC": highest / found["intermediate"].pressure,
+            "Al-Hamadani 2018, 2 MW": 1.22,
+        }
+    )
+    page.answer(
+        "At 325 kN m the flanks see "
+        + ", ".join(f"{r['pressure [MPa]']:.0f} MPa ({r['mesh']})" for r in rows)
+        + ": one pair of teeth, the whole face, no load factors.",
+    )
+    page.section("Four meshes")
+    page.table("Contact at the pitch point", rows)
+    page.table(
+        "Ratios of pressures, beside those that the thesis prints of its 2 MW gearbox", ratios
+    )
+    page.text(
+        "The thesis's 2.32 and 1.32 make sun over ring 1.757. For its teeth (29, 58, 145), equal "
+        "forces and equal widths Hertz leaves exactly the root of 5, 2.236: the printed ratios "
+        "contradict each other. Its Eq 5.13, half the sum of curvatures, is 1 over a length; the "
+        "half width of Eq 5.14 needs the radius 1 / (1/R1 + 1/R2). Its 0.57 for von Mises' stress "
+        "belongs to a Poisson ratio of 0.28 rather than 0.3, where it is 0.5575."
+    )
+    page.section("Below the surface")
+    z = np.linspace(0.01, 3.0, 120)
+    field = unit.stresses(0.0, z * unit.half_width) / unit.pressure
+    aside = unit.stresses(np.sqrt(0.75) * unit.half_width, z * unit.half_width) / unit.pressure
+    page.chart(
+        "Stress over the pressure below the middle of the strip, and shear at its side",
+        [
+            trace("largest shear stress", z, shear_stress(field)),
+            trace("von Mises stress", z, von_mises(field)),
+            trace("shear stress xz at x = 0.866 a", z, np.abs(aside[:, 3])),
+        ],
+        "depth over half width",
+        "stress over pressure",
+    )

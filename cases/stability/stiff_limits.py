@@ -1,0 +1,120 @@
+"""Rigid bodies on ever stiffer bearings: the torsional model comes back, until digits run out."""
+
+import numpy as np
+from scipy import linalg
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import decades, fitted_exponent, safe_range
+from fe_drivetrain.dynamics import Level, System, library_machine, machine_system
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Run
+
+FACTOR = "stiffness of bearings, shafts in bending and pins, over the tabled one"
+WITHIN = 1e-4
+BY_ROWS, BY_MATRIX = "singular values of rows", "eigenvalues of the matrix"
+MACHINES = ("nrel_750kw", "park_2021")
+
+
+@case(
+    "Stiff limits: from rigid bodies in six degrees of freedom back to the torsional table",
+    source="Al-Hamadani 2018, Table 4.2; Park et al. 2021, Table 2, by two models of this program",
+)
+def run(run: Run, page: Page) -> None:
+    """Stiffen all but the torsional springs; compare the torsional frequencies."""
+    factors = decades(0, 14, 1 if run.quick else 3)
+    for name in MACHINES[:1] if run.quick else MACHINES:
+        with run.step(name):
+            sweep(page, name, factors)
+    page.answer(
+        "Stiffening everything but torsion, the frequencies of rigid bodies go to those of the "
+        "torsional model as one over the stiffness, down to round-off of what is far below the "
+        "stiffest springs: that of singular values of the springs' rows, or of the eigenvalues of "
+        "the stiffness matrix, which has only half of their digits."
+    )
+
+
+def sweep(page: Page, name: str, factors: Floats) -> None:
+    """One machine, by two ways to its frequencies."""
+    machine = library_machine(name)
+    exact = frequencies(machine_system(machine, Level.TORSIONAL), 1.0, BY_ROWS)
+    exact = exact[exact > 1e-6 * exact[-1]]
+    system = machine_system(machine, Level.RIGID)
+    errors = {
+        way: np.array([largest_error(system, float(f), way, exact) for f in factors])
+        for way in (BY_ROWS, BY_MATRIX)
+    }
+    error = errors[BY_ROWS]
+    best = int(error.argmin())
+    # before, the nearest frequency may be that of another motion; behind, round-off
+    far = slice(*np.searchsorted(factors, [9e4, 2e9]).tolist())
+    slope, spread = fitted_exponent(factors[far], error[far], (1e-8, 1e-3))
+    page.equals(
+        f"{name}: error over the stiffness, exponent",
+        slope,
+        -1.0,
+        within=0.1,
+        why="the next order is a thousandth of the largest error that is taken",
+        source="springs in series",
+        measure="order",
+        band=spread,
+    )
+    page.at_most(
+        f"{name}: least error of all torsional frequencies",
+        float(error[best]),
+        1e-8,
+        why="compliance of the stiff springs and round-off meet there",
+        source="torsional model",
+        measure="frequency",
+    )
+    for way, found in errors.items():
+        low, high = safe_range(factors, found, WITHIN)
+        page.limit(
+            f"stiff springs in place of held degrees of freedom: {name}, {way}",
+            FACTOR,
+            low=low,
+            high=high,
+            criterion=f"all torsional frequencies within {WITHIN:g}",
+            beyond="below: bodies give way, which is the tabled machine; above: round-off of the "
+            "stiffest springs is as large as the softest",
+            program="leaves out degrees of freedom at the torsional level",
+            remedy="hold or leave out degrees of freedom instead of stiffening them",
+        )
+    page.section(machine.title)
+    page.chart(
+        "Largest error of a torsional frequency; shaded: safe by singular values",
+        [
+            trace(way, factors, np.maximum(found, 1e-17), mode="lines+markers")
+            for way, found in errors.items()
+        ],
+        FACTOR,
+        "relative error",
+        "xy",
+        safe_range(factors, error, WITHIN),
+    )
+    page.data(name, {"factor": factors, **errors})
+
+
+def largest_error(system: System, factor: float, way: str, exact: Floats) -> float:
+    """Of the nearest frequency to each; other modes go up and away."""
+    found = frequencies(system, factor, way)
+    nearest = np.array([found[np.abs(found / f - 1.0).argmin()] for f in exact])
+    return float(np.abs(nearest / exact - 1.0).max())
+
+
+def frequencies(system: System, factor: float, way: str) -> Floats:
+    """Natural frequencies [Hz] with all springs but those of torsion stiffer by a factor."""
+    turns = np.array([name.endswith(" rx") for name in system.names])
+    winds = np.abs(system.rows[:, turns]).max(axis=1, initial=0.0) > 0.0
+    across = np.abs(system.rows[:, ~turns]).max(axis=1, initial=0.0) > 0.0
+    mesh = np.array(
+        ["mesh" in n or ("planet" in n and "pin" not in n) for n in system.spring_names]
+    )
+    torsional = winds & (~across | mesh)
+    stiffness = system.stiffness * np.where(torsional, 1.0, factor)
+    half = np.linalg.cholesky(system.mass)
+    wound = linalg.solve_triangular(half, (np.sqrt(stiffness)[:, None] * system.rows).T, lower=True)
+    if way == BY_ROWS:
+        values = np.linalg.svd(wound, compute_uv=False)[::-1]
+        return np.asarray(values / (2.0 * np.pi))
+    return np.asarray(np.sqrt(np.abs(np.linalg.eigvalsh(wound @ wound.T))) / (2.0 * np.pi))

@@ -1,0 +1,177 @@
+"""Teeth that part: where a mesh without backlash in the model pulls, and what parting does."""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.dynamics import (
+    Equations,
+    Motion,
+    State,
+    equations_of_motion,
+    fourier_wave,
+    integrate,
+    spring_laws,
+    steady,
+)
+from fe_drivetrain.dynamics.steady_state import restoring
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Run
+
+#: Variation of the stiffness, damping ratio, half backlash over the static deflection.
+VARIATION, RATIO, HALF = 0.2, 0.03, 2.0
+STEPS, PERIODS, SETTLE = 96, 10, 70
+OVER = "mesh frequency over the natural frequency"
+EXTRA = HALF + 1.0
+"""Deflection under the mean load, of 1, from the middle of the backlash."""
+
+
+@case(
+    "Teeth that part: jumps of a mesh with backlash beside a linear one",
+    source="x'' + 2 z x' + (1 + e cos W t) g(x) = 1, dead zone of two flanks: Kahraman and "
+    "Blankenship 1997, J. Appl. Mech. 64, 217-226, in kind",
+)
+def run(run: Run, page: Page) -> None:
+    """Sweep the mesh frequency up and down, with backlash and without."""
+    at = np.linspace(0.55, 1.25, 15 if run.quick else 71)
+    with run.step("sweeps"):
+        up, lost_up = sweep(at, HALF)
+        down, lost_down = sweep(at[::-1], HALF)
+        down = down[::-1]
+        linear, _ = sweep(at, 0.0)
+    least_linear, least = linear[:, 0], np.minimum(up[:, 0], down[:, 0])
+    pulls = least_linear < 0.0
+    page.vanishes(
+        "frequencies at which teeth stay in contact: swings with and without backlash",
+        float(np.abs(up - linear)[least_linear > 0.05].max(initial=0.0)),
+        within=1e-4,
+        why="the same law there; what is left of the start decays to 1e-4",
+        source="linear where nothing parts",
+    )
+    page.holds(
+        "with backlash no tooth is pulled",
+        bool((least >= -1e-9).all()),
+        why="flanks push and do not pull; the other flank is not reached here",
+        source="contact",
+    )
+    page.vanishes(
+        "time steps in which Newton's method did not converge",
+        float(lost_up + lost_down),
+        within=0.0,
+        why="the law has one slope on each side of a flank",
+        source="piecewise linear",
+    )
+    with run.step("peer"):
+        check_peer(page)
+    jump = float(np.abs(up[:, 1] - down[:, 1]).max())
+    low, high = float(at[pulls].min()), float(at[pulls].max())
+    parted = at[(least < 1e-6) | pulls]
+    past = float(parted.min())
+    safe = float(at[at > parted.max()].min())
+    page.limit(
+        "a mesh as a spring that pulls as it pushes",
+        OVER,
+        low=safe,
+        criterion="force of the mesh above zero all the time, wherever the motion comes from",
+        beyond=f"from {low:.2f} to {high:.2f} teeth part, and down to {past:.2f} they stay "
+        f"parted if they were: the linear model pulls with up to "
+        f"{-least_linear.min():.2f} of the mean force, and its peak is {linear[:, 1].max():.2f}, "
+        f"with backlash {max(up[:, 1].max(), down[:, 1].max()):.2f}",
+        program="has a dead zone with both flanks (backlash), met by Newton's method in each step",
+        remedy="give the backlash; start from both sides: motion may depend on where it comes from",
+    )
+    page.answer(
+        f"With a stiffness that varies by {100 * VARIATION:.0f} % and {100 * RATIO:.0f} % of "
+        f"critical damping teeth part from {low:.2f} to {high:.2f} of the natural frequency, and "
+        f"stay parted down to {past:.2f} if they come from above; a spring that pulls is wrong.",
+        f"Parting softens the mesh: sweeps up and down differ by up to {jump:.2f} of the mean "
+        "force, where the motion depends on its past.",
+    )
+    page.section("Sweeps")
+    page.chart(
+        "Largest force over the mean",
+        [
+            trace("with backlash, up", at, up[:, 1], mode="lines+markers"),
+            trace("with backlash, down", at, down[:, 1], mode="lines+markers"),
+            trace("spring that pulls", at, linear[:, 1], line={"dash": "dot"}),
+        ],
+        OVER,
+        "largest force over the mean",
+        safe=(safe, None),
+    )
+    page.chart(
+        "Least force over the mean: 0 where teeth part",
+        [
+            trace("with backlash, up", at, up[:, 0], mode="lines+markers"),
+            trace("with backlash, down", at, down[:, 0], mode="lines+markers"),
+            trace("spring that pulls", at, linear[:, 0], line={"dash": "dot"}),
+        ],
+        OVER,
+        "least force over the mean",
+        safe=(safe, None),
+    )
+    page.data("sweep", {"frequency": at, "up": up, "down": down, "linear": linear})
+
+
+def mesh(frequency: float, half: float) -> Equations:
+    """One mesh of unit mass and mean stiffness, its frequency over its natural one."""
+    springs = spring_laws(
+        [[1.0]],
+        1.0,
+        0.0,
+        lower=-half,
+        upper=half,
+        wave=0,
+        frequency=frequency / (2.0 * np.pi),
+        waves=[fourier_wave([VARIATION], [0.0])],
+    )
+    return equations_of_motion([1.0], springs, [[2.0 * RATIO]])
+
+
+def sweep(at: Floats, half: float) -> tuple[Floats, int]:
+    """Least and largest force at each frequency, each begun where the one before ended."""
+    start = State(np.array([half + 1.0]), np.zeros(1), np.zeros(1))
+    found, lost = [], 0
+    for frequency in at:
+        period = 2.0 * np.pi / float(frequency)
+        last: Motion | None = None
+        for periods in (SETTLE, PERIODS):
+            last = integrate(
+                mesh(float(frequency), half),
+                steady([1.0]),
+                periods * period,
+                period / STEPS,
+                start=start,
+            )
+            # whole periods later: the same phase
+            start = State(last.end.q, last.end.velocity, last.end.acceleration)
+            lost += last.not_converged
+        assert last is not None
+        force = last.forces[:, 0]
+        found.append((float(force.min()), float(force.max())))
+    return np.array(found), lost
+
+
+def check_peer(page: Page) -> None:
+    """An explicit method on a motion that parts."""
+    one = mesh(0.95, HALF)
+    duration = 12.0
+
+    def rates(t: float, y: Floats) -> Floats:
+        return np.array([y[1], 1.0 - restoring(one, t, y[:1], y[1:])[0][0]])
+
+    begin = [EXTRA + 1.5, 0.0]
+    exact = solve_ivp(rates, (0.0, duration), begin, "DOP853", rtol=1e-10, max_step=0.02).y[0, -1]
+    start = State(np.array(begin[:1]), np.zeros(1), np.zeros(1))
+    errors = []
+    for dt in (0.01, 0.005):
+        found = integrate(one, steady([1.0]), duration, dt, start=start)
+        errors.append(abs(float(found.end.q[0]) - float(exact)))
+    page.vanishes(
+        "motion that parts, displacement after 12 s against an explicit method",
+        errors[1],
+        within=2e-4,
+        why="steps of 0.005 s, of second order but for the instants at which teeth part",
+        source="SciPy, DOP853",
+    )

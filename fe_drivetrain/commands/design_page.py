@@ -1,0 +1,203 @@
+"""Designs side by side on a page: what differs in them, and what comes of it, ranked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.fidelity.adviser import Quantity
+from fe_drivetrain.fidelity.designs import Difference, compare_designs, scene_changes
+from fe_drivetrain.fidelity.ladder import TITLES
+from fe_drivetrain.report.charts import bars
+from fe_drivetrain.report.results import Cell
+from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.records import Record
+from fe_drivetrain.suite.run import Run
+
+#: Changes that the answer names, and that have a curve of their own.
+_NAMED, _CURVES = 3, 6
+#: Changes that are this share of the larger value: a percentage of the smaller one says nothing.
+_FROM_ZERO = 0.9
+#: Round-off of the other value.
+_NOTHING = 1e-6
+
+
+@dataclass(frozen=True)
+class Varied:
+    """The value that tells designs apart.
+
+    Attributes
+    ----------
+    key : str
+        Dotted key of the scene.
+    values : tuple[float, ...]
+        Of each design.
+    """
+
+    key: str
+    values: tuple[float, ...]
+
+
+def compared(
+    run: Run,
+    page: Page,
+    designs: Mapping[str, Scene],
+    quantities: Sequence[Quantity] | None,
+    tolerance: float,
+    load: Mapping[str, float] | None,
+    varied: Varied | None,
+) -> None:
+    """Compare designs, and show the changes against the first one.
+
+    Parameters
+    ----------
+    run : Run
+        The run that the levels are steps of.
+    page : Page
+        Takes answer, charts, tables and the check of the bands.
+    designs : mapping of str to Scene
+        By name; the others are compared with the first.
+    quantities : sequence of Quantity or None
+        See `fe_drivetrain.fidelity.compare_designs`.
+    tolerance : float
+        Allowed error of a change.
+    load : mapping of str to float or None
+        That causes the reactions.
+    varied : Varied or None
+        Where designs differ in one value, which.
+    """
+    with run.step("designs at their levels"):
+        found = compare_designs(designs, quantities, tolerance, load, run.report)
+    names = list(designs)
+    known = [one for one in found if one.is_known]
+    for one in known[:_NAMED]:
+        page.answer(_sentence(one, names))
+    if not known:
+        page.answer(f"No change from {names[0]} is larger than its band.")
+    largest = float(max(one.rank_bands.max() for one in found))
+    page.at_most(
+        "largest band of a change",
+        largest,
+        tolerance,
+        why="the tolerance that was requested, of both values together, relative to the larger",
+        source="the adviser's bands: half of what two bounds of the housings differ by and the "
+        "change from beam to meridian; of the assembly, its discretization error",
+    )
+    page.section("What comes of it")
+    if varied is None:
+        _show_bars(page, found, names)
+    else:
+        _show_sweep(page, found, varied)
+    page.table("Every quantity, the largest change first", _rows(found, names))
+    page.text(
+        "A change is relative to the value of the first design. Its band is what both values may "
+        "be wrong by together; a change inside its band may be none. Without a load, a reaction is "
+        "compared by its response to each of the six hub loads, moments scaled to forces by the "
+        "length of the shaft, and its change has no sign."
+    )
+    page.section("What differs in the scenes")
+    for name, scene in list(designs.items())[1:]:
+        rows = scene_changes(designs[names[0]], scene)
+        if not rows:
+            page.text(f"{name} states the same as {names[0]}.")
+            continue
+        cells: list[Sequence[Cell]] = [[key, _shown(a), _shown(b)] for key, a, b in rows]
+        page.table(f"{name} against {names[0]}", cells, ["value of the scene", names[0], name])
+    page.data(
+        "changes",
+        [
+            {
+                "quantity": one.quantity.name,
+                "values": [value.values for value in one.values],
+                "levels": [value.level for value in one.values],
+                "changes": _sensible(one),
+                "bands": one.rank_bands,
+            }
+            for one in found
+        ],
+    )
+
+
+def _sentence(one: Difference, names: Sequence[str]) -> str:
+    k = int(np.argmax(one.ranks))
+    change, band = 100 * one.changes[k], 100 * one.bands[k]
+    signed = "+" if len(one.values[0].values) == 1 else ""
+    text = f"{change:{signed}.3g} % ± {band:.2g} %"
+    if one.ranks[k] > _FROM_ZERO:
+        before, after = one.values[0].size, one.values[k + 1].size
+        text = f"from {_number(before, after)} to {_number(after, before)} {_unit(one)}"
+    level = one.values[0].level
+    return (
+        f"{one.quantity.name} of {names[k + 1]} against {names[0]}: {text} (level {level}, "
+        f"{TITLES[level]})."
+    )
+
+
+def _number(value: float, other: float) -> str:
+    return "nothing" if abs(value) < _NOTHING * abs(other) else f"{value:.3g}"
+
+
+def _unit(one: Difference) -> str:
+    return one.quantity.unit if len(one.values[0].values) == 1 else "for the six hub loads"
+
+
+def _rows(found: Sequence[Difference], names: Sequence[str]) -> list[Record]:
+    rows: list[Record] = []
+    for one in found:
+        vector = len(one.values[0].values) > 1
+        row: Record = {"quantity": f"{one.quantity.name} [{'-' if vector else one.quantity.unit}]"}
+        row |= {name: v.size for name, v in zip(names, one.values, strict=True)}
+        for name, change, band in zip(names[1:], _sensible(one), one.bands, strict=True):
+            of = f"{name}: " if len(names) > 2 else ""
+            row[f"{of}change [%]"] = None if change is None else 100 * change
+            row[f"{of}± [%]"] = None if change is None else 100 * band
+        row["level"] = one.values[0].level
+        row["is known"] = "yes" if one.is_known else "no"
+        rows.append(row)
+    return rows
+
+
+def _show_bars(page: Page, found: Sequence[Difference], names: Sequence[str]) -> None:
+    shown = [one for one in found if (one.ranks <= _FROM_ZERO).all()]
+    groups = {
+        name: {one.quantity.name: 100 * float(one.changes[k]) for one in shown}
+        for k, name in enumerate(names[1:])
+    }
+    figure = bars(f"Changes against {names[0]}, with their bands", groups, "change [%]")
+    for k, trace in enumerate(figure.figure["data"]):
+        band = [100 * float(one.bands[k]) for one in shown]
+        trace["error_x"] = {"type": "data", "array": band, "thickness": 1.2}
+    page.add(figure)
+
+
+def _show_sweep(page: Page, found: Sequence[Difference], varied: Varied) -> None:
+    shown = [one for one in found if (one.ranks <= _FROM_ZERO).all()][:_CURVES]
+    rows: list[Record] = []
+    for number, value in enumerate(varied.values):
+        row: Record = {varied.key: value}
+        for one in shown:
+            change = 0.0 if number == 0 else 100 * float(one.changes[number - 1])
+            row[f"{one.quantity.name}, change [%]"] = change
+        rows.append(row)
+    curves = {f"{one.quantity.name}, change [%]": one.quantity.name for one in shown}
+    title = f"Largest changes against {varied.key} = {varied.values[0]:g}"
+    rows.sort(key=lambda row: row[varied.key])
+    page.sweep(title, rows, varied.key, curves, axis="change [%]")
+
+
+def _sensible(one: Difference) -> list[float | None]:
+    """Changes, none where they come from next to nothing."""
+    pairs = zip(one.changes, one.ranks, strict=True)
+    return [float(change) if rank <= _FROM_ZERO else None for change, rank in pairs]
+
+
+def _shown(value: Any) -> Cell:
+    return (
+        value
+        if isinstance(value, int | float | str) and not isinstance(value, bool)
+        else ("not stated" if value is None else str(value))
+    )

@@ -1,0 +1,204 @@
+"""Gear meshes whose stiffness varies as pairs of teeth come and go: waves, frequencies, phases.
+
+The stiffness of a mesh with the contact ratio C is n + 1 pairs' for the share C - n of a period, n
+its whole part, and n pairs' else: C pairs' on average (Parker and Lin 2004; Park et al. 2021, Eq
+4-9, whose sign makes it low where it should be high).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import floor, pi
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.equations import (
+    Equations,
+    equations_of_motion,
+    fourier_wave,
+    spring_laws,
+)
+from fe_drivetrain.dynamics.planetary import equal_angles
+from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.tables import Machine, PlanetaryData
+from fe_drivetrain.gear.planets import ring_phases, sun_phases
+
+HARMONICS = 8
+"""Of the square wave, as in Park et al. 2021, Eq 10."""
+
+
+def contact_wave(contact_ratio: float, harmonics: int = HARMONICS) -> Floats:
+    """Square wave of the pairs in contact over its mean, as a Fourier series; as `wave_table`.
+
+    Parameters
+    ----------
+    contact_ratio : float
+        C, at least 1; a whole number is without variation.
+    harmonics : int
+        Of the series, whose peaks pass the levels by some 9 %.
+
+    Returns
+    -------
+    wave : Floats
+        Rising in the middle of the jump at phase 0.
+
+    Raises
+    ------
+    InputError
+        The contact ratio is below 1.
+    """
+    if not contact_ratio >= 1.0:
+        raise InputError(
+            f"contact ratio is {contact_ratio:g} but must be at least 1, or teeth lose contact: "
+            "change the gears"
+        )
+    share = contact_ratio - floor(contact_ratio)
+    order = np.arange(1, harmonics + 1)
+    size = 1.0 / (pi * order * contact_ratio)
+    angle = 2.0 * pi * order * share
+    return fourier_wave(size * np.sin(angle), size * (1.0 - np.cos(angle)))
+
+
+@dataclass(frozen=True)
+class Meshing:
+    """How a mesh varies.
+
+    Attributes
+    ----------
+    contact_ratio : float
+        Pairs in contact on average.
+    frequency : float
+        Of the mesh [Hz].
+    phase : float
+        At t = 0 [periods].
+    """
+
+    contact_ratio: float
+    frequency: float
+    phase: float = 0.0
+
+
+def machine_meshing(
+    machine: Machine, speed: float, contact_ratios: Mapping[str, float]
+) -> dict[str, Meshing]:
+    """Frequencies and phases of all meshes of a machine, from its teeth.
+
+    The constant phase between the two meshes of one planet, of its tooth's thickness, is not in it.
+
+    Parameters
+    ----------
+    machine : Machine
+        With teeth.
+    speed : float
+        Of the rotor [rad/s].
+    contact_ratios : Mapping[str, float]
+        By "stage 1 sun-planet", "stage 1 ring-planet", "stage 2 mesh" and so on.
+
+    Returns
+    -------
+    meshing : dict[str, Meshing]
+        By the names of the meshes of the machine's system.
+
+    Raises
+    ------
+    InputError
+        A contact ratio is missing, or a stage has no teeth.
+    """
+    found = {}
+    for number, ((_, teeth), stage) in enumerate(
+        zip(machine.meshing, machine.stages, strict=True), start=1
+    ):
+        frequency = abs(speed * machine.speeds[number - 1]) * teeth[0] / (2.0 * pi)
+        if isinstance(stage, PlanetaryData):
+            places = np.array(equal_angles(stage.planets))
+            phases = (of(teeth[1], teeth[0], places) for of in (sun_phases, ring_phases))
+            for kind, of in zip(("sun-planet", "ring-planet"), phases, strict=True):
+                ratio = _ratio(contact_ratios, f"stage {number} {kind}")
+                for planet, phase in enumerate(of, start=1):
+                    name = f"stage {number} {kind} {planet}"
+                    found[name] = Meshing(ratio, frequency, -float(phase) % 1.0)
+        else:
+            name = f"stage {number} mesh"
+            found[name] = Meshing(_ratio(contact_ratios, name), frequency)
+    return found
+
+
+def _ratio(contact_ratios: Mapping[str, float], name: str) -> float:
+    if name not in contact_ratios:
+        raise InputError(f"no contact ratio of {name!r} is given: add it")
+    return contact_ratios[name]
+
+
+def varying_equations(
+    system: System,
+    meshing: Mapping[str, Meshing],
+    speed: float = 0.0,
+    *,
+    backlash: float | None = None,
+    damping: float = 0.0,
+    harmonics: int = HARMONICS,
+) -> Equations:
+    """Equations of motion of a system whose meshes vary with time.
+
+    Parameters
+    ----------
+    system : System
+        In a frame at rest.
+    meshing : Mapping[str, Meshing]
+        By the name of a mesh; all of its slices vary together.
+    speed : float
+        Of reference, for gyroscopic terms [rad/s].
+    backlash : float, optional
+        Of all these meshes along their lines of action [m]: teeth part, and touch with their other
+        flanks; without, meshes pull as they push.
+    damping : float
+        Of the system: C is this time [s] times the stiffness of the springs, beside their dampers.
+    harmonics : int
+        Of the waves.
+
+    Returns
+    -------
+    equations : Equations
+
+    Raises
+    ------
+    InputError
+        A mesh is not in the system.
+    """
+    count = len(system.spring_names)
+    wave, phase, frequency = np.full(count, -1), np.zeros(count), np.zeros(count)
+    half = np.zeros(count)
+    ratios: list[float] = []
+    for name, mesh in meshing.items():
+        of = [
+            i
+            for i, spring in enumerate(system.spring_names)
+            if spring == name or spring.startswith(f"{name} slice ")
+        ]
+        if not of:
+            raise InputError(f"no mesh {name!r} in the system: correct its name")
+        if mesh.contact_ratio not in ratios:
+            ratios.append(mesh.contact_ratio)
+        wave[of] = ratios.index(mesh.contact_ratio)
+        phase[of], frequency[of] = mesh.phase, mesh.frequency
+        half[of] = 0.5 * (backlash or 0.0)
+    springs = spring_laws(
+        system.rows,
+        system.stiffness,
+        system.damping + damping * system.stiffness,
+        lower=-half,
+        upper=half,
+        wave=wave,
+        phase=phase,
+        frequency=frequency,
+        waves=np.stack([contact_wave(ratio, harmonics) for ratio in ratios]) if ratios else None,
+    )
+    return equations_of_motion(
+        system.mass,
+        springs,
+        speed * system.gyroscopic,
+        system.extra - speed**2 * system.centripetal,
+    )

@@ -1,0 +1,300 @@
+"""Designs side by side: what differs between scenes, each quantity at the cheapest level enough.
+
+A difference counts where it is larger than what its two values may be wrong by. So every quantity
+of every design has a band, and a level is enough where the bands of both are within a tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import silent
+from fe_drivetrain.fidelity.adviser import Quantity, banded_assembly, relative_difference
+from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
+from fe_drivetrain.fidelity.quantities import NOISE
+from fe_drivetrain.fidelity.shafts import condensed_shaft
+from fe_drivetrain.response.model import scene_loads
+from fe_drivetrain.scene.scene import Scene, coarser_scene
+
+
+@dataclass(frozen=True)
+class Value:
+    """A quantity of one design.
+
+    Attributes
+    ----------
+    values : Floats
+        (k,) see `Quantity.of`.
+    band : float
+        Largest error of their norm, relative; NaN where it is not known.
+    level : int
+        At which they were found.
+    """
+
+    values: Floats
+    band: float
+    level: int
+
+    @property
+    def size(self) -> float:
+        """The value, or the norm of several."""
+        one = len(self.values) == 1
+        return float(self.values[0]) if one else float(np.linalg.norm(self.values))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A quantity of all designs.
+
+    Attributes
+    ----------
+    quantity : Quantity
+        What it is.
+    values : tuple[Value, ...]
+        Of each design, the first one that the others are compared with.
+    """
+
+    quantity: Quantity
+    values: tuple[Value, ...]
+
+    @property
+    def changes(self) -> Floats:
+        """(n,) of the designs after the first: change relative to the first's; infinite from zero.
+
+        Of several values it is the norm of their changes, and has no sign.
+        """
+        first = self.values[0]
+        size = abs(first.size)
+        return np.array(
+            [self._change(other) / size if size > 0.0 else np.inf for other in self.values[1:]]
+        )
+
+    @property
+    def bands(self) -> Floats:
+        """(n,) what each change may be wrong by: the bands of its two values together."""
+        first = self.values[0]
+        size = abs(first.size)
+        bands = [first.band * size + other.band * abs(other.size) for other in self.values[1:]]
+        return np.array([band / size if size > 0.0 else np.inf for band in bands])
+
+    @property
+    def ranks(self) -> Floats:
+        """(n,) size of each change, relative to the larger of its two values: 1 from zero."""
+        return np.array([abs(self._change(other)) / self._larger(other) for other in self._others])
+
+    @property
+    def rank_bands(self) -> Floats:
+        """(n,) what each of the `ranks` may be wrong by."""
+        first = self.values[0]
+        bands = [first.band * abs(first.size) + o.band * abs(o.size) for o in self._others]
+        return np.array([b / self._larger(o) for b, o in zip(bands, self._others, strict=True)])
+
+    @property
+    def is_known(self) -> bool:
+        """Whether a change is larger than its band."""
+        return bool((self.ranks > self.rank_bands).any())
+
+    @property
+    def _others(self) -> tuple[Value, ...]:
+        return self.values[1:]
+
+    def _larger(self, other: Value) -> float:
+        return max(abs(self.values[0].size), abs(other.size)) or 1.0
+
+    def _change(self, other: Value) -> float:
+        first = self.values[0].values
+        change = other.values - first
+        if len(first) == 1:
+            return float(change[0] * (np.sign(first[0]) or 1.0))
+        return float(np.linalg.norm(change))
+
+
+def all_quantities(scene: Scene, load: Floats | None = None) -> list[Quantity]:
+    """Stiffness at the hub, and reactions of the bearings and of the gearbox.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    load : Floats or None
+        That causes the reactions, see `Quantity`.
+    """
+    names = [f"{owner}.{c}" for owner in (*scene.bearing_names, "gearbox") for c in FORCES]
+    hub = [Quantity(f"hub.stiffness.{motion}") for motion in MOTIONS]
+    return [*hub, *(Quantity(name, load) for name in names)]
+
+
+def compare_designs(
+    designs: Mapping[str, Scene],
+    quantities: Sequence[Quantity] | None = None,
+    tolerance: float = 0.05,
+    load: Mapping[str, float] | None = None,
+    report: Callable[[str], object] = silent,
+) -> list[Difference]:
+    """Quantities of several designs, each at the cheapest level that is enough for all of them.
+
+    Parameters
+    ----------
+    designs : mapping of str to Scene
+        By name; the others are compared with the first.
+    quantities : sequence of Quantity, optional
+        What is compared; `all_quantities` that every design has, and that are not zero, where left
+        out.
+    tolerance : float
+        Allowed error of a change, relative to the first design's value.
+    load : mapping of str to float, optional
+        That causes the reactions, by names of `fe_drivetrain.response.scene_loads`; each of the six
+        hub loads, one at a time, where left out.
+    report : callable
+        Called with what is being done.
+
+    Returns
+    -------
+    list of Difference
+        The largest change first; those that are not known to be one last.
+
+    Raises
+    ------
+    InputError
+        There are fewer than two designs, or a quantity is none of theirs.
+    """
+    if len(designs) < 2:
+        raise InputError("there is one design: give at least two to compare")
+    if not 0 < tolerance < 1:
+        raise InputError(f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %")
+    # a thinner wall than the sizes were made for needs smaller ones
+    designs = {
+        name: coarser_scene(scene, 1.0, scene.mesh.elements_per_turn)
+        for name, scene in designs.items()
+    }
+    asked: dict[str, Sequence[Quantity]] = {}
+    for name, scene in designs.items():
+        factors = None if load is None else _factors(scene, load)
+        if quantities is None:
+            asked[name] = all_quantities(scene, factors)
+        else:
+            asked[name] = [Quantity(one.name, factors) for one in quantities]
+            for one in asked[name]:
+                one.check(scene)
+    common = [
+        one.name
+        for one in next(iter(asked.values()))
+        if all(one.name in {other.name for other in others} for others in asked.values())
+    ]
+    found = {
+        name: _on_springs(scene, _chosen(asked[name], common), _named(report, name))
+        for name, scene in designs.items()
+    }
+    if quantities is None:
+        something = [_not_zero(found[name], scene) for name, scene in designs.items()]
+        common = [q for q in common if any(q in some for some in something)]
+    # half of the tolerance for each of the two values of a change
+    short = [q for q in common if any(not found[d][q].band <= tolerance / 2 for d in designs)]
+    if short:
+        for name, scene in designs.items():
+            some = _chosen(asked[name], short)
+            level, _, bands = banded_assembly(scene, some, _named(report, name))
+            for quantity, band in zip(some, bands, strict=True):
+                values = quantity.of(level, scene.shaft.length)
+                found[name][quantity.name] = Value(values, band.half_width, level.level)
+    first = next(iter(asked))
+    differences = [
+        Difference(quantity, tuple(found[d][quantity.name] for d in designs))
+        for quantity in _chosen(asked[first], common)
+    ]
+    return sorted(differences, key=lambda d: (not d.is_known, -float(d.ranks.max())))
+
+
+def scene_changes(before: Scene, after: Scene) -> list[tuple[str, Any, Any]]:
+    """What two scenes state differently: dotted key, and both values (None where there is none)."""
+    a, b = (_flat(scene.model_dump(mode="json"), "") for scene in (before, after))
+    return [
+        (key, a.get(key), b.get(key))
+        for key in dict.fromkeys([*a, *b])
+        if key != "title" and a.get(key) != b.get(key)
+    ]
+
+
+def _flat(value: Any, key: str) -> dict[str, Any]:
+    """Values of nested mappings and lists by dotted key."""
+    if isinstance(value, Mapping):
+        parts = value.items()
+    elif isinstance(value, list):
+        parts = enumerate(value)  # type: ignore[assignment]
+    else:
+        return {key: value}
+    found: dict[str, Any] = {}
+    for name, part in parts:
+        found |= _flat(part, f"{key}.{name}" if key else str(name))
+    return found
+
+
+def _factors(scene: Scene, load: Mapping[str, float]) -> Floats:
+    names = scene_loads(scene)
+    unknown = [name for name in load if name not in names]
+    if unknown:
+        raise InputError(f"load {unknown[0]!r} is unknown: use one of {', '.join(names)}")
+    return np.array([load.get(name, 0.0) for name in names])
+
+
+def _named(report: Callable[[str], object], name: str) -> Callable[[str], object]:
+    """Reports what is being done with the design that it is done with."""
+    return lambda step: report(f"{name}: {step}")
+
+
+def _chosen(quantities: Sequence[Quantity], names: Sequence[str]) -> list[Quantity]:
+    return [one for one in quantities if one.name in names]
+
+
+def _not_zero(found: Mapping[str, Value], scene: Scene) -> list[str]:
+    """Names of the values that are more than the noise of a mesh."""
+    sizes = {
+        name: abs(value.size) / (scene.shaft.length if ".M" in name else 1.0)
+        for name, value in found.items()
+        if not name.startswith("hub.")
+    }
+    least = NOISE * max(sizes.values(), default=0.0)
+    return [name for name in found if sizes.get(name, np.inf) > least]
+
+
+def _on_springs(
+    scene: Scene, quantities: Sequence[Quantity], report: Callable[[str], object]
+) -> dict[str, Value]:
+    """Values by statics where it decides them, else of the meridian between its housings' bounds.
+
+    The band is that of the adviser: half of what the bounds differ by, and the change from beam to
+    meridian.
+    """
+    length = scene.shaft.length
+    report("level 0: statics")
+    statics = statics_level(scene)
+    found = {one.name: Value(one.of(statics, length), 0.0, 0) for one in quantities}
+    open_ = [one for one in quantities if not np.isfinite(found[one.name].values).all()]
+    if not open_:
+        return found
+    report("housings, faces in shape")
+    stiff = housing_springs(scene, coupling="rigid")[0]
+    report("housings, faces on average")
+    soft = housing_springs(scene, coupling="averaged")[0]
+    models = []
+    for level in (1, 2):
+        report(f"level {level}")
+        body = condensed_shaft(scene, level)
+        models.append([shaft_level(scene, level, springs, body) for springs in (stiff, soft)])
+    (beam, _), (meridian, bound) = models
+    for one in open_:
+        values = one.of(meridian, length)
+        if not values.any():
+            found[one.name] = Value(values, 0.0, 2)
+            continue
+        band = relative_difference(one.of(bound, length), values) / 2
+        band += relative_difference(one.of(beam, length), values)
+        found[one.name] = Value(values, band, 2)
+    return found

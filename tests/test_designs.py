@@ -1,0 +1,124 @@
+"""Designs side by side: what changes, by how much, and which level says so."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import coarse_scene
+
+from fe_drivetrain.commands.app import main
+from fe_drivetrain.commands.designs import parse_values
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.adviser import Quantity
+from fe_drivetrain.fidelity.designs import Difference, Value, compare_designs, scene_changes
+from fe_drivetrain.scene.reading import change_scene
+
+BORE = "shaft.sections.0.inner_diameter"
+#: What level 2 knows of a coarse scene.
+ENOUGH = 0.5
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[str, Difference]:
+    """A bored shaft against a solid one, by name of the quantity."""
+    solid = coarse_scene("spherical")
+    designs = {"solid": solid, "bored": change_scene(solid, {BORE: 0.25}), "same": solid}
+    names = ("hub.stiffness.ry", "hub.stiffness.rx", "gearbox.Mx", "main_bearing.Fz")
+    return {d.quantity.name: d for d in compare_designs(designs, [*map(Quantity, names)], ENOUGH)}
+
+
+def test_a_bored_shaft_gives_way(found: dict[str, Difference]) -> None:
+    for name in ("hub.stiffness.ry", "hub.stiffness.rx"):
+        bored, same = found[name].changes
+        assert -0.5 < bored < 0.0
+        assert same == 0.0
+    # of torsion, the shaft between its ends is all that changes
+    left = 1.0 - (0.25 / coarse_scene("bonded").shaft.sections[0].outer_diameter) ** 4
+    assert found["hub.stiffness.rx"].changes[0] == pytest.approx(left - 1.0, rel=0.2)
+
+
+def test_what_statics_decides_does_not_change(found: dict[str, Difference]) -> None:
+    torque = found["gearbox.Mx"]
+    assert [value.level for value in torque.values] == [0, 0, 0]
+    assert not torque.bands.any()
+    assert not torque.changes.any()
+    assert not torque.is_known
+
+
+def test_bands_are_those_of_both_values(found: dict[str, Difference]) -> None:
+    force = found["hub.stiffness.ry"]
+    first, bored, _ = force.values
+    band = (first.band * abs(first.size) + bored.band * abs(bored.size)) / abs(first.size)
+    assert force.bands[0] == pytest.approx(band)
+    assert 0.0 < force.bands[0] <= ENOUGH
+
+
+def test_known_changes_come_first(found: dict[str, Difference]) -> None:
+    order = [(not one.is_known, -one.ranks.max()) for one in found.values()]
+    assert order == sorted(order)
+
+
+def test_a_change_from_zero_is_all_of_the_larger() -> None:
+    quantity = Quantity("main_bearing.My", np.ones(10))
+    one = Difference(quantity, (Value(np.zeros(1), 0.0, 2), Value(np.array([3.0]), 0.1, 2)))
+    assert np.isinf(one.changes).all()
+    assert one.ranks == pytest.approx([1.0])
+    assert one.rank_bands == pytest.approx([0.1])
+
+
+def test_signs_are_those_of_a_growing_value() -> None:
+    """From -2 to -3 a value grows by half, whatever its sign."""
+    quantity = Quantity("main_bearing.Fz", np.ones(10))
+    one = Difference(quantity, tuple(Value(np.array([v]), 0.0, 0) for v in (-2.0, -3.0, 2.0)))
+    assert one.changes == pytest.approx([0.5, -2.0])
+
+
+def test_scenes_differ_in_what_they_state() -> None:
+    a = coarse_scene("bonded")
+    assert scene_changes(a, a) == []
+    assert scene_changes(a, change_scene(a, {BORE: 0.2})) == [(BORE, 0.0, 0.2)]
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [("a.b=1,2.5", (1.0, 2.5)), ("a.b=0:1:5", (0.0, 0.25, 0.5, 0.75, 1.0))],
+)
+def test_values_of_a_parameter(text: str, values: tuple[float, ...]) -> None:
+    varied = parse_values(text)
+    assert varied.key == "a.b"
+    assert varied.values == values
+
+
+@pytest.mark.parametrize("text", ["a.b", "a.b=", "=1,2", "a.b=1", "a.b=1,1", "a.b=1:2:99", "a=x,2"])
+def test_what_are_no_values_is_said(text: str) -> None:
+    with pytest.raises(InputError, match="--vary"):
+        parse_values(text)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["two_bearings"], "nothing to compare two_bearings with"),
+        (["two_bearings", "two_bearings"], "given twice"),
+        (["two_bearings", "stepped_shaft", "--vary", "shaft.front=-1,-2"], "changes one scene"),
+        (["two_bearings", "stepped_shaft", "--quantity", "front.Q"], "'front.Q' is unknown"),
+        (["two_bearings", "main_bearing_bonded", "--quantity", "rear.Fz"], "'rear.Fz' is unknown"),
+    ],
+)
+def test_what_cannot_be_compared_is_said(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["compare", *words])
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err
+
+
+def test_the_command_shows_a_sweep(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--vary", f"{BORE}=0.1,0.25", "--quantity", "hub.stiffness.rx", "--tolerance", "50%"]
+    settings = ["--set", "shaft.front=-1.0", "--set", "mesh.shaft=0.3"]
+    with pytest.raises(SystemExit) as ended:
+        main(["compare", "main_bearing_bonded", *words, *settings, "--out", str(tmp_path)])
+    assert ended.value.code == 0
+    assert "hub.stiffness.rx of 0.25 against 0.1: -" in capsys.readouterr().out
+    assert "what changes with" in (tmp_path / "report.html").read_text()
