@@ -80,6 +80,12 @@ from .response import frequency_response as frequency_response
 from .response import mesh_orders as mesh_orders
 from .response import modal_response as modal_response
 from .response import speed_diagram as speed_diagram
+from .roller_seats import OnRollers as OnRollers
+from .roller_seats import Seat as Seat
+from .roller_seats import machine_seat as machine_seat
+from .roller_seats import planet_seats as planet_seats
+from .roller_seats import seat as seat
+from .roller_seats import static_on_rollers as static_on_rollers
 from .springs import Mesh as Mesh
 from .springs import Place as Place
 from .springs import Spring as Spring
