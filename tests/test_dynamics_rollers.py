@@ -13,6 +13,7 @@ from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble
+from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.levels import assembly, machine_system, steady_load
 from fe_drivetrain.dynamics.roller_seats import (
     OnRollers,
@@ -25,6 +26,8 @@ from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.dynamics.static import static
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.fidelity.component_frames import carrier_frame
+from fe_drivetrain.scene import CarrierComponent, library_component
 
 AT = (0.3, 0.1, -0.2)
 SHAFT = Place("shaft", (0.0, 0.0, 0.0))
@@ -178,3 +181,21 @@ def test_a_carrier_bearing_with_clearance_lets_the_carrier_settle() -> None:
     assert fall[1] < fall[0] < 0
     with pytest.raises(InputError, match="no bearing 'PLC'"):
         machine_seat(whole, "PLC", PLANET)
+
+
+def test_pins_of_a_flexible_carrier_stay_when_rollers_take_the_place_of_springs() -> None:
+    machine = library_machine("nrel_5mw")
+    component = library_component("planet_carrier")
+    assert isinstance(component, CarrierComponent)
+    carrier = Flexible({1: carrier_frame(component)})
+    bearing = cylindrical("planet", 20, 0.06, 0.2, 0.5, laminae=4, clearance=80e-6)
+    seats = planet_seats(machine, 1, bearing, flexible=carrier)
+    reduced = machine_system(machine, held_generator=True, flexible=carrier)
+    with pytest.raises(InputError, match="'stage 1 pin body 1' has no mass"):
+        static_on_rollers(reduced, steady_load(machine, reduced, 3.9e6, np.zeros(6)), seats)
+    parts = assembly(machine, held_generator=True, flexible=carrier)
+    whole = assemble(parts.bodies, parts.springs, parts.superelements)
+    found = static_on_rollers(whole, steady_load(machine, whole, 3.9e6, np.zeros(6)), seats)
+    assert found.converged
+    # bearings of the carrier carry no torque
+    assert abs(found.loads[:, 2].sum()) == pytest.approx(3.9e6 / 0.863, rel=1e-6)

@@ -56,11 +56,23 @@ class Seat:
     motions: tuple[Spring, ...]
 
     def rows(self, system: System) -> Floats:
-        """(5, n) motion of the inner ring against the outer one by the degrees of freedom."""
+        """(5, n) motion of the inner ring against the outer one by the degrees of freedom.
+
+        Raises
+        ------
+        InputError
+            A ring's body has been eliminated with the springs in whose place the rollers are.
+        """
         found = np.zeros((5, len(system.names)))
-        for row, spring in zip(found, self.motions, strict=True):
-            for body, by in spring.by.items():
-                row += by @ system.motion_of(body, np.eye(len(system.names)))
+        for body in self.motions[0].by:
+            moves = system.motion_of(body, np.eye(len(system.names)))
+            if len({system.names[k].rpartition(" ")[0] for k in np.flatnonzero(moves.any(0))}) > 1:
+                raise InputError(
+                    f"{body!r} has no mass and was eliminated with the springs of its bearings: "
+                    "assemble the machine without that, as assemble(a.bodies, a.springs, "
+                    "a.superelements) with a = assembly(machine, ...)"
+                )
+            found += [spring.by[body] @ moves for spring in self.motions]
         return found
 
 
