@@ -196,8 +196,8 @@ def turn(machine: Machine, model: Model, moment: float, angles: Floats) -> Turne
         for k in range(3):
             for j, side in enumerate(SIDES):
                 name = f"stage 1 pin {k + 1} {side}"
-                across = (one.static.force(f"{name} {u}") for u in ("uy", "uz"))
-                loads[i, k, j] = one.radial(name) if seats else np.hypot(*across)
+                y, z = (one.static.force(f"{name} {u}") for u in ("uy", "uz"))
+                loads[i, k, j] = one.radial(name) if seats else np.hypot(y, z)
     return Turned(loads, found)
 
 
