@@ -191,8 +191,10 @@ def test_pins_of_a_flexible_carrier_stay_when_rollers_take_the_place_of_springs(
     bearing = cylindrical("planet", 20, 0.06, 0.2, 0.5, laminae=4, clearance=80e-6)
     seats = planet_seats(machine, 1, bearing, flexible=carrier)
     reduced = machine_system(machine, held_generator=True, flexible=carrier)
-    with pytest.raises(InputError, match="'stage 1 pin body 1' has no mass"):
+    with pytest.raises(InputError, match="'stage 1 pin 1 upwind uy' holds a body without mass"):
         static_on_rollers(reduced, steady_load(machine, reduced, 3.9e6, np.zeros(6)), seats)
+    with pytest.raises(InputError, match="cannot change"):
+        static(reduced, np.zeros(len(reduced.names)), {"stage 1 pin 2 downwind uz": 1e-5})
     parts = assembly(machine, held_generator=True, flexible=carrier)
     whole = assemble(parts.bodies, parts.springs, parts.superelements)
     found = static_on_rollers(whole, steady_load(machine, whole, 3.9e6, np.zeros(6)), seats)

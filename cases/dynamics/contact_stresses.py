@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "The thesis's 2.32 and 1.32 make sun over ring 1.757. For its teeth, 29, 58 and 145, with "
         "equal forces and faces, Hertz leaves exactly the root of 5, 2.236: the two printed ratios "
-        "contradict each other, and no choice of module or face can meet both."
+        "contradict each other, and no module meets both with one face width."
     )
     page.text(
         "Its Eq 5.13, half the sum of curvatures, is 1 over a length where the half width of Eq "
@@ -85,7 +85,7 @@ def run(run: Run, page: Page) -> None:
         f"{high / pressures['stage 2']:.2f} of the intermediate one, where the thesis prints 1.32 "
         "and 1.22.",
         f"Over the ring's it is {high / pressures['ring-planet']:.2f}, where it prints 2.32: with "
-        "its own teeth and the other two ratios this cannot be met.",
+        "its own teeth, its other ratios and one face width this cannot be met.",
     )
     for text in library_machine("synthetic_2mw").assumed:
         page.assume(text.partition(":")[0][:60], "", "", text)

@@ -76,7 +76,8 @@ def static(
     Raises
     ------
     InputError
-        Something moves freely, a name is no spring, or the contacts do not settle.
+        Something moves freely, a name is no spring, or one that cannot change, or the contacts do
+        not settle.
     """
     short, one_sided = gaps_and_contacts(system, gaps, contacts)
     closed = np.ones(len(short), dtype=bool)
@@ -105,9 +106,9 @@ def gaps_and_contacts(
     """(m,) gaps of all springs [m, rad], and whether each only presses; as of `static`."""
     short = np.zeros(len(system.spring_names))
     for name, gap in (gaps or {}).items():
-        short[system.spring(name)] = gap
+        short[system.changeable(name)] = gap
     one_sided = np.zeros(len(short), dtype=bool)
-    one_sided[[system.spring(name) for name in contacts]] = True
+    one_sided[[system.changeable(name) for name in contacts]] = True
     return short, one_sided
 
 
