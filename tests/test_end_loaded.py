@@ -7,8 +7,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.validation import end_loaded, solid_shafts
 from fe_drivetrain.validation.bent_blocks import BentBlock
-from fe_drivetrain.validation.interference_fits import press
-from fe_drivetrain.validation.plane_rings import Lame, Plane, interference_pressure
+from fe_drivetrain.validation.interference_fits import exact_fit, press
 
 STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=0.0)
 
@@ -59,13 +58,13 @@ def test_the_skin_is_the_outermost_ring_of_nodes(shaft: solid_shafts.Solid) -> N
 def test_a_ring_is_pressed_on_as_two_cylinders_of_lame() -> None:
     radii, misfit = (0.15, 0.3175, 0.348), 1e-4
     iron = Material(youngs_modulus=169e9, poisson_ratio=0.275, density=0.0)
-    found = press(radii, misfit, (iron, STEEL), 1)
-    planes = Plane(169e9, 0.275), Plane(200e9, 0.3)
-    bodies = Lame(0.15, 0.3175), Lame(0.3175, 0.348)
-    pressure = interference_pressure(misfit, *bodies, on=planes[0], of=planes[1])
-    assert found.pressure == pytest.approx(pressure, rel=1e-3)
+    materials = iron, STEEL
+    found, exact = press(radii, misfit, materials, 1), exact_fit(radii, misfit, materials)
+    assert exact.ring_moved - exact.shaft_moved == pytest.approx(misfit)
+    assert exact.ring.radial(0.3175) == pytest.approx(-exact.pressure)
+    assert found.pressure == pytest.approx(exact.pressure, rel=1e-3)
     assert found.ring_moved - found.shaft_moved == pytest.approx(misfit, rel=1e-9)
-    assert found.energy == pytest.approx(0.25 * pressure * misfit * np.pi * 0.3175, rel=1e-3)
+    assert found.energy == pytest.approx(exact.energy, rel=1e-3)
 
 
 def test_shear_and_bending_of_a_block_store_what_the_closed_forms_say() -> None:

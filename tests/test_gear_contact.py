@@ -15,7 +15,8 @@ from fe_drivetrain.gear.flank_stress import (
     tooth_contact,
     von_mises,
 )
-from fe_drivetrain.gear.involute import Gear, Pair
+from fe_drivetrain.gear.involute import Pair
+from fe_drivetrain.validation.published_gears import nrel_750kw
 
 STEEL = reduced_modulus()
 CONTACT = LineContact(8e5, 0.03, STEEL)
@@ -104,34 +105,26 @@ def test_the_shear_that_alternates_is_a_quarter_of_the_pressure() -> None:
 
 def grc() -> dict[str, tuple[Pair, float, float]]:
     """NREL 750 kW gearbox at 325 kN m: pair, force on the line of action, face width."""
-    mm = 1e-3
-
-    def pair(teeth, module, helix, distance, width, shifts, tips) -> Pair:
-        beta, hand = radians(helix), 1.0 if teeth[1] < 0 else -1.0
-        one, two = (
-            Gear(z, module * mm, width * mm, h * beta, x, tip_diameter=d * mm)
-            for z, h, x, d in zip(teeth, (1.0, hand), shifts, tips, strict=True)
-        )
-        return Pair(one, two, distance * mm)
-
-    torque, ratio = 325e3, 1.0 + 99.0 / 21.0
-    sun = pair((21, 39), 10, 7.5, 308, 220, (0.176, 0.399), (232.0, 420.0))
-    ring = pair((39, -99), 10, 7.5, 308, 227.5, (0.399, -0.974), (420.0, 998.0))
-    second = pair((23, 82), 8.25, 14, 450, 170, (0.154, 0.296), (210.0, 710.0))
-    third = pair((22, 88), 5, 14, 285, 110, (0.166, 0.156), (125.0, 464.0))
-    mesh = torque / 6.0 / 0.308
-    shaft = torque / ratio
-    return {
-        "ring": (ring, mesh / cos(ring.working_angle), 0.2275),
-        "sun": (sun, mesh / cos(sun.working_angle), 0.220),
-        "second": (second, shaft / second.second.base_radius, 0.170),
-        "third": (third, shaft * 23 / 82 / third.second.base_radius, 0.110),
+    pairs, torque = nrel_750kw(), 325e3
+    shaft = torque / (1.0 + 99.0 / 21.0)
+    high = shaft * 23.0 / 82.0
+    forces = {
+        "sun": torque / 6.0 / 0.308 / cos(pairs["sun"].working_angle),
+        "ring": torque / 6.0 / 0.308 / cos(pairs["ring"].working_angle),
+        "intermediate": shaft / pairs["intermediate"].second.base_radius,
+        "high speed": high / pairs["high speed"].second.base_radius,
     }
+    return {name: (pairs[name], force, pairs[name].face_width) for name, force in forces.items()}
 
 
 @pytest.mark.parametrize(
     ("name", "pressure", "depth"),
-    [("ring", 484, 0.87), ("sun", 1070, 0.41), ("second", 1123, 0.46), ("third", 1200, 0.28)],
+    [
+        ("ring", 484, 0.87),
+        ("sun", 1070, 0.41),
+        ("intermediate", 1123, 0.46),
+        ("high speed", 1200, 0.28),
+    ],
 )
 def test_contact_stresses_of_the_750_kw_gearbox(name: str, pressure: float, depth: float) -> None:
     pair, force, width = grc()[name]

@@ -7,16 +7,17 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.gear.coupled_slices import Coupling, hertz_line_stiffness, loaded_with_coupling
+from fe_drivetrain.gear.coupled_slices import Coupling, loaded_with_coupling
+from fe_drivetrain.gear.energy import yang_sun_contact
 from fe_drivetrain.gear.involute import Gear, Pair, meshing_without_backlash
 from fe_drivetrain.gear.load_distribution import loaded, over_period, supported
 from fe_drivetrain.gear.load_factors import face_factor
+from fe_drivetrain.gear.pair_stiffness import constant_law, parabolic_law
 from fe_drivetrain.gear.slices import (
     Modifications,
     SlicedMesh,
     contact_rows,
     contacts,
-    parabolic_stiffness,
 )
 
 C = 14e9
@@ -39,7 +40,7 @@ KINDS = {"spur": SPUR, "ring": RING, "helical": HELICAL, "left": pair(radians(-1
 
 
 def sliced(of: Pair, ratio: float = 0.8, **more) -> SlicedMesh:
-    return SlicedMesh(of, parabolic_stiffness(of, C, ratio), backlash=PLAY, **more)
+    return SlicedMesh(of, parabolic_law(of, ratio, C), backlash=PLAY, **more)
 
 
 def total_stiffness(mesh: SlicedMesh, phases: int) -> np.ndarray:
@@ -50,7 +51,7 @@ def total_stiffness(mesh: SlicedMesh, phases: int) -> np.ndarray:
 
 def test_stiffness_of_a_pair_of_teeth_has_its_bounds() -> None:
     path = SPUR.path
-    k = parabolic_stiffness(SPUR, C, 0.8)
+    k = parabolic_law(SPUR, 0.8, C)
     places = np.linspace(path.start, path.end, 101)
     assert (k(places) <= C).all()
     assert k(places).min() == pytest.approx(0.8 * C)
@@ -203,7 +204,7 @@ def test_35_slices_are_within_two_percent_of_many() -> None:
 
 def test_gears_hang_free_in_their_backlash() -> None:
     play = 200e-6
-    mesh = SlicedMesh(SPUR, parabolic_stiffness(SPUR, C), backlash=play)
+    mesh = SlicedMesh(SPUR, constant_law(C), backlash=play)
     forth, back = (loaded(mesh, 0.5, t) for t in (1e-3, -1e-3))
     assert forth.approach - back.approach == pytest.approx(play, rel=1e-6)
     assert not forth.forces[~forth.contacts.driving].any()
@@ -282,7 +283,7 @@ def test_supports_that_leave_a_motion_free_are_refused() -> None:
 
 def test_coupling_without_length_changes_nothing_and_long_one_makes_teeth_rigid() -> None:
     mesh = sliced(SPUR, 1.0, modifications=Modifications(slope=20e-6), slices=140)
-    hertz = hertz_line_stiffness()
+    hertz = 1.0 / yang_sun_contact()
     plain = loaded(mesh, 0.5, TORQUE)
     none = loaded_with_coupling(mesh, 0.5, TORQUE, Coupling(0.0, hertz))
     driving = plain.contacts.driving
@@ -301,7 +302,7 @@ def test_wrong_inputs_say_what_to_give() -> None:
     with pytest.raises(InputError, match="at least 1"):
         sliced(SPUR, slices=0)
     with pytest.raises(InputError, match="jam"):
-        SlicedMesh(SPUR, parabolic_stiffness(SPUR, C), backlash=-1e-4)
+        SlicedMesh(SPUR, constant_law(C), backlash=-1e-4)
     with pytest.raises(InputError, match="give more"):
         loaded_with_coupling(sliced(SPUR), 0.5, TORQUE, Coupling(0.0, 1e9))
     assert replace(sliced(SPUR), backlash=None).play == pytest.approx(0.0, abs=1e-12)

@@ -113,6 +113,28 @@ def test_the_capture_matrix_of_a_published_campaign() -> None:
     assert found.missing(10)[0].tolist() == [10, 10, 5, 3, 3, 0, 8]
 
 
+def test_the_matrix_of_files_used_for_inertia_has_another_mean_than_printed() -> None:
+    """PROTEST 2010, Fig. 4-14: 66 windows; 3.20 % is printed, the bins have 7.30 %."""
+    rows = [
+        [0, 2, 7, 4, 15, 1],
+        [0, 1, 4, 3, 3, 0],
+        [0, 2, 0, 2, 2, 0],
+        [1, 2, 1, 2, 0, 0],
+        [1, 2, 2, 2, 0, 0],
+        [2, 1, 0, 0, 0, 0],
+        [1, 1, 1, 0, 0, 0],
+        [1, 0, 0, 0, 0, 0],
+    ]
+    counts = np.array(rows)
+    wind = np.repeat(np.tile(np.arange(5.0, 11.0), 8), counts.ravel())
+    share = np.repeat(np.repeat(np.arange(0.04, 0.19, 0.02), 6), counts.ravel())
+    edges = np.arange(4.5, 11.0), np.arange(0.03, 0.2, 0.02)
+    found = capture_matrix(wind, wind * share, *edges)
+    assert found.counts.tolist() == rows
+    assert found.counts.sum(axis=0).tolist() == [6, 11, 15, 13, 20, 1]
+    assert found.mean_turbulence == pytest.approx(0.0730, abs=5e-5)
+
+
 def test_directions_are_seen_looking_downwind() -> None:
     """Weight points down, 270 deg; the moment of an overhung weight (My < 0) points right, 0."""
     assert np.degrees(direction([0.0], [-1.0])) == pytest.approx([270.0])

@@ -24,7 +24,7 @@ FLOORS = (
     {"interfaces"},
     {"solve"},
     {"beam", "response"},
-    {"dynamics", "fidelity", "peers", "report", "rings"},
+    {"dynamics", "fidelity", "peers", "procedure", "report", "rings"},
     {"coupled", "export", "suite", "uncertainty", "validation"},
     {"commands"},
     {"cases"},

@@ -16,7 +16,7 @@ from numpy.testing import assert_allclose
 from PIL import Image as Pixels
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.charts import density_chart
+from fe_drivetrain.report.charts import density_chart, heat_map
 from fe_drivetrain.report.page import (
     error_text,
     formatted,
@@ -401,6 +401,19 @@ def test_limits_are_on_the_page_and_on_the_atlas(tmp_path: Path) -> None:
     write_index(tmp_path)
     assert not (tmp_path / "atlas.html").exists()
     assert "atlas.html" not in (tmp_path / "index.html").read_text()
+
+
+def test_a_map_of_colours_has_named_or_numbered_cells_and_holes() -> None:
+    z = [[1.0, np.nan, 3.0], [4.0, 5.0, 6.0]]
+    titles = "load", "speed [m/s]", "share [%]"
+    shown = heat_map("map", ["Fx", "Fy", "Fz"], [3.0, 5.0], z, titles, (0.0, 10.0), height=300)
+    (data,) = shown.figure["data"]
+    assert data["x"] == ["Fx", "Fy", "Fz"]
+    assert data["y"] == [3.0, 5.0]
+    assert data["z"] == [[1.0, None, 3.0], [4.0, 5.0, 6.0]]
+    assert (data["zmin"], data["zmax"]) == (0.0, 10.0)
+    assert shown.figure["layout"]["yaxis"]["title"]["text"] == "speed [m/s]"
+    assert shown.figure["layout"]["height"] == 300
 
 
 def test_a_density_has_all_of_the_time_and_points_the_right_way() -> None:

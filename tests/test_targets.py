@@ -98,6 +98,10 @@ def test_the_band_is_of_all_meshes_or_the_change_from_the_one_before() -> None:
     assert by_order.band == pytest.approx(1.25 * (3 / 16) / 3)
 
 
+def test_a_series_of_meshes_shows_its_order() -> None:
+    assert a_series().order("sag [mm]") == pytest.approx(2.0)
+
+
 def test_of_two_meshes_the_band_is_three_times_what_is_missing() -> None:
     assert band_of([1.0, 0.5], [0.0, 0.75], order=2.0) == pytest.approx(3 * 0.25)
 

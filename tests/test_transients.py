@@ -208,3 +208,38 @@ def test_backlash_in_a_shutdown() -> None:
     assert gap.ratio(mesh).min() < -0.1
     assert gap.transient.motion.converged
     assert gap.transient.motion.relative_imbalance < 2e-3
+
+
+def test_after_a_dip_of_the_grid_the_generator_carries_rated_torque_again() -> None:
+    when = StopSequence(off=0.1, pitched=1e3, left=1.0, back=0.25, end=8.0)
+    found = shutdown(published.table("nrel_750kw"), 324e3, 2.31, 0.0, when, dt=2e-3, slip=0.02)
+    ratio, t = found.ratio("HSS"), found.transient.motion.times
+    off = (t > 0.1) & (t < 0.25)
+    # of its inertia alone: no torque at the generator, which is sped up by the shaft
+    generator = found.transient.motion.velocity[:, found.system.place("generator")]
+    assert (np.abs(np.diff(generator[off])) > 0.0).all()
+    assert ratio.max() > 1.2
+    assert ratio[-1] == pytest.approx(1.0, abs=0.03)
+
+
+def test_a_clutch_brings_two_masses_to_one_speed() -> None:
+    """Friction between two bodies: momentum stays, slip ends at the closed form."""
+    loose = equations_of_motion(J, spring_laws([[1.0, -1.0]], 0.0))
+    clutch = Brake(np.array([1.0, -1.0]), 2.0, 0.5)
+    start = State(np.zeros(2), np.array([4.0, 1.0]), np.zeros(2))
+    found = transient([Phase(4.0, loose, steady([0.0, 0.0]), clutch)], 1e-2, start)
+    assert_allclose(found.motion.velocity @ J, 13.0, rtol=1e-12)
+    assert found.events[0][0] == pytest.approx(0.5 + 3.0 / (2.0 / 3.0 + 2.0 / 1.0), rel=1e-9)
+    assert_allclose(found.motion.velocity[-1], 13.0 / 4.0, rtol=1e-9)
+    lost = 0.5 * (J[0] * J[1] / J.sum()) * 9.0
+    assert -found.motion.energies[-1, 2] == pytest.approx(lost, rel=1e-9)
+
+
+def test_a_disc_on_a_faster_shaft_brakes_as_much_with_less_torque() -> None:
+    """Row and torque of a brake go with the speed ratio: the same motion."""
+    one = braked(2e-3)
+    fast = Brake(5.0 * REAR, 4.0 / 5.0, 1.0)
+    other = transient([Phase(10.0, SHAFT, steady([0.0, 0.0]), fast)], 2e-3, turning(2.0))
+    assert_allclose([t for t, _ in other.events], [t for t, _ in one.events], rtol=1e-9)
+    assert_allclose(other.motion.q[-1], one.motion.q[-1], rtol=1e-9)
+    assert_allclose(5.0 * other.brake[-1], one.brake[-1], rtol=1e-6)

@@ -19,10 +19,12 @@ from fe_drivetrain.dynamics.meshing import (
     contact_wave,
     machine_meshing,
     varying_equations,
+    wave_of,
 )
 from fe_drivetrain.dynamics.steady_state import wind_up
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import library_machine
+from fe_drivetrain.gear.meshes import StiffnessTable
 
 
 def values(wave: Floats, points: int) -> Floats:
@@ -49,8 +51,19 @@ def test_levels_duty_and_mean_of_the_wave(ratio: float) -> None:
 
 def test_a_whole_contact_ratio_does_not_vary() -> None:
     assert_allclose(values(contact_wave(2.0), 512), 1.0, atol=1e-12)
-    with pytest.raises(InputError, match=r"contact ratio is 0\.9"):
+    with pytest.raises(InputError, match=r"contact ratio of 0\.9"):
         contact_wave(0.9)
+
+
+def test_a_tabled_course_over_its_mean() -> None:
+    """Of the room `gear`, straight between its values: the spline goes through them."""
+    table = StiffnessTable(np.array([1.0, 2.0, 4.0, 1.0]) * 1e8, 1.5)
+    wave = wave_of(table)
+    assert_allclose(values(wave, 4), np.array([1.0, 2.0, 4.0, 1.0]) / 2.0, rtol=1e-12)
+    assert values(wave, 4096).mean() == pytest.approx(1.0, abs=1e-6)
+    system, _ = park()
+    equations = varying_equations(system, {"stage 3 mesh": Meshing(1.5, 100.0, course=table)})
+    assert_allclose(equations.springs.waves[0], wave)
 
 
 RATIOS = {

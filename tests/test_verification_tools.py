@@ -96,3 +96,5 @@ def test_under_integration_fails_the_patch_test_only_where_elements_are_curved(n
     assert distorted_blocks.inner_forces(curved, stress, 6) < 1e-13
     assert distorted_blocks.inner_forces(curved, stress, 2) > 1e-4
     assert distorted_blocks.inner_forces(straight, stress, 2) < 1e-13
+    low, high = distorted_blocks.forces_by_degree(curved, (2, 6))
+    assert high < 1e-13 < distorted_blocks.inner_forces(curved, stress, 2) <= low

@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_drivetrain.common import Floats, Ints
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record
+from fe_drivetrain.suite import Page, Record, Target
 from fe_drivetrain.torsion import Modes
 from fe_drivetrain.validation.published_drivetrains import digit
 
@@ -31,27 +31,17 @@ def check_printed(
     """
     for mode, (f, value, band) in enumerate(zip(found, printed, bands, strict=True), start=1):
         if float(value) != 0.0 and mode not in leave_out:
-            page.equals(
-                f"{label}: frequency {mode} [Hz]",
-                float(f),
-                float(value),
-                within=float(band) + digit(value),
-                relative=False,
-                why=ROUNDING,
-                source=source,
-            )
+            within = float(band) + digit(value), ROUNDING, source
+            title = f"{label}: frequency {mode} [Hz]"
+            page.meets(float(f), Target(title, float(value), *within, relative=False))
 
 
 def check_count(page: Page, label: str, wrong: int) -> None:
     """Whether `independent_torsion.certified` found every frequency in its place."""
-    page.vanishes(
-        f"{label}: frequencies that are not where exact counting puts them, of 1e-9",
-        float(wrong),
-        within=0.5,
-        why="a single frequency elsewhere fails; 1e-9 is far above what rounding leaves of "
-        "singular values",
-        source="Sylvester's law of inertia, in rational arithmetic",
-    )
+    title = "frequencies that are not where exact counting puts them, of 1e-9"
+    why = "a single frequency elsewhere fails; 1e-9 is far above what rounding leaves of singular "
+    sylvester = "Sylvester's law of inertia, in rational arithmetic"
+    page.meets(float(wrong), Target(title, 0.0, 0.5, f"{why}values", sylvester), of=label)
 
 
 def frequency_rows(
@@ -76,30 +66,16 @@ def show_shapes(
     """Mode shapes seen from the rotor's shaft (angles over the speed ratio), largest 1."""
     seen = modes.shapes / np.array([[speeds[name]] for name in modes.names])
     seen = seen / np.abs(seen).max(axis=0)
-    page.chart(
-        caption,
-        [
-            trace(
-                f"{modes.frequencies[m]:.4g} Hz",
-                np.arange(len(modes.names)),
-                seen[:, m],
-                mode="lines+markers",
-                text=list(modes.names),
-            )
-            for m in chosen
-        ],
-        "inertia, from the rotor (0) to the generator",
-        "angle over speed ratio, largest 1",
-    )
+    at, hz, text = np.arange(len(modes.names)), modes.frequencies, list(modes.names)
+    curves = [
+        trace(f"{hz[m]:.4g} Hz", at, seen[:, m], mode="lines+markers", text=text) for m in chosen
+    ]
+    x, y = "inertia, from the rotor (0) to the generator", "angle over speed ratio, largest 1"
+    page.chart(caption, curves, x, y)
 
 
 def show_energy(page: Page, caption: str, springs: Sequence[str], modes: Modes, at: Ints) -> None:
     """Share of each spring in the strain energy of modes [%]."""
-    page.table(
-        caption,
-        [
-            [spring, *(100 * share[at]).tolist()]
-            for spring, share in zip(springs, modes.stiffness_shares, strict=True)
-        ],
-        ["spring", *(f"{modes.frequencies[m]:.5g} Hz" for m in at)],
-    )
+    shares = zip(springs, modes.stiffness_shares, strict=True)
+    rows = [[spring, *(100 * share[at]).tolist()] for spring, share in shares]
+    page.table(caption, rows, ["spring", *(f"{modes.frequencies[m]:.5g} Hz" for m in at)])

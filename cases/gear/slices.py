@@ -15,11 +15,11 @@ from fe_drivetrain.gear import (
     SlicedMesh,
     contacts,
     face_factor,
-    hertz_line_stiffness,
     loaded,
     loaded_with_coupling,
     over_period,
-    parabolic_stiffness,
+    parabolic_law,
+    yang_sun_contact,
 )
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.rated_gears import rated_meshes
@@ -40,7 +40,7 @@ LADDER = "face load factor K_Hbeta"
 def mesh(slices: int, misalignment: float = 0.0, pair: Pair = PAIR) -> SlicedMesh:
     """Stage 3 in slices, misaligned by a gap at one end [m]."""
     change = Modifications(slope=misalignment)
-    stiffness = parabolic_stiffness(pair, C_SINGLE, RATIO)
+    stiffness = parabolic_law(pair, RATIO, C_SINGLE)
     return SlicedMesh(pair, stiffness, change, slices, PLAY)
 
 
@@ -215,7 +215,7 @@ def transmission(page: Page) -> None:
 def coupling(page: Page) -> float:
     """K_Hbeta over the length on which slices hold each other; its rise at one module, in %."""
     module, rows = PAIR.first.normal_module, []
-    hertz = hertz_line_stiffness()
+    hertz = 1.0 / yang_sun_contact()
     of = mesh(35, 50e-6)
     plain = loaded(of, 0.5, TORQUE).face_factor
     for length in (0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0):

@@ -1,12 +1,11 @@
 """Stress below the flanks of the NREL 750 kW gearbox, and the constants of a line contact."""
 
-from math import cos, radians
+from math import cos
 
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.gear import (
-    Gear,
     LineContact,
     Pair,
     reduced_modulus,
@@ -16,6 +15,7 @@ from fe_drivetrain.gear import (
 )
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.published_gears import nrel_750kw
 
 STEEL = reduced_modulus()
 TORQUE = 325e3  # N m of the low-speed shaft
@@ -27,36 +27,23 @@ SOURCE = (
 HERTZ = "Hertz; Johnson 1985, Contact mechanics, section 4.2"
 
 
-def pair(
-    teeth: tuple[int, int],
-    module: float,
-    helix: float,
-    distance: float,
-    shifts: tuple[float, float],
-    tips: tuple[float, float],
-) -> Pair:
-    """A pair of the gearbox, lengths in mm."""
-    mm, beta = 1e-3, radians(helix)
-    one = Gear(teeth[0], module * mm, 0.1, beta, shifts[0], tip_diameter=tips[0] * mm)
-    hand = 1.0 if teeth[1] < 0 else -1.0
-    two = Gear(teeth[1], module * mm, 0.1, hand * beta, shifts[1], tip_diameter=tips[1] * mm)
-    return Pair(one, two, distance * mm)
-
-
 def meshes() -> dict[str, tuple[Pair, float, float, float]]:
     """By name: pair, force per face width [N/m], and what was recomputed [MPa, mm]."""
-    sun = pair((21, 39), 10, 7.5, 308, (0.176, 0.399), (232.0, 420.0))
-    ring = pair((39, -99), 10, 7.5, 308, (0.399, -0.974), (420.0, 998.0))
-    second = pair((23, 82), 8.25, 14, 450, (0.154, 0.296), (210.0, 710.0))
-    third = pair((22, 88), 5, 14, 285, (0.166, 0.156), (125.0, 464.0))
-    planet = TORQUE / (2 * PLANETS) / 0.308 / cos(sun.working_angle)
+    pairs = nrel_750kw()
+    sun, ring, second, third = (pairs[n] for n in ("sun", "ring", "intermediate", "high speed"))
+    planet = TORQUE / (2 * PLANETS) / sun.centre_distance / cos(sun.working_angle)
     shaft = TORQUE / STAGE
-    high = shaft * 23 / 82
+    high = shaft * second.first.teeth / second.second.teeth
     return {
-        "ring and planet": (ring, planet / 0.2275, 484, 0.87),
-        "sun and planet": (sun, planet / 0.220, 1070, 0.41),
-        "intermediate": (second, shaft / second.second.base_radius / 0.170, 1123, 0.46),
-        "high speed": (third, high / third.second.base_radius / 0.110, 1200, 0.28),
+        "ring and planet": (ring, planet / ring.face_width, 484, 0.87),
+        "sun and planet": (sun, planet / sun.face_width, 1070, 0.41),
+        "intermediate": (
+            second,
+            shaft / second.second.base_radius / second.face_width,
+            1123,
+            0.46,
+        ),
+        "high speed": (third, high / third.second.base_radius / third.face_width, 1200, 0.28),
     }
 
 

@@ -194,7 +194,7 @@ def shares_of_time(pair: Pair, places: int, steps: int) -> Floats:
     """Weights of the phases in means: two pairs are in contact for epsilon - 1 of a period."""
     two = np.arange(steps) + steps < places
     ratio = pair.transverse_ratio
-    return np.where(two, (ratio - 1.0) / two.sum(), (2.0 - ratio) / (~two).sum())
+    return np.asarray(np.where(two, (ratio - 1.0) / two.sum(), (2.0 - ratio) / (~two).sum()))
 
 
 def checks(

@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.bearing import catalogue_bearing, equilibrium, pressures
 from fe_drivetrain.cases import case
 from fe_drivetrain.life import LifeRules, damage_of_steps, rated_bearing, rigid_rings, steps_of
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, column
 
 #: Diametral clearance [um], largest roller [kN] and pressure [MPa] of a planet bearing at 178 kN.
 PLANET = (
@@ -65,9 +65,7 @@ def run(run: Run, page: Page) -> None:
         "both rings change places (turning='outer'), nothing else does. L10 of ISO 281 knows "
         "neither that nor the clearance."
     )
-    lives = [
-        [row[f"L10r, {ring} ring turns [Mrev]"] for row in rows] for ring in ("outer", "inner")
-    ]
+    lives = [column(rows, f"L10r, {ring} ring turns [Mrev]") for ring in ("outer", "inner")]
     page.holds(
         "the bearing lives shorter where its inner ring stands under the load",
         bool((np.array(lives[0]) < np.array(lives[1])).all()),
@@ -86,6 +84,6 @@ def run(run: Run, page: Page) -> None:
         f"turning, and a clearance of 200 um leaves {100 * lives[0][-1] / lives[0][0]:.0f} % of "
         "that without clearance.",
     )
-    for name, value, unit in (("elements", 16, "-"), ("element diameter", 0.04, "m")):
-        page.assume(name, value, unit, "fills the outline NJ 2232")
+    page.assume("elements", 16, "-", "fills the outline NJ 2232")
+    page.assume("element diameter", 0.04, "m", "fills the outline NJ 2232")
     page.assume("element length", 0.05, "m", "fits the width of 80 mm")

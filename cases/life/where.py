@@ -24,7 +24,7 @@ from fe_drivetrain.cases.life.operating import (
 from fe_drivetrain.common import Floats
 from fe_drivetrain.histories import Site
 from fe_drivetrain.life import lamina_life, stress_riser
-from fe_drivetrain.report import Chart, rounded, trace
+from fe_drivetrain.report import Chart, heat_map, trace
 from fe_drivetrain.suite import Page, Record, Run
 
 MEAN_WIND = 8.0
@@ -258,30 +258,9 @@ def show(page: Page, words: str, used: Used) -> None:
                 np.degrees(psi[:-1]),
                 SPEEDS,
                 of_winds[:, k],
-                float(of_winds.max()),
+                ("place [deg]: 0 right, 90 top", "mean wind speed [m/s]", "% of damage"),
+                limits=(0.0, float(of_winds.max())),
+                xaxis={"dtick": 90},
             )
         )
     page.data(f"damage of places [%], {words}", share)
-
-
-def heat_map(caption: str, places: Floats, winds: Floats, share: Floats, largest: float) -> Chart:
-    """Damage over places and winds, both rows on one scale."""
-    figure = {
-        "data": [
-            {
-                "type": "heatmap",
-                "x": rounded(places),
-                "y": rounded(winds),
-                "z": [rounded(line, 3) for line in share],
-                "colorscale": "Viridis",
-                "zmin": 0.0,
-                "zmax": largest,
-                "colorbar": {"title": {"text": "% of damage"}},
-            }
-        ],
-        "layout": {
-            "xaxis": {"title": {"text": "place [deg]: 0 right, 90 top"}, "dtick": 90},
-            "yaxis": {"title": {"text": "mean wind speed [m/s]"}},
-        },
-    }
-    return Chart(caption=caption, figure=figure)

@@ -10,9 +10,9 @@ from fe_drivetrain.gear import (
     Loaded,
     Modifications,
     SlicedMesh,
+    constant_law,
     face_factor,
     loaded,
-    parabolic_stiffness,
     supported,
 )
 from fe_drivetrain.suite import Page, Record, Run
@@ -31,7 +31,7 @@ SOURCE = "ISO 6336-1: sqrt(2 F c / w) of a triangle over a part of the face"
 
 def misaligned(ratio: float, slices: int, play: float) -> tuple[Loaded, float]:
     """Spur gears with a linear gap of a ratio: found, and K_Hbeta in closed form."""
-    one = SlicedMesh(PAIR, parabolic_stiffness(PAIR, C), slices=slices, backlash=play)
+    one = SlicedMesh(PAIR, constant_law(C), slices=slices, backlash=play)
     still = loaded(one, PHASE, TORQUE).contacts
     pairs = len(set(still.tooth[still.driving].tolist()))
     gap = ratio * LINE / (pairs * C)
@@ -154,7 +154,7 @@ def jamming(page: Page, ratios: Floats) -> float:
 
 def soft_supports(page: Page, a_decade: float) -> float:
     """Equilibrium on springs from soft to stiff: residual that is left, and what is flagged."""
-    mesh = SlicedMesh(PAIR, parabolic_stiffness(PAIR, C), Modifications(slope=100e-6), SLICES, PLAY)
+    mesh = SlicedMesh(PAIR, constant_law(C), Modifications(slope=100e-6), SLICES, PLAY)
     load = np.zeros(12)
     load[3] = TORQUE
     shape = np.array([1.0] * 3 + [0.0, 0.01, 0.01] + [1.0] * 6)

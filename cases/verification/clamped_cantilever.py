@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, SIZE, show_inputs
 from fe_drivetrain.mesh import Grading
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS
@@ -12,15 +12,11 @@ from fe_drivetrain.validation import end_loaded, solid_shafts
 from fe_drivetrain.validation import shaft_theory as theory
 
 STEEL = MATERIALS["steel"]
-OUTER = 0.4  # m
+OUTER, REFINEMENTS = 0.4, (1, 2)  # m; of the solids
 #: Length over diameter, and up to which it is solved as a solid, too: long ones show nothing new.
-RATIOS, SOLID_TO = (1.0, 2.0, 5.0, 10.0, 20.0), 5.0
-QUICK_RATIOS, QUICK_SOLID_TO = (1.0, 5.0, 10.0, 20.0), 1.0
-#: Of the meshes in three dimensions.
-REFINEMENTS = (1, 2)
+RATIOS, QUICK_RATIOS = ((1.0, 2.0, 5.0, 10.0, 20.0), 5.0), ((1.0, 5.0, 10.0, 20.0), 1.0)
 
 RATIO, STIFFER, HEXAHEDRA = "length over diameter", "stiffer by [%]", "hexahedra, stiffer by [%]"
-HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"
 
 
 def clamped(ratio: float, solid_to: float) -> Record:
@@ -33,12 +29,13 @@ def clamped(ratio: float, solid_to: float) -> Record:
     compliance = float(np.linalg.inv(K)[0, 0])
     some = REFINEMENTS if ratio <= solid_to else ()
     meshes = [solid_shafts.solid(shaft, r, Grading(ends=1)) for r in some]
-    found = [np.linalg.inv(end_loaded.between_rigid_ends(m, STEEL, [2, 4]))[0, 0] for m in meshes]
+    solids = [end_loaded.between_rigid_ends(mesh, STEEL, [2, 4]) for mesh in meshes]
+    found = [float(np.linalg.inv(stiffness)[0, 0]) for stiffness in solids]
     return {
         RATIO: ratio,
         STIFFER: 100 * (1 - compliance / beam),
-        HEXAHEDRA: float(100 * (1 - found[-1] / beam)) if found else None,
-        "by mesh": [(mesh.per_turn, float(k)) for mesh, k in zip(meshes, found, strict=True)],
+        HEXAHEDRA: 100 * (1 - found[-1] / beam) if found else None,
+        "by mesh": found,
         "compliance [m/N]": compliance,
     }
 
@@ -50,8 +47,7 @@ def clamped(ratio: float, solid_to: float) -> Record:
 )
 def run(run: Run, page: Page) -> None:
     """Solids against the meridian, and how the beam's error falls with length."""
-    ratios = QUICK_RATIOS if run.quick else RATIOS
-    solid_to = QUICK_SOLID_TO if run.quick else SOLID_TO
+    ratios, solid_to = QUICK_RATIOS if run.quick else RATIOS
     ends = [run.timed(f"L = {ratio:g} D", clamped, ratio, solid_to) for ratio in ratios]
     for row in ends:
         if row["by mesh"]:
@@ -65,18 +61,15 @@ def run(run: Run, page: Page) -> None:
     turns += "proportion to D / L"
     page.meets(float(power), Target(title, -1.0, 0.15, why, turns, "", False, "order"))
     page.answer(
-        "A clamped end and a rigid tip are stiffer than the beam by "
-        f"{first[STIFFER]:.1f} % at L = {first[RATIO]:g} D and {last[STIFFER]:.2f} % at "
-        f"L = {last[RATIO]:g} D."
+        f"A clamped end and a rigid tip are stiffer than the beam by {first[STIFFER]:.1f} % at "
+        f"L = {first[RATIO]:g} D and {last[STIFFER]:.2f} % at L = {last[RATIO]:g} D."
     )
     page.section("Clamped end")
-    diameter = "outer diameter", OUTER, "m", "Stirling 2023, Table 3.1, in size"
-    show_inputs(page, diameter, steel=STEEL)
+    show_inputs(page, ("outer diameter", OUTER, "m", SIZE), steel=STEEL)
     title = "How much stiffer a clamped shaft with a rigid tip is than Timoshenko's beam, against "
     title += "length over diameter"
     curves = {STIFFER: "meridian", HEXAHEDRA: "hexahedra"}
-    shown = RATIO, STIFFER, HEXAHEDRA
-    page.sweep(title, ends, RATIO, curves, log="xy", axis=STIFFER, table=shown)
+    page.sweep(title, ends, RATIO, curves, log="xy", axis=STIFFER, table=(RATIO, *curves))
     page.text(
         "A clamp keeps the section flat and round, where Saint-Venant's solution warps. It is no "
         "error of the beam, but of its boundary condition."
@@ -85,14 +78,13 @@ def run(run: Run, page: Page) -> None:
 
 def check(page: Page, row: Record) -> None:
     """The solids of one length against the meridian."""
-    turn = row["by mesh"][-1][0]
-    found = [k for _, k in row["by mesh"]]
+    found, turn = row["by mesh"], solid_shafts.BASE_TURN * REFINEMENTS[-1]
     edge = solid_shafts.SLICE / turn * solid_shafts.BASE_TURN * 0.3
-    why = f"{turn} parabolic arcs round a turn, twice what they miss of I is allowed; and stress "
-    why += "is singular along the clamped edge, of exponent 0.71: what elements there miss goes as "
-    why += f"their size of {edge:.2g} radii to the power 1.4, in a part of the shaft as long as it "
-    why += "is wide"
-    within = 2 * 4 * theory.parabola_shortfall(turn) + 0.2 * edge**1.4 / row[RATIO]
+    within, why = theory.within_arcs(turn, "I", 4)
+    why += "; and stress is singular along the clamped edge, of exponent 0.71: what elements there "
+    why += f"miss goes as their size of {edge:.2g} radii to the power 1.4, in a part of the shaft "
+    why += "as long as it is wide"
+    within += 0.2 * edge**1.4 / row[RATIO]
     title = f"clamped, L = {row[RATIO]:g} D: deflection of a rigid tip [m/N]"
     target = Target(title, row["compliance [m/N]"], within, why, HARMONICS)
     page.meets(found[-1], target, solid_shafts.mesh_band(REFINEMENTS, found, 1.4))

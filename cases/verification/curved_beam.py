@@ -13,8 +13,7 @@ from fe_drivetrain.validation.plane_rings import CurvedBar, plane_strain
 
 INNER, OUTER = 0.1, 0.3  # m
 BAR = CurvedBar(INNER, OUTER)
-MOMENT = 1e5  # N, per width
-FORCE = 1e6  # N/m, per width
+MOMENT, FORCE = 1e5, 1e6  # per width: N, N/m
 STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=0.0)
 PLANE = plane_strain(STEEL.youngs_modulus, STEEL.poisson_ratio)
 QUARTER = 0.5 * np.pi
@@ -31,13 +30,12 @@ HOOP: dict[str, tuple[Callable[[Floats], Floats], float]] = {
     PULLED: (lambda r: BAR.end_force(r, np.array(QUARTER), FORCE)[1] / 1e6, INNER),
 }
 ROTATION = abs(BAR.bending_rotation(MOMENT, PLANE) * QUARTER)  # rad
-STRESSES = {key: float(along(np.array(r))) for key, (along, r) in HOOP.items()}
 #: The closed forms.
 EXACT = {
     TURNED: 1e3 * ROTATION,
     ENERGIES[0]: 0.5 * MOMENT * ROTATION,
     ENERGIES[1]: BAR.end_force_energy(FORCE, QUARTER, PLANE),
-    **STRESSES,
+    **{key: float(along(np.array(r))) for key, (along, r) in HOOP.items()},
 }
 
 
@@ -75,13 +73,12 @@ def target(key: str, within: float, h: float) -> Target:
 def run(run: Run, page: Page) -> None:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
     divisions = (3, 6, 12) if run.quick else (4, 8, 16)
-    rows = [run.timed(f"{n} {THROUGH}", solve, n) for n in divisions]
-    series, last = MeshSeries(rows, THROUGH), rows[-1]
+    series = MeshSeries([run.timed(f"{n} {THROUGH}", solve, n) for n in divisions], THROUGH)
     straight = 6.0 * MOMENT / (OUTER - INNER) ** 2
     winkler = float(BAR.winkler(np.array(INNER), MOMENT))
     errors = [100 * (of / 1e6 / EXACT[INSIDE] - 1) for of in (winkler, straight)]
     page.answer(
-        f"A bar with b/a = {OUTER / INNER:g} carries {last[INSIDE]:.3f} MPa inside (exact "
+        f"A bar with b/a = {OUTER / INNER:g} carries {series.last[INSIDE]:.3f} MPa inside (exact "
         f"{EXACT[INSIDE]:.3f}); the error of Winkler's hook is {errors[0]:+.1f} %, that of a "
         f"straight beam {errors[1]:+.0f} %."
     )

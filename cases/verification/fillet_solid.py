@@ -12,10 +12,8 @@ WIDE, RADIUS = 1.6, 0.25
 #: 1.4 %: not yet in the range where second order shows.
 PER_FILLET = (6, 11)
 QUICK = (4, 6)
-#: Of stress in elements of second order.
-ORDER = 2.0
-#: Degree of the polynomial that is fitted to the stress along the arc.
-DEGREE = 6
+#: Of stress in elements of second order; and of the polynomial fitted to it along the arc.
+ORDER, DEGREE = 2.0, 6
 
 
 @case(

@@ -41,12 +41,8 @@ def run(run: Run, page: Page) -> None:
     """Solve solids, and the main bearing, again after a random rotation and a translation."""
     page.seed = SEED
     Q, away = random_frame(SEED)
-    still, here = np.eye(3), np.zeros(3)
-    frames = {
-        "turned": (Q, here),
-        "10 m away": (still, 10.0 * away),
-        "turned, 10 m away": (Q, 10.0 * away),
-    }
+    still, here, far = np.eye(3), np.zeros(3), 10.0 * away
+    frames = {"turned": (Q, here), "10 m away": (still, far), "turned, 10 m away": (Q, far)}
     rows: list[Record] = []
     traces = []
     for nodes, label in ((10, "curved tetrahedra"), (27, "27-node hexahedra")):
@@ -56,27 +52,23 @@ def run(run: Run, page: Page) -> None:
             for frame, (turn, shift) in frames.items():
                 moved = solve_ring(nodes, turn, shift)
                 rows += check(page, body, frame, differences(fixed, moved, turn))
-            far = [
-                max(differences(fixed, solve_ring(nodes, Q, d * away), Q).values())
-                for d in DISTANCES
-            ]
-            traces.append(trace(body, DISTANCES, far, mode="lines+markers"))
+            taken = [differences(fixed, solve_ring(nodes, Q, d * away), Q) for d in DISTANCES]
+            largest = [max(found.values()) for found in taken]
+            traces.append(trace(body, DISTANCES, largest, mode="lines+markers"))
     for kind in ("spherical",) if run.quick else scenes.KINDS:
-        # Direct, since what iterations leave depends on the frame; on a mesh that suits that.
+        # direct, since what iterations leave depends on the frame; on a mesh that suits that
         scene, mesh = scenes.meshed(run, kind, scenes.QUICK)
         with run.step(f"main bearing, {kind}"):
             model = build_model(scene, mesh)
-            other = moved_model(model, Q, 10.0 * away)
-            one, two = (unit_load_response(m, "superlu") for m in (model, other))
+            both = model, moved_model(model, Q, far)
+            one, two = (unit_load_response(m, "superlu") for m in both)
         found = response_differences(one, two, Q)
         rows += check(page, f"main bearing, {kind}", "turned, 10 m away", found)
 
-    worst = "; ".join(
-        f"{body} {max(column(of, 'difference [-]')):.0e}" for body, of in grouped(rows, "body")
-    )
+    worst = {body: max(column(of, "difference [-]")) for body, of in grouped(rows, "body")}
     page.answer(
         "Turned at random and moved by 10 m, displacements, reactions and stiffness turn along and "
-        f"stay the same: {worst}."
+        f"stay the same: {'; '.join(f'{body} {value:.0e}' for body, value in worst.items())}."
     )
     page.section("Quarter ring")
     page.text(
@@ -84,16 +76,10 @@ def run(run: Run, page: Page) -> None:
         "point; pressure on the inner cylinder, and a uniform body force. Mesh, supports and loads "
         "are turned and moved together; results are turned back and compared."
     )
-    round_off = np.finfo(float).eps * np.array(DISTANCES)
-    label = "round-off of the coordinates, 1 m"
-    traces.append(trace(label, DISTANCES, round_off, line={"dash": "dot"}))
-    page.chart(
-        "Largest relative difference of results, turned and taken away from the origin",
-        traces,
-        "distance of the origin [m]",
-        "relative difference [-]",
-        "xy",
-    )
+    label, eps = "round-off of the coordinates, 1 m", np.finfo(float).eps
+    traces.append(trace(label, DISTANCES, eps * np.array(DISTANCES), line={"dash": "dot"}))
+    title = "Largest relative difference of results, turned and taken away from the origin"
+    page.chart(title, traces, "distance of the origin [m]", "relative difference [-]", "xy")
     page.section("All differences")
     page.text(
         "Of the main bearing the mesh itself is moved, not generated again: a mesh generator could "

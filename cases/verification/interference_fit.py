@@ -6,23 +6,13 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation.interference_fits import Pressed, press
-from fe_drivetrain.validation.plane_rings import Lame, Plane, interference_pressure
+from fe_drivetrain.validation.interference_fits import ExactFit, Pressed, exact_fit, press
 
 RADII = BORE, SEAT, OUTER = 0.15, 0.3175, 0.348  # m
 MISFIT = 100e-6  # m, on the radius
 #: Of the shaft: ductile iron; of the ring.
 IRON = Material(youngs_modulus=169e9, poisson_ratio=0.275, density=0.0)
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=0.0)
-
-OF_IRON, OF_STEEL = (Plane(m.youngs_modulus, m.poisson_ratio) for m in (IRON, STEEL))
-EXACT_PRESSURE = interference_pressure(
-    MISFIT, Lame(BORE, SEAT), Lame(SEAT, OUTER), on=OF_IRON, of=OF_STEEL
-)
-SHAFT, RING = (
-    Lame(BORE, SEAT, outside=EXACT_PRESSURE),
-    Lame(SEAT, OUTER, inside=EXACT_PRESSURE),
-)
 
 THROUGH, PRESSURE = "elements through the ring", "contact pressure [MPa]"
 OF_RING = "seat of the ring, radial displacement [µm]"
@@ -31,21 +21,11 @@ RING_BORE = "ring's bore, hoop stress [MPa]"
 RING_OUTSIDE = "ring's outside, hoop stress [MPa]"
 SHAFT_BORE = "shaft's bore, hoop stress [MPa]"
 ENERGY = "strain energy of a quarter, per width [J/m]"
-EXACT = {
-    PRESSURE: EXACT_PRESSURE / 1e6,
-    OF_RING: 1e6 * float(RING.displacement(SEAT, OF_STEEL)),
-    OF_SHAFT: 1e6 * float(SHAFT.displacement(SEAT, OF_IRON)),
-    RING_BORE: float(RING.hoop(SEAT)) / 1e6,
-    RING_OUTSIDE: float(RING.hoop(OUTER)) / 1e6,
-    SHAFT_BORE: float(SHAFT.hoop(BORE)) / 1e6,
-    ENERGY: 0.5 * EXACT_PRESSURE * MISFIT * 0.5 * np.pi * SEAT,
-}
 
 
-def shown(level: int, found: Pressed) -> Record:
-    """What is judged of one mesh."""
+def shown(found: Pressed | ExactFit) -> Record:
+    """What is judged."""
     return {
-        THROUGH: level,
         PRESSURE: found.pressure / 1e6,
         OF_RING: 1e6 * found.ring_moved,
         OF_SHAFT: 1e6 * found.shaft_moved,
@@ -72,27 +52,25 @@ def target(key: str, value: float) -> Target:
 )
 def run(run: Run, page: Page) -> None:
     """Close the misfit between a quarter of the shaft and of the ring, free to slide axially."""
-    levels = 1, 2, 4
-    meshes = [run.timed(f"{n} {THROUGH}", press, RADII, MISFIT, (IRON, STEEL), n) for n in levels]
-    rows = [shown(*of) for of in zip(levels, meshes, strict=True)]
-    finest, last = meshes[-1], rows[-1]
+    fit = RADII, MISFIT, (IRON, STEEL)
+    meshes = {n: run.timed(f"{n} {THROUGH}", press, *fit, n) for n in (1, 2, 4)}
+    series = MeshSeries([{THROUGH: n} | shown(found) for n, found in meshes.items()], THROUGH)
+    exact, finest, last = exact_fit(*fit), meshes[4], series.last
     page.answer(
         f"A misfit of {1e6 * MISFIT:g} µm on the radius presses ring and shaft together with "
-        f"{last[PRESSURE]:.4f} MPa; Lame's cylinders give {EXACT[PRESSURE]:.4f} MPa. The ring's "
-        f"bore carries {last[RING_BORE]:.2f} MPa of hoop stress."
+        f"{last[PRESSURE]:.4f} MPa; Lame's cylinders give {exact.pressure / 1e6:.4f} MPa. The "
+        f"ring's bore carries {last[RING_BORE]:.2f} MPa of hoop stress."
     )
     page.section("Stress along the radius")
     curves = []
-    for name, exact, of in (("shaft", SHAFT, finest.shaft), ("ring", RING, finest.ring)):
-        r = np.linspace(exact.inner, exact.outer, 60)
-        for stress, field in (("hoop", exact.hoop), ("radial", exact.radial)):
+    for name, part, of in (("shaft", exact.shaft, finest.shaft), ("ring", exact.ring, finest.ring)):
+        r = np.linspace(part.inner, part.outer, 60)
+        for stress, field in (("hoop", part.hoop), ("radial", part.radial)):
             curves.append(trace(f"{name}, {stress}, Lame", r, field(r) / 1e6))
             at, nodes = of.along(stress)
             curves.append(trace(f"{name}, {stress}, nodes", at, nodes / 1e6, True))
     page.chart("Finest mesh against Lame", curves, "radius [m]", "stress [MPa]")
-    page.targets(
-        "By mesh", MeshSeries(rows, THROUGH), [target(*of) for of in EXACT.items()], "exact"
-    )
+    page.targets("By mesh", series, [target(*of) for of in shown(exact).items()], "exact")
     closed, holds = (last[OF_RING] - last[OF_SHAFT]) / (1e6 * MISFIT) - 1.0, "a constraint holds "
     title, prescribed = "misfit that is closed, against the one prescribed", "what was prescribed"
     page.meets(closed, Target(title, 0.0, 1e-9, f"{holds}to round-off", prescribed))

@@ -12,26 +12,24 @@ from fe_drivetrain.validation.shaft_theory import Tube
 from fe_drivetrain.validation.solid_shafts import local_compliance
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
 
-STEEL, OUTER, OVERHANG, SPAN = MATERIALS["steel"], 0.4, 2.145, 2.615
-LENGTH = OVERHANG + SPAN
+STEEL = MATERIALS["steel"]
+OUTER, L1, L2 = 0.4, 2.145, 2.615  # m: diameter, hub to bearing, bearing to gearbox
+LENGTH = L1 + L2
 TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
-STATIONS = (0.0, OVERHANG, OVERHANG + SPAN / 2, LENGTH)
+STATIONS = (0.0, L1, L1 + L2 / 2, LENGTH)
 PINNED, FREE = (np.inf, 0.0), (0.0, 0.0)
 SHAFT = SupportedShaft(TUBE, STATIONS, (FREE, PINNED, FREE, PINNED))
 HUB, BEARING, GEARBOX = 0, 1, 3
 LOADS = {"force": Load(HUB, force=1e6), "moment": Load(HUB, moment=1e6)}
 SHEARED = "closed form with shear"
 STATICS = "statics: Stirling 2023, Eq 3.1, (M + (L1 + L2) B) / L2"
-
-
-def closed_forms() -> dict[str, tuple[float, float]]:
-    """Deflection [m] and rotation [rad] of the hub; a moment about y lifts what is upwind of it."""
-    a, L, EI, kGA = OVERHANG, SPAN, TUBE.EI, TUBE.kGA
-    cross = 1e6 * (a**2 / (2 * EI) + a * L / (3 * EI) + a / (L * kGA))
-    return {
-        "force": (1e6 * (a**2 * (a + L) / (3 * EI) + a / kGA + a**2 / (L * kGA)), cross),
-        "moment": (cross, 1e6 * (a / EI + L / (3 * EI) + 1 / (L * kGA))),
-    }
+EI, KGA = TUBE.EI, TUBE.kGA
+CROSS = 1e6 * (L1**2 / (2 * EI) + L1 * L2 / (3 * EI) + L1 / (L2 * KGA))
+#: Deflection [m] and rotation [rad] of the hub; a moment about y lifts what is upwind of it.
+CLOSED = {
+    "force": (1e6 * (L1**2 * (L1 + L2) / (3 * EI) + L1 / KGA + L1**2 / (L2 * KGA)), CROSS),
+    "moment": (CROSS, 1e6 * (L1 / EI + L2 / (3 * EI) + 1 / (L2 * KGA))),
+}
 
 
 @case(
@@ -51,16 +49,16 @@ def run(run: Run, page: Page) -> None:
         solids = [SHAFT.solid(C, load) for _, C in meshes]
         bearing, gearbox = (-float(frame.reactions[k, 0]) for k in (BEARING, GEARBOX))
         # what each support's local yielding would do to the hub
-        at_supports = np.array([OVERHANG / SPAN, 1 + OVERHANG / SPAN]) @ np.abs([gearbox, bearing])
-        slack = abs(load.force) + at_supports, (abs(gearbox) + abs(bearing)) / SPAN
+        at_supports = np.array([L1 / L2, 1 + L1 / L2]) @ np.abs([gearbox, bearing])
+        slack = abs(load.force) + at_supports, (abs(gearbox) + abs(bearing)) / L2
         for k, (part, unit) in enumerate((("deflection", "m"), ("rotation", "rad"))):
-            title, value = f"{part} of the hub by a {name}", closed_forms()[name][k]
+            title, value = f"{part} of the hub by a {name}", CLOSED[name][k]
             within = float(section + local_compliance(TUBE) * slack[k] / abs(value))
             even = SHAFT.evenly(load).motions[HUB, k], within, evenly, EVENLY
             by_frame, by_mesh = frame.motions[HUB, k], [s.motions[HUB, k] for s in solids]
             found = check_motion(page, title, unit, (value, SHEARED), by_frame, by_mesh, even)
             rows.append({"quantity": f"{part} by a {name}"} | found)
-        statics = float(pinned_reaction(load.force, load.moment, OVERHANG, SPAN))
+        statics = float(pinned_reaction(load.force, load.moment, L1, L2))
         left = "what the iterations leave of the solid's balance"
         for who, value, within, why in (
             ("frame", bearing, 1e-10, "round-off of a few equations"),
@@ -68,18 +66,16 @@ def run(run: Run, page: Page) -> None:
         ):
             title, why = f"load on the bearing by a {name}", f"statically determinate: {why}"
             page.meets(value, Target(f"{title}, {who} [N]", statics, within, why, STATICS))
-        traces += [
-            trace(f"{name}, beam", fine, 1e3 * SHAFT.beam(load, fine).motions[:, 0]),
-            trace(f"{name}, solid", STATIONS, 1e3 * solids[-1].motions[:, 0], True),
-        ]
+        traces.append(trace(f"{name}, beam", fine, 1e3 * SHAFT.beam(load, fine).motions[:, 0]))
+        traces.append(trace(f"{name}, solid", STATIONS, 1e3 * solids[-1].motions[:, 0], True))
     met = ", ".join(f"{r['quantity']} {100 * (r['solid'] / r['frame'] - 1):+.3f} %" for r in rows)
     page.answer(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
     page.section("Overhung shaft")
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),
-        ("overhang L1, hub to bearing", OVERHANG, "m", "Stirling 2023, Table 3.1"),
-        ("span L2, bearing to gearbox", SPAN, "m", "Stirling 2023, Table 3.1"),
+        ("overhang L1, hub to bearing", L1, "m", "Stirling 2023, Table 3.1"),
+        ("span L2, bearing to gearbox", L2, "m", "Stirling 2023, Table 3.1"),
         ("supports", "rigid, free to turn", "", "chosen: determinate"),
         ("force and moment at the hub", 1, "MN, MN m"),
         steel=STEEL,

@@ -33,8 +33,6 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     both = rotor * generator / (rotor + generator)
     free, fixed = two_mass_frequencies(stiffness, rotor, generator)
     soft, _ = two_mass_frequencies(series, rotor, generator)
-    length_needed = G * polar_moment(shaft.outer) / stiffness
-    diameter_needed = solid_diameter(stiffness * length / G)
     page.equals(
         "damping ratio of the free-free mode [-]",
         float(given["damping"] / (2 * np.sqrt(stiffness * both))),
@@ -54,8 +52,8 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
         f"{found.stiffness:.4g} N m/rad alone (± {found.band:.1g}): "
         f"{stiffness / shaft.closed:.2f} times softer than the {stiffness:,.0f} that the "
         "aeroelastic model has for the whole drivetrain. So the two do not belong to one machine: "
-        f"the published figure would need that shaft to be {length_needed:.2f} m long, or "
-        f"{diameter_needed:.2f} m thick, with all else rigid."
+        f"the published figure would need that shaft to be {length * shaft.closed / stiffness:.2f} "
+        f"m long, or {solid_diameter(stiffness * length / G):.2f} m thick, with all else rigid."
     )
     by = {
         "published, whole drivetrain": stiffness,
@@ -66,13 +64,12 @@ def judge(page: Page, given: Mapping[str, Any], sources: Record, shaft: MainShaf
     }
     title = "Stiffness, on the rotor's side"
     compare_stiffness(page, title, "part", by, "the published", stiffness)
-    frequencies = {
-        "published": free,
-        "WISDEM's shafts in series": soft,
-        "published, generator held": fixed,
-    }
-    title = "Frequencies of rotor and generator"
-    page.table(title, list(frequencies.items()), ["stiffness", "frequency [Hz]"])
+    frequencies = [
+        ("published", free),
+        ("WISDEM's shafts in series", soft),
+        ("published, generator held", fixed),
+    ]
+    page.table("Frequencies of rotor and generator", frequencies, ["stiffness", "frequency [Hz]"])
     diameters = np.linspace(0.4, 1.2, 60)
     by_diameter = G * np.array([polar_moment(d) for d in diameters])
     curves = [trace(f"{L:g} m", diameters, by_diameter / L) for L in (1.0, 2.28, 4.0)]

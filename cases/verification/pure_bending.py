@@ -1,44 +1,39 @@
 """Pure bending of a shaft: the exact three-dimensional solution, with anticlastic curvature."""
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_uniform
+from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT, of_mesh, show_uniform
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation.exact_shafts import ExactShaft, bent
+from fe_drivetrain.validation.exact_shafts import bent
 
 STEEL = MATERIALS["steel"]
-OUTER, BORE, LENGTH = 0.4, 0.28, 0.8  # m
+OUTER, BORE, LENGTH, CURVATURE = 0.4, 0.28, 0.8, 1e-3  # m, and 1/m
 TUBES = theory.solid_and_bored(OUTER, BORE, LENGTH, STEEL)
-CURVATURE = 1e-3  # 1/m
-
-SHAFT, REFINEMENT, EXACT = "shaft", "refinement", "E I [N m^2]"
 STIFFNESS, SAG = "bending stiffness M L / theta [N m^2]", "mean deflection of the far end [m]"
 SIDEWAYS = "sideways displacement of the skin at mid length, at 45 degrees [m]"
-ERROR = "largest difference from the exact displacements, over the largest"
-STRESS = "stress at the top of the skin at mid length [Pa]"
+EXACT, STRESS = "E I [N m^2]", "stress at the top of the skin at mid length [Pa]"
 FIELD = "Timoshenko and Goodier, article 102"
 
 
-def shown(name: str, refinement: int, shaft: ExactShaft) -> Record:
-    """What is judged of one mesh."""
+def solve(name: str, refinement: int) -> Record:
+    """Linear tractions on both ends of one mesh."""
+    shaft = bent(TUBES[name], CURVATURE, refinement)
     sag, slope = shaft.found.means(LENGTH)
     _, y, z = shaft.mesh.points[shaft.skin].T
-    rim = shaft.skin[abs(y + z).argmax()]
+    rim, top = abs(y + z).argmax(), shaft.skin[z.argmax()]
+    moved, exact = shaft.found.u[shaft.skin, 1], shaft.exact[shaft.skin, 1]
     return {
-        SHAFT: name,
-        REFINEMENT: refinement,
-        "unknowns": shaft.mesh.n_unknowns,
-        "per turn": shaft.mesh.per_turn,
+        **of_mesh(name, refinement, shaft),
         STIFFNESS: float(shaft.rear_moment * LENGTH / slope),
         EXACT: shaft.tube.EI,
-        ERROR: shaft.error,
         # u_z of the exact field has no mean but k x^2 / 2 where the section is round
         SAG: float(sag[2]),
-        SIDEWAYS: float(shaft.found.u[rim, 1]),
-        "exact " + SIDEWAYS: float(shaft.exact[rim, 1]),
-        STRESS: float(shaft.found.stress[shaft.skin[z.argmax()], 0]),
+        SIDEWAYS: float(moved[rim]),
+        "exact " + SIDEWAYS: float(exact[rim]),
+        STRESS: float(shaft.found.stress[top, 0]),
+        "skin": (shaft.angle, 1e6 * moved, 1e6 * exact),
     }
 
 
@@ -50,19 +45,30 @@ def run(run: Run, page: Page) -> None:
     """Linear tractions on both ends, on three meshes each."""
     refinements = (1, 2, 3) if run.quick else (2, 3, 4)
     rows, finest, profiles = [], [], []
-    for name, tube in TUBES.items():
-        shafts = [
-            run.timed(f"{name}: mesh and solve", bent, tube, CURVATURE, r) for r in refinements
-        ]
-        meshes = [shown(name, *of) for of in zip(refinements, shafts, strict=True)]
-        check(page, name, MeshSeries(meshes, REFINEMENT))
+    follow = "as for the stiffness; the section's error enters only where the elements cannot "
+    follow += "follow the anticlastic field"
+    skin = "as for the stiffness; and at a single node parabolas round the turn miss sin 2t by "
+    skin += "8 h^3 / (72 sqrt 3), h their arc"
+    uniform = "k L^2 / 2: the tractions belong to a curvature, whatever the section"
+    worst_node = "as for the stiffness, at the worst node"
+    for name in TUBES:
+        meshes = [run.timed(f"{name}: mesh and solve", solve, name, r) for r in refinements]
+        series, best, turn = MeshSeries(meshes, "refinement"), meshes[-1], meshes[-1]["per turn"]
+        within, arcs = theory.within_arcs(turn, "I", 4)
+        wide, exact = within + theory.anticlastic_error(turn), best["exact " + SIDEWAYS]
+        pull = -STEEL.youngs_modulus * CURVATURE * OUTER / 2
+        stiffness = Target(STIFFNESS, best[EXACT], within, arcs, "closed form E I", order=4.0)
+        sag = Target(SAG, CURVATURE * LENGTH**2 / 2, within, follow, uniform, order=4.0)
+        sideways = Target(SIDEWAYS, exact, wide, skin, f"nu k y z: {FIELD}", order=4.0)
+        error = Target(ERROR, 0.0, within, worst_node, FIELD, measure="deflection")
+        stress = Target(STRESS, pull, *theory.within_recovery(turn), "-E k z")
+        page.finest(series, stiffness, sag, sideways, of=name)
+        page.settled(series, error, stress, of=name)
         rows += meshes
-        finest.append(meshes[-1])
-        u, exact = (
-            1e6 * field[shafts[-1].skin, 1] for field in (shafts[-1].found.u, shafts[-1].exact)
-        )
-        profiles.append(trace(f"{name}, finite elements", shafts[-1].angle, u, True))
-        profiles.append(trace(f"{name}, exact", shafts[-1].angle, exact))
+        finest.append(best)
+        angle, moved, exact = best["skin"]
+        profiles.append(trace(f"{name}, finite elements", angle, moved, True))
+        profiles.append(trace(f"{name}, exact", angle, exact))
     solid, bored = (abs(row[STIFFNESS] / row[EXACT] - 1) for row in finest)
     worst = max(column(finest, ERROR))
     page.answer(
@@ -82,30 +88,3 @@ def run(run: Run, page: Page) -> None:
         "ones do not quite, and converge on it."
     )
     page.data("largest_error", worst)
-
-
-def check(page: Page, name: str, series: MeshSeries) -> None:
-    """Stiffness, deflections, field and stress of one shaft."""
-    best, turn = series.last, series.last["per turn"]
-    within, arcs = theory.within_arcs(turn, "I", 4)
-    follow = "as for the stiffness; the section's error enters only where the elements cannot "
-    follow += "follow the anticlastic field"
-    skin = "as for the stiffness; and at a single node parabolas round the turn miss sin 2t by "
-    skin += "8 h^3 / (72 sqrt 3), h their arc"
-    curvature = "k L^2 / 2: the tractions belong to a curvature, whatever the section"
-    sag, wide = CURVATURE * LENGTH**2 / 2, within + theory.anticlastic_error(turn)
-    stress, near = -STEEL.youngs_modulus * CURVATURE * OUTER / 2, theory.recovery_error(turn)
-    field = "as for the stiffness, at the worst node"
-    page.finest(
-        series,
-        Target(STIFFNESS, best[EXACT], within, arcs, "closed form E I", order=4.0),
-        Target(SAG, sag, within, follow, curvature, order=4.0),
-        Target(SIDEWAYS, best["exact " + SIDEWAYS], wide, skin, f"nu k y z: {FIELD}", order=4.0),
-        of=name,
-    )
-    page.settled(
-        series,
-        Target(ERROR, 0.0, within, field, FIELD, measure="deflection"),
-        Target(STRESS, stress, near, theory.RECOVERED, "-E k z"),
-        of=name,
-    )

@@ -5,11 +5,15 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.common import Floats
-from fe_drivetrain.report import Chart
+from fe_drivetrain.report import heat_map
 from fe_drivetrain.response import LOADS
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, Target
 
+AXES = "displacements under", "work of", "power of ten"
 STOPS = "the energy error at which the solver stops"
+BETTI = "Maxwell 1864, Betti 1872: W_ij = W_ji"
+OF_WORK = "work of unit loads on each other's displacements, largest asymmetry"
+NEGATIVE = "negative part of the least eigenvalue of the work matrix, scaled to a diagonal of one"
 
 #: Columns of the table, of which checks are made.
 WORK, HUB = "largest asymmetry [-]", "of the hub's compliance [-]"
@@ -45,28 +49,16 @@ def run(run: Run, page: Page) -> None:
             # with loads scaled to the same work of their own
             LEAST: float(np.linalg.eigvalsh(0.5 * (work + work.T) / own_work(work))[0]),
         }
-        for what, value in (
-            ("work of unit loads on each other's displacements", row[WORK]),
-            ("compliance of the hub, six by six", row[HUB]),
+        for value, title, source in (
+            (row[WORK], OF_WORK, BETTI),
+            (row[HUB], "compliance of the hub, six by six, largest asymmetry", BETTI),
+            (min(row[LEAST], 0.0), NEGATIVE, "strain energy is never negative"),
         ):
-            page.vanishes(
-                f"{kind}: {what}, largest asymmetry",
-                value,
-                within=1e-9,
-                why=STOPS,
-                source="Maxwell 1864, Betti 1872: W_ij = W_ji",
-                band=response.diagnostics.energy_error,
-            )
-        page.vanishes(
-            f"{kind}: negative part of the least eigenvalue of the work matrix, scaled to a "
-            "diagonal of one",
-            min(row[LEAST], 0.0),
-            within=1e-9,
-            why=STOPS,
-            source="strain energy is never negative",
-            band=response.diagnostics.energy_error,
-        )
-        page.add(heat_map(kind, asymmetry))
+            target = Target(title, 0.0, 1e-9, STOPS, source)
+            page.meets(value, target, response.diagnostics.energy_error, kind)
+        title = f"{kind}: |W_ij - W_ji| / sqrt(W_ii W_jj), power of ten"
+        powers, down = np.log10(np.maximum(asymmetry, 1e-18)), {"autorange": "reversed"}
+        page.add(heat_map(title, LOADS, LOADS, powers, AXES, (-18, -8), yaxis=down))
         rows.append(row)
     page.table("Both scenes", rows)
     worst = {row["scene"]: row[WORK] for row in rows}
@@ -86,28 +78,3 @@ def own_work(work: Floats) -> Floats:
 def relative_asymmetry(work: Floats) -> Floats:
     """(n, n) |W_ij - W_ji| over the geometric mean of W_ii and W_jj."""
     return np.asarray(np.abs(work - work.T) / own_work(work))
-
-
-def heat_map(kind: str, asymmetry: Floats) -> Chart:
-    """Asymmetry of each pair of loads."""
-    shown = np.log10(np.maximum(asymmetry, 1e-18))
-    return Chart(
-        caption=f"{kind}: |W_ij - W_ji| / sqrt(W_ii W_jj), power of ten",
-        figure={
-            "data": [
-                {
-                    "type": "heatmap",
-                    "x": list(LOADS),
-                    "y": list(LOADS),
-                    "z": [[round(float(v), 2) for v in row] for row in shown],
-                    "zmin": -18,
-                    "zmax": -8,
-                    "colorbar": {"title": {"text": "power of ten"}},
-                }
-            ],
-            "layout": {
-                "xaxis": {"title": {"text": "displacements under"}},
-                "yaxis": {"title": {"text": "work of"}, "autorange": "reversed"},
-            },
-        },
-    )

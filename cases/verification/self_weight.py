@@ -3,7 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, show_inputs
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
@@ -11,19 +11,14 @@ from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, par
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, sag_over_beam
 
 STEEL = MATERIALS["steel"]
-GRAVITY = -9.80665  # m/s^2
-OUTER, RATIO = 0.4, 6.0  # diameter [m], overhang over it
-TUBE = Tube(OUTER, 0.0, RATIO * OUTER, STEEL)
-LENGTH = TUBE.length
+OUTER, RATIO, GRAVITY = 0.4, 6.0, -9.80665  # diameter [m], overhang over it, m/s^2
+LENGTH = RATIO * OUTER
+TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
 SHAFT = SupportedShaft(TUBE, (0.0, LENGTH), ((np.inf, np.inf), (0.0, 0.0)))
-WEIGHT = Load(1, gravity=GRAVITY)
 Q = STEEL.density * TUBE.area * GRAVITY  # N/m
 ROTATION = -Q * LENGTH**3 / (6 * TUBE.EI)  # rad
-#: Lengths over diameter of the chart.
-RATIOS = (1.5, 2.0, 3.0, 4.0)
-
-OVERHANG = "overhang over diameter"
-FOUND, EVEN = "solid", "beam, evenly held"
+RATIOS = (1.5, 2.0, 3.0, 4.0)  # of the chart
+OVERHANG, FOUND, EVEN = "overhang over diameter", "solid", "beam, evenly held"
 COWPER = "q L^4 / 8EI + q L^2 / 2kGA, k of Cowper 1966"
 RECIPROCAL = "q L^3 / 6EI: exact for a root held evenly, by reciprocity with pure bending"
 SAG, TURNED, MASS, TURN = "sag [m]", "rotation [rad]", "mass [kg]", "elements round a turn"
@@ -33,8 +28,8 @@ def solid(refinement: int) -> Record:
     """Sag, rotation and mass of one mesh, its root held by its mean motion."""
     turn, C = SHAFT.compliance(refinement, 1.5 * OUTER)
     down, turned = GRAVITY * C.weight[1]
-    mass = float(C.weight_resultant[0])
-    return {TURN: turn, SAG: float(down), TURNED: float(turned), MASS: mass}
+    moved = {SAG: float(down), TURNED: float(turned)}
+    return {TURN: turn, **moved, MASS: float(C.weight_resultant[0])}
 
 
 def beyond_the_beam(ratio: float) -> Record:
@@ -50,11 +45,10 @@ def beyond_the_beam(ratio: float) -> Record:
 def run(run: Run, page: Page) -> None:
     """Gravity on the solid, its root held by its mean motion."""
     closed, even = (sag(Q, TUBE.EI, k, LENGTH) for k in (TUBE.kGA, evenly_loaded_shear(TUBE)))
-    frame = run.timed("frame", SHAFT.frame, WEIGHT).motions[1]
+    frame = run.timed("frame", SHAFT.frame, Load(1, gravity=GRAVITY)).motions[1]
     meshes = [run.timed("mesh and solve", solid, r) for r in ((1, 2) if run.quick else (1, 2, 3))]
     ratios = RATIOS[:2] if run.quick else RATIOS
     sweep = [run.timed("other lengths", beyond_the_beam, ratio) for ratio in ratios]
-
     turn, series = meshes[-1][TURN], MeshSeries(meshes, TURN)
     section = 2 * 2 * parabola_shortfall(turn)
     local = abs(Q) * LENGTH * solid_shafts.local_compliance(TUBE) / abs(closed)
@@ -65,35 +59,26 @@ def run(run: Run, page: Page) -> None:
     area = f"{turn} parabolic arcs round a turn: twice the area's shortfall"
     weight, density = STEEL.density * TUBE.area * LENGTH, "density times volume"
     cowper, found = (closed, COWPER), (even, section + local, evenly, EVENLY)
-    turned, exact = (ROTATION, "q L^3 / 6EI"), (ROTATION, section, arcs, RECIPROCAL)
-    of_solid = column(meshes, SAG)
-    sagging = check_motion(page, "sag of the tip", "m", cowper, frame[0], of_solid, found)
-    rotations, title = column(meshes, TURNED), "rotation of the tip"
-    turning = check_motion(page, title, "rad", turned, frame[1], rotations, exact)
+    rotation, exact = (ROTATION, "q L^3 / 6EI"), (ROTATION, section, arcs, RECIPROCAL)
+    down, turned = (column(meshes, key) for key in (SAG, TURNED))
+    sagging = check_motion(page, "sag of the tip", "m", cowper, frame[0], down, found)
+    turning = check_motion(page, "rotation of the tip", "rad", rotation, frame[1], turned, exact)
     page.finest(series, Target(MASS, weight, section, area, density, order=4.0))
-    over_cowper, over_even = of_solid[-1] / closed - 1, of_solid[-1] / even - 1
+    over_cowper, over_even = down[-1] / closed - 1, down[-1] / even - 1
     page.answer(
-        f"An overhang of {RATIO:g} diameters sags {-1e3 * of_solid[-1]:.4f} mm; by Timoshenko's "
+        f"An overhang of {RATIO:g} diameters sags {-1e3 * down[-1]:.4f} mm; by Timoshenko's "
         f"beam {-1e3 * closed:.4f} mm with Cowper's shear coefficient ({100 * over_cowper:+.3f} "
         f"%), {-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
     )
     page.section("Sag")
-    show_inputs(
-        page,
-        ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1, in size"),
-        ("overhang", LENGTH, "m"),
-        ("gravity", GRAVITY, "m/s^2", "standard"),
-        ("density", STEEL.density, "kg/m^3", "steel, assumed"),
-        steel=STEEL,
-    )
+    length = "overhang", LENGTH, "m"
+    show_inputs(page, ("diameter, solid", OUTER, "m", SIZE), length, steel=STEEL, gravity=GRAVITY)
     title = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
     title += "section; beside it the beam with that of an evenly held root"
-    keys = {FOUND: FOUND, EVEN: EVEN}
-    page.sweep(title, sweep, OVERHANG, keys, axis="difference [%]", table=False)
-    page.table(
-        "Tip",
-        [{"quantity": SAG, EVEN: even} | sagging, {"quantity": TURNED, EVEN: ROTATION} | turning],
-    )
+    curves = {FOUND: FOUND, EVEN: EVEN}
+    page.sweep(title, sweep, OVERHANG, curves, axis="difference [%]", table=False)
+    tip = {"quantity": SAG, EVEN: even} | sagging, {"quantity": TURNED, EVEN: ROTATION} | turning
+    page.table("Tip", tip)
     page.text(
         "A shaft that carries its own weight is also stressed across, since each slice hangs on "
         "its neighbours by shear that is not as even as the weight; Poisson's ratio turns that "

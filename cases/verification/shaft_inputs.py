@@ -1,18 +1,30 @@
-"""Tables of inputs, and a check, shared by the cases of shafts."""
+"""Tables of inputs, sources and a check, shared by the cases of shafts."""
 
 from collections.abc import Sequence
 
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page, Record, Target
+from fe_drivetrain.validation.exact_shafts import ExactShaft
 from fe_drivetrain.validation.solid_shafts import mesh_band
+
+SIZE = "Stirling 2023, Table 3.1, in size"
+HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"
+#: Of a mesh under the loads of an exact field, see `of_mesh`.
+SHAFT, REFINEMENT, UNKNOWNS, TURN = "shaft", "refinement", "unknowns", "per turn"
+ERROR = "largest difference from the exact displacements, over the largest"
 
 #: Name, value, unit, and where it comes from: "chosen" where it is left out.
 Input = tuple[str, float | str, str] | tuple[str, float | str, str, str]
 
 
-def show_inputs(page: Page, *rows: Input, steel: Material | None = None) -> None:
-    """Add the table of a case's inputs; with a steel, its elasticity below them."""
+def show_inputs(
+    page: Page, *rows: Input, steel: Material | None = None, gravity: float | None = None
+) -> None:
+    """Add the table of a case's inputs; below them gravity [m/s^2] and elasticity of its steel."""
     table = [row if len(row) == 4 else (*row, "chosen") for row in rows]
+    if steel is not None and gravity is not None:
+        table.append(("gravity", gravity, "m/s^2", "standard"))
+        table.append(("density", steel.density, "kg/m^3", "steel, assumed"))
     if steel is not None:
         table += [
             ("E", steel.youngs_modulus / 1e9, "GPa", "steel, assumed"),
@@ -28,12 +40,19 @@ def show_uniform(
     """The inputs of a uniform shaft, solid and bored; diameters in m."""
     show_inputs(
         page,
-        ("outer diameter", outer, "m", "Stirling 2023, Table 3.1, in size"),
+        ("outer diameter", outer, "m", SIZE),
         ("bore of the bored shaft", bore, "m"),
         length,
         *more,
         steel=steel,
     )
+
+
+def of_mesh(name: str, refinement: int, shaft: ExactShaft) -> Record:
+    """The size of a mesh under the loads of an exact field, and the error of its displacements."""
+    mesh = shaft.mesh
+    size = {SHAFT: name, REFINEMENT: refinement, UNKNOWNS: mesh.n_unknowns, TURN: mesh.per_turn}
+    return {**size, ERROR: shaft.error}
 
 
 def check_motion(

@@ -1,7 +1,5 @@
 """Long cylinder under pressure and in rotation: verification problem VM25 of Ansys."""
 
-import numpy as np
-
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.units import INCH, PSI
 from fe_drivetrain.operator import body_loads, pressure
@@ -31,8 +29,7 @@ PRESSED = {
     "hoop stress, outside [MPa]": 1e-6 * (20000.0 * PSI),
 }
 DISC = {key: 1e-6 * (p * PSI) for key, p in zip(ROTATED, (40588.0, 4753.0, 29436.0), strict=True)}
-BORE, WALL = np.array(INNER), np.array(INSIDE)
-CLOSED_FORMS = LONG.hoop(BORE), LONG.radial(WALL), LONG.hoop(WALL)
+CLOSED_FORMS = LONG.hoop(INNER), LONG.radial(INSIDE), LONG.hoop(INSIDE)
 CYLINDER = {key: 1e-6 * float(s) for key, s in zip(ROTATED, CLOSED_FORMS, strict=True)}
 MANUAL = "Ansys Mechanical APDL verification manual, VM25, targets as in PyMAPDL's example"
 CLOSED = "Timoshenko and Goodier 1970, art 32, with the constants of plane strain"
@@ -86,9 +83,8 @@ def run(run: Run, page: Page) -> None:
         "% more hoop stress at the bore, as its own closed form says.",
     )
     page.text(
-        "The problem asks for a long cylinder. Under pressure, radial and hoop stress have a "
-        "constant sum, so the ends do not matter. In rotation they do: the targets follow from the "
-        "formula of a thin disc (Timoshenko, Strength of Materials II, article 42), and a slice a "
-        "two-hundredth of its wall thick, with free faces, gives them. The ends of a long cylinder "
-        "stay plane and carry no net force."
+        "Under pressure, radial and hoop stress have a constant sum, so the ends do not matter. In "
+        "rotation they do: the targets follow from the formula of a thin disc (Timoshenko, "
+        "Strength of Materials II, article 42), and a slice a two-hundredth of its wall thick, "
+        "with free faces, gives them. The ends of a long cylinder stay plane, without net force."
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_drivetrain.bearing.geometry import RollerRow, Row, angles
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.report.charts import chart, rounded, trace
+from fe_drivetrain.report.charts import chart, heat_map, rounded, trace
 from fe_drivetrain.report.results import Chart
 
 
@@ -81,25 +81,11 @@ def damage_map(caption: str, across: Floats, across_title: str, row: Row, values
     whole = values.sum()
     shares = 100.0 * values / whole if whole else values
     order = np.argsort(np.degrees(angles(row)) % 360.0)
-    figure = {
-        "data": [
-            {
-                "type": "heatmap",
-                "x": rounded(across, 5),
-                "y": rounded(np.degrees(angles(row))[order] % 360.0, 5),
-                "z": [[float(f"{v:.3g}") for v in line] for line in shares.T[order]],
-                "colorscale": "Viridis",
-                "colorbar": {"title": {"text": "%"}},
-            }
-        ],
-        "layout": {
-            "xaxis": {"title": {"text": across_title}},
-            "yaxis": {"title": {"text": "place [deg], 90 on top"}, "dtick": 90},
-        },
-    }
-    if len(across) <= 12 and "wind" in across_title:
-        figure["layout"]["xaxis"] |= {"type": "category"}  # type: ignore[index,call-overload]
-    return Chart(caption=caption, figure=figure)
+    titles = across_title, "place [deg], 90 on top", "%"
+    places = np.degrees(angles(row))[order] % 360.0
+    categories = {"type": "category"} if len(across) <= 12 and "wind" in across_title else {}
+    shares, down = shares.T[order], {"dtick": 90}
+    return heat_map(caption, across, places, shares, titles, xaxis=categories, yaxis=down)
 
 
 def along_rollers(name: str, rows: Sequence[Row], worst: Floats) -> Chart | None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.commands.loads_digest import LOADS, POWER, UNITS, Options
-from fe_drivetrain.commands.loads_shape import heatmap
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.damage import FREQUENCY
-from fe_drivetrain.report.charts import trace
+from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 
@@ -75,7 +74,7 @@ def _cycles(page: Page, found: Together, options: Options, rule: str) -> dict[st
             shown = np.log10(both.amount)
         shown[np.isinf(shown)] = np.nan
         page.add(
-            heatmap(
+            heat_map(
                 f"Cycles of {name} by range and mean; {rule}",
                 both.middles(1) / 1e3,
                 both.middles(0) / 1e3,

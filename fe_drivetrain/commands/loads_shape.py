@@ -18,7 +18,7 @@ from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.spectra import MULTIPLES, NEAR, SEGMENT, WINDOW
 from fe_drivetrain.hub_loads.loops import LONGEST, ROUNDNESS, SHARE
-from fe_drivetrain.report.charts import rounded, trace
+from fe_drivetrain.report.charts import heat_map, rounded, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -36,27 +36,6 @@ def shape(page: Page, found: Together) -> dict[str, list[Record]]:
     return {**_spectra(page, found), **_loops(page, found)}
 
 
-def heatmap(
-    caption: str, x: Floats, y: Floats, z: Floats, titles: tuple[str, str, str], **layout: Any
-) -> Chart:
-    """A chart of colours: z (len(y), len(x)) over the middles of cells; NaN stays empty."""
-    cells = [
-        [None if np.isnan(v) else float(f"{v:.4g}") for v in row] for row in np.asarray(z).tolist()
-    ]
-    right, up, colour = titles
-    data = {
-        "type": "heatmap",
-        "x": rounded(x),
-        "y": rounded(y),
-        "z": cells,
-        "colorbar": {"title": {"text": colour, "side": "right"}, "thickness": 12},
-    }
-    axes: dict[str, Any] = {"xaxis": {"title": {"text": right}}, "yaxis": {"title": {"text": up}}}
-    for axis, more in layout.items():
-        axes[axis] = {**axes[axis], **more} if isinstance(more, dict) else more
-    return Chart(caption=caption, figure={"data": [data], "layout": axes})
-
-
 def _planes(page: Page, found: Together) -> None:
     page.section("Direction of force and moment")
     for name, unit in (("force", "kN"), ("moment", "kN m")):
@@ -67,7 +46,7 @@ def _planes(page: Page, found: Together) -> None:
         across, above = plane.edges(0) / 1e3, plane.edges(1) / 1e3
         near = all(2 * e[0] - e[-1] <= 0.0 <= 2 * e[-1] - e[0] for e in (across, above))
         where = "the cross" if near else "beyond the picture"
-        chart = heatmap(
+        chart = heat_map(
             f"Share of time of each {name} across the shaft, looking downwind: "
             + _SEEN[name].format(where),
             plane.middles(0) / 1e3,
@@ -251,7 +230,7 @@ def _campbell(page: Page, found: Together) -> None:
         density[place - places[0]] = total[: len(lines)] / number / 1e6
     speed = SPEED_STEP * (numbers + 0.5)
     kept = (lines > 0.0) & (lines <= min(HIGHEST, 4.0))
-    chart = heatmap(
+    chart = heat_map(
         f"Campbell diagram of My: spectra of segments of {SEGMENT:g} s by their mean rotor speed; "
         f"dotted {', '.join(f'{n}P' for n in MULTIPLES)}",
         speed.astype(np.float64),

@@ -60,6 +60,7 @@ from .meshing import Meshing as Meshing
 from .meshing import contact_wave as contact_wave
 from .meshing import machine_meshing as machine_meshing
 from .meshing import varying_equations as varying_equations
+from .meshing import wave_of as wave_of
 from .modes import SystemModes as SystemModes
 from .modes import TurningModes as TurningModes
 from .modes import direction_kinds as direction_kinds

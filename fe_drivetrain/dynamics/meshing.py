@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import floor, pi
+from math import pi
 
 import numpy as np
 
@@ -18,16 +18,20 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.equations import (
     Equations,
     equations_of_motion,
-    fourier_wave,
     spring_laws,
+    wave_table,
 )
 from fe_drivetrain.dynamics.planetary import equal_angles
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.tables import Machine, PlanetaryData
+from fe_drivetrain.gear.meshes import MeshStiffness, StiffnessTable, square_wave_series
 from fe_drivetrain.gear.planets import ring_phases, sun_phases
 
 HARMONICS = 8
 """Of the square wave, as in Park et al. 2021, Eq 10."""
+
+INTERVALS = 256
+"""Of a wave's spline in a period."""
 
 
 def contact_wave(contact_ratio: float, harmonics: int = HARMONICS) -> Floats:
@@ -50,16 +54,13 @@ def contact_wave(contact_ratio: float, harmonics: int = HARMONICS) -> Floats:
     InputError
         The contact ratio is below 1.
     """
-    if not contact_ratio >= 1.0:
-        raise InputError(
-            f"contact ratio is {contact_ratio:g} but must be at least 1, or teeth lose contact: "
-            "change the gears"
-        )
-    share = contact_ratio - floor(contact_ratio)
-    order = np.arange(1, harmonics + 1)
-    size = 1.0 / (pi * order * contact_ratio)
-    angle = 2.0 * pi * order * share
-    return fourier_wave(size * np.sin(angle), size * (1.0 - np.cos(angle)))
+    return wave_of(square_wave_series(1.0, contact_ratio, harmonics))
+
+
+def wave_of(stiffness: MeshStiffness | StiffnessTable) -> Floats:
+    """The course of a mesh stiffness over its mean, as `wave_table`."""
+    phases = np.arange(INTERVALS) / INTERVALS
+    return wave_table(stiffness.at(phases) / stiffness.mean)
 
 
 @dataclass(frozen=True)
@@ -74,11 +75,15 @@ class Meshing:
         Of the mesh [Hz].
     phase : float
         At t = 0 [periods].
+    course : MeshStiffness or StiffnessTable, optional
+        Of `fe_drivetrain.gear`, whose course over its mean is taken in place of the square wave;
+        the mean is that of the system's spring.
     """
 
     contact_ratio: float
     frequency: float
     phase: float = 0.0
+    course: MeshStiffness | StiffnessTable | None = None
 
 
 def machine_meshing(
@@ -171,7 +176,7 @@ def varying_equations(
     count = len(system.spring_names)
     wave, phase, frequency = np.full(count, -1), np.zeros(count), np.zeros(count)
     half = np.zeros(count)
-    ratios: list[float] = []
+    waves: list[Floats] = []
     for name, mesh in meshing.items():
         of = [
             i
@@ -180,9 +185,12 @@ def varying_equations(
         ]
         if not of:
             raise InputError(f"no mesh {name!r} in the system: correct its name")
-        if mesh.contact_ratio not in ratios:
-            ratios.append(mesh.contact_ratio)
-        wave[of] = ratios.index(mesh.contact_ratio)
+        waves.append(
+            contact_wave(mesh.contact_ratio, harmonics)
+            if mesh.course is None
+            else wave_of(mesh.course)
+        )
+        wave[of] = len(waves) - 1
         phase[of], frequency[of] = mesh.phase, mesh.frequency
         half[of] = 0.5 * (backlash or 0.0)
     springs = spring_laws(
@@ -194,7 +202,7 @@ def varying_equations(
         wave=wave,
         phase=phase,
         frequency=frequency,
-        waves=np.stack([contact_wave(ratio, harmonics) for ratio in ratios]) if ratios else None,
+        waves=np.stack(waves) if waves else None,
     )
     return equations_of_motion(
         system.mass,

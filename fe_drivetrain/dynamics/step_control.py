@@ -127,7 +127,8 @@ def integrate_adaptively(
         e = factor * h**2 * (motion.end.acceleration - state.acceleration)
         both = np.array([state.q, motion.end.q])
         strain = max(largest, float(np.einsum("si,ij,sj->s", both, K, both).max()))
-        error = float(np.sqrt(max(e @ K @ e, 0.0) / strain)) if strain > 0.0 else 0.0
+        bent = max(float(e @ K @ e), 0.0)
+        error = float(np.sqrt(bent / strain)) if strain > 0.0 else 0.0
         if error > tolerance or not motion.converged:
             rejected += 1
             dt *= 0.5

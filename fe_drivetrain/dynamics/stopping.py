@@ -17,6 +17,7 @@ from fe_drivetrain.dynamics.equations import (
     equations_of_motion,
     joined_laws,
     spring_laws,
+    summed,
     varying,
 )
 from fe_drivetrain.dynamics.integration import State
@@ -52,6 +53,8 @@ class StopSequence:
         Of all [s].
     rise : float
         Time in which the brake grows to full size [s].
+    back : float or None
+        The generator is on again after a dip of the grid [s]; stays off where none.
     """
 
     off: float = 1.0
@@ -60,6 +63,7 @@ class StopSequence:
     braked: float = 3.0
     end: float = 30.0
     rise: float = 0.0
+    back: float | None = None
 
 
 @dataclass(frozen=True)
@@ -214,9 +218,8 @@ def shutdown(
     velocity = rotor_speed * np.array([speeds[name] for name in system.names])
     start = wind_up(on, normal.at(0.0), velocity)
     disc = Brake(to_generator, abs(brake * rated), when.braked, when.rise) if brake else None
-    found = transient(
-        [Phase(when.off, on, normal), Phase(when.end, off, wind, disc)],
-        dt,
-        State(start.q, velocity, start.acceleration),
-    )
+    phases = [Phase(when.off, on, normal), Phase(when.back or when.end, off, wind, disc)]
+    if when.back is not None:
+        phases.append(Phase(when.end, on, summed(wind, pull), disc))
+    found = transient(phases, dt, State(start.q, velocity, start.acceleration))
     return Shutdown(system, speeds, torque, found)

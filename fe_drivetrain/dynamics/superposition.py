@@ -98,7 +98,8 @@ def modal_superposition(
     rate[:, 1, 2], rate[:, 2, 3] = 1.0, 1.0 / dt
     step = linalg.expm(dt * rate)
     begin = start or at_rest(equations)
-    t = begin.time + dt * np.arange(round(duration / dt) + 1)
+    steps = np.arange(round(duration / dt) + 1, dtype=np.float64)
+    t = np.asarray(begin.time + dt * steps)
     f = loads.at(t) @ shapes
     y = np.empty((len(t), count, 2))
     y[0, :, 0], y[0, :, 1] = shapes.T @ M @ begin.q, shapes.T @ M @ begin.velocity
@@ -156,7 +157,8 @@ def exact_steps(
     )
     step = linalg.expm(dt * rate)[: 2 * n]
     begin = start or at_rest(equations)
-    t = begin.time + dt * np.arange(round(duration / dt) + 1)
+    steps = np.arange(round(duration / dt) + 1, dtype=np.float64)
+    t = np.asarray(begin.time + dt * steps)
     s = equations.springs
     f = loads.at(t) + s.rows.T @ (s.stiffness * s.offset)
     y = np.empty((len(t), 2 * n))

@@ -1,5 +1,4 @@
 from .coupled_slices import Coupling as Coupling
-from .coupled_slices import hertz_line_stiffness as hertz_line_stiffness
 from .coupled_slices import loaded_with_coupling as loaded_with_coupling
 from .damage import ParallelStage as ParallelStage
 from .damage import PlanetaryStage as PlanetaryStage
@@ -98,7 +97,6 @@ from .slices import Modifications as Modifications
 from .slices import SlicedMesh as SlicedMesh
 from .slices import contact_rows as contact_rows
 from .slices import contacts as contacts
-from .slices import parabolic_stiffness as parabolic_stiffness
 from .strength import GearMaterial as GearMaterial
 from .strength import LifeCurve as LifeCurve
 from .strength import equivalent_roughness as equivalent_roughness

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,29 +21,12 @@ class Coupling:
     length : float
         Over which a load of one slice spreads to its neighbours [m].
     hertz : float
-        Stiffness of the contact alone per face width [N/m^2], in series with the teeth.
+        Stiffness of the contact alone per face width [N/m^2], in series with the teeth:
+        1 / `yang_sun_contact()`, say.
     """
 
     length: float
     hertz: float
-
-
-def hertz_line_stiffness(youngs_modulus: float = 206e9, poisson_ratio: float = 0.3) -> float:
-    """Stiffness of a line contact per length, taken as linear.
-
-    Parameters
-    ----------
-    youngs_modulus : float
-        Of both bodies [Pa].
-    poisson_ratio : float
-        Of both bodies.
-
-    Returns
-    -------
-    float
-        pi E / (4 (1 - nu^2)) [N/m^2] (Yang and Sun 1985, as quoted; not read).
-    """
-    return pi * youngs_modulus / (4.0 * (1.0 - poisson_ratio**2))
 
 
 def loaded_with_coupling(

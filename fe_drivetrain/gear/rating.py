@@ -196,7 +196,7 @@ def contact_stress(
         sigma_H0 = Z_H Z_E Z_epsilon Z_beta sqrt(F_t (u + 1) / (d_1 b u)), u negative with an
         internal gear; sigma_H = Z_B,D sigma_H0 sqrt(K_A K_gamma K_v K_Hbeta K_Halpha).
     """
-    F_t, u = pair.tangential_force(torque), pair.ratio
+    F_t, u = pair.tangential_force(torque), pair.second.teeth / pair.first.teeth
     Z_H, Z_E = zone_factor(pair), elasticity_factor(*materials)
     Z_epsilon = contact_ratio_factor(pair.transverse_ratio, pair.overlap_ratio)
     Z_beta = 1.0 / sqrt(cos(pair.first.helix))

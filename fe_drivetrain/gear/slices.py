@@ -13,7 +13,6 @@ does to the pair. A rigid motion of both gears approaches nothing.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, sin, tan
 
@@ -22,6 +21,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.gear.involute import Pair
+from fe_drivetrain.gear.pair_stiffness import Law
 
 SLICES = 35
 """Over the face width, where nothing else is asked for (LaCava; Al-Hamadani 2018, section 5.1)."""
@@ -88,35 +88,6 @@ def _ramp(at: Floats, end: float, length: float, amount: float) -> Floats:
     return np.asarray(amount * np.maximum(at - (end - length), 0.0) / length)
 
 
-def parabolic_stiffness(
-    pair: Pair, largest: float, ratio: float = 1.0
-) -> Callable[[Floats], Floats]:
-    """Stiffness of one pair of teeth over the path of contact, a parabola about the pitch point.
-
-    Parameters
-    ----------
-    pair : Pair
-        Two gears.
-    largest : float
-        Per face width, at the pitch point: c' [N/m^2].
-    ratio : float
-        Least over largest, at the end of the path that is farther away.
-
-    Returns
-    -------
-    callable
-        Of distances from T1 [m], in N/m^2 (Al-Hamadani 2018, Eq 5.2 and 5.3, with the distance
-        from the pitch point).
-    """
-    path = pair.path
-    farthest = max(path.end - path.pitch, path.pitch - path.start)
-
-    def stiffness(place: Floats) -> Floats:
-        return np.asarray(largest * (1.0 - (1.0 - ratio) * ((place - path.pitch) / farthest) ** 2))
-
-    return stiffness
-
-
 @dataclass(frozen=True)
 class SlicedMesh:
     """A pair of gears with its teeth in slices.
@@ -125,7 +96,7 @@ class SlicedMesh:
     ----------
     pair : Pair
         Two gears; the sign of the first one's helix counts.
-    stiffness : callable
+    stiffness : Law
         Of one pair of teeth per face width, in the transverse plane [N/m^2], of distances from T1.
     modifications : Modifications
         Of both flanks.
@@ -137,7 +108,7 @@ class SlicedMesh:
     """
 
     pair: Pair
-    stiffness: Callable[[Floats], Floats]
+    stiffness: Law
     modifications: Modifications = field(default_factory=Modifications)
     slices: int = SLICES
     backlash: float | None = None

@@ -1,4 +1,4 @@
-"""Charts of lines, as Plotly's JSON."""
+"""Charts of lines, bars and colours, as Plotly's JSON."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -87,24 +87,60 @@ def density_chart(
     counts = np.bincount(line * bins + column, minlength=bins * bins).reshape(bins, bins)
     shares = 100.0 * counts / x.size
     middles = rounded(0.5 * (edges[1:] + edges[:-1]), 4)
-    cells = [[float(f"{v:.3g}") if v > 0.0 else None for v in row] for row in shares]
-    figure: dict[str, Any] = {
-        "data": [
-            {
-                "type": "heatmap",
-                "x": middles,
-                "y": middles,
-                "z": cells,
-                "colorscale": "Viridis",
-                "colorbar": {"title": {"text": "% of time"}},
-            }
+    return heat_map(
+        caption,
+        middles,
+        middles,
+        np.where(shares > 0.0, shares, np.nan),
+        (f"right [{unit}]", f"up [{unit}]", "% of time"),
+        xaxis={"constrain": "domain"},
+        yaxis={"scaleanchor": "x"},
+    )
+
+
+def heat_map(
+    caption: str,
+    x: ArrayLike | Sequence[str],
+    y: ArrayLike | Sequence[str],
+    z: ArrayLike,
+    titles: tuple[str, str, str],
+    limits: tuple[float, float] | None = None,
+    **layout: Any,
+) -> Chart:
+    """A chart of colours.
+
+    Parameters
+    ----------
+    caption : str
+        What it shows.
+    x, y : array_like, or sequence of str
+        Middles of the cells, or their names.
+    z : array_like
+        (len(y), len(x)) values; NaN stays empty.
+    titles : tuple of str
+        Of the axes x and y and of the colours, with units.
+    limits : tuple of float, optional
+        Values of the first and the last colour; the least and the largest where left out.
+    **layout : object
+        Of Plotly: of the axes ``xaxis`` and ``yaxis``, and of the whole.
+    """
+    right, up, colour = titles
+    data: dict[str, Any] = {
+        "type": "heatmap",
+        "x": _places(x),
+        "y": _places(y),
+        "z": [
+            [None if np.isnan(v) else float(f"{v:.4g}") for v in row]
+            for row in np.asarray(z).tolist()
         ],
-        "layout": {
-            "xaxis": {"title": {"text": f"right [{unit}]"}, "constrain": "domain"},
-            "yaxis": {"title": {"text": f"up [{unit}]"}, "scaleanchor": "x"},
-        },
+        "colorbar": {"title": {"text": colour, "side": "right"}, "thickness": 12},
     }
-    return Chart(caption=caption, figure=figure)
+    if limits is not None:
+        data["zmin"], data["zmax"] = limits
+    axes: dict[str, Any] = {"xaxis": {"title": {"text": right}}, "yaxis": {"title": {"text": up}}}
+    for axis, more in layout.items():
+        axes[axis] = {**axes[axis], **more} if isinstance(more, dict) else more
+    return Chart(caption=caption, figure={"data": [data], "layout": axes})
 
 
 def bars(
@@ -148,6 +184,11 @@ def bars(
         "yaxis": {"autorange": "reversed", "automargin": True},
     }
     return figure
+
+
+def _places(values: ArrayLike | Sequence[str]) -> list[Any]:
+    named = np.asarray(values).dtype.kind == "U"
+    return list(np.asarray(values).tolist()) if named else rounded(np.asarray(values))
 
 
 def rounded(values: ArrayLike, digits: int = 6) -> list[float]:

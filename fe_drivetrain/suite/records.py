@@ -85,6 +85,20 @@ class MeshSeries(NamedTuple):
         sizes = [float(n) ** (-1.0 / self.dimension) for n in column(self.rows, self.by)]
         return band_of(sizes, column(self.rows, key), order)
 
+    def order(self, key: str) -> float:
+        """Order of convergence that the three finest meshes show; NaN where they show none.
+
+        Parameters
+        ----------
+        key : str
+            Of the value in the rows.
+        """
+        from fe_drivetrain.compare.convergence import observed_order
+
+        last = self.rows[-3:]
+        sizes = [float(n) ** (-1.0 / self.dimension) for n in column(last, self.by)]
+        return observed_order(sizes, column(last, key))
+
 
 def plain_cells(cells: Sequence[Any]) -> list[Cell]:
     """Cells of a table without NumPy's scalars."""

@@ -23,6 +23,7 @@ MEASURES: Mapping[str, Measure] = {
     "kN m": "reaction",
     "J/m": "energy",
     "N/m": "stiffness",
+    "MN/m/m": "stiffness",
     "N m/rad": "stiffness",
     "MN m/rad": "stiffness",
     "N m^2": "stiffness",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -146,6 +147,11 @@ def inner_forces(patch: Patch, stress: Floats, degree: int) -> float:
     total = np.zeros_like(block.points)
     np.add.at(total, block.cells, f)
     return float(np.abs(total[patch.inner]).max() / np.abs(f).max())
+
+
+def forces_by_degree(patch: Patch, degrees: Sequence[int]) -> list[float]:
+    """Of each degree of quadrature the largest of `inner_forces` of the states `SIGMAS`."""
+    return [max(inner_forces(patch, stress, degree) for stress in SIGMAS) for degree in degrees]
 
 
 def reference_points(nodes: int) -> Floats:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
+from fe_drivetrain.validation.shaft_theory import solid_diameter
 
 SHEAR_MODULUS = 80e9
 """Of steel [Pa]; the thesis gives none."""
@@ -29,6 +29,11 @@ class Uniform(NamedTuple):
     length: float
 
 
+def diameter(stiffness: float, length: float) -> float:
+    """Diameter [m] of the solid shaft of that stiffness [N m/rad] and length [m], k = G J / L."""
+    return solid_diameter(stiffness * length / SHEAR_MODULUS)
+
+
 def implied(stiffness: float, damping: float) -> Uniform:
     """The shaft that a stiffness and a damper imply by Eq 4.5 and 4.4.
 
@@ -45,6 +50,4 @@ def implied(stiffness: float, damping: float) -> Uniform:
         J = (C / 2 zeta)^2 / k, the solid circle of that J, and the length J G / k.
     """
     polar = (damping / (2 * DAMPING_RATIO)) ** 2 / stiffness
-    return Uniform(
-        polar, float((32 * polar / np.pi) ** 0.25), float(polar * SHEAR_MODULUS / stiffness)
-    )
+    return Uniform(polar, solid_diameter(polar), float(polar * SHEAR_MODULUS / stiffness))

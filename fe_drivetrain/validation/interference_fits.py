@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -15,6 +16,7 @@ from fe_drivetrain.mesh import Block
 from fe_drivetrain.operator import nodal_stresses
 from fe_drivetrain.scene import Material
 from fe_drivetrain.solve import solve_solid
+from fe_drivetrain.validation.plane_rings import Lame, Plane, interference_pressure
 from fe_drivetrain.validation.ring_solids import polar_stresses, ring_sector, sector_symmetry
 
 QUARTER = np.pi / 2
@@ -68,6 +70,27 @@ class Pressed:
     energy: float
     shaft: Profile
     ring: Profile
+
+
+class ExactFit(NamedTuple):
+    """The same as `Pressed` by two Lame cylinders, free along the axis: plane stress."""
+
+    pressure: float
+    shaft_moved: float
+    ring_moved: float
+    energy: float
+    shaft: Lame
+    ring: Lame
+
+
+def exact_fit(radii: Sequence[float], misfit: float, materials: Sequence[Material]) -> ExactFit:
+    """The exact fit (Lame 1852; Timoshenko, Strength of Materials, part II, 1956); as `press`."""
+    bore, seat, outside = radii
+    on, of = (Plane(material.youngs_modulus, material.poisson_ratio) for material in materials)
+    p = interference_pressure(misfit, Lame(bore, seat), Lame(seat, outside), on, of)
+    shaft, ring = Lame(bore, seat, outside=p), Lame(seat, outside, inside=p)
+    moved = float(shaft.displacement(seat, on)), float(ring.displacement(seat, of))
+    return ExactFit(p, *moved, 0.5 * p * misfit * 0.5 * np.pi * seat, shaft, ring)
 
 
 def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], n: int) -> Pressed:

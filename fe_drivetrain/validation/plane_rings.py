@@ -64,6 +64,10 @@ class Lame:
         """Hoop stress [Pa]."""
         return self._mean + self._varying / np.asarray(r) ** 2
 
+    def hoop_at(self, r: float) -> float:
+        """Hoop stress at one radius [Pa]."""
+        return float(self.hoop(r))
+
     def displacement(self, r: float | Floats, plane: Plane) -> Floats:
         """Radial displacement [m]."""
         return np.asarray(r) / plane.E * (self.hoop(r) - plane.nu * self.radial(r))
@@ -124,14 +128,14 @@ class Rotating:
 
     def body_force(self, x: Floats) -> Floats:
         """Force per volume [N/m^3] at (..., 3) positions; the axis of rotation is x."""
-        return self.force * x * [0.0, 1.0, 1.0]
+        return np.asarray(self.force * x * [0.0, 1.0, 1.0])
 
-    def radial(self, r: Floats) -> Floats:
+    def radial(self, r: float | Floats) -> Floats:
         """Radial stress [Pa]."""
         a2, b2, r2 = self.inner**2, self.outer**2, np.asarray(r) ** 2
-        return self.force * (3.0 + self.plane.nu) / 8.0 * (a2 + b2 - a2 * b2 / r2 - r2)
+        return np.asarray(self.force * (3.0 + self.plane.nu) / 8.0 * (a2 + b2 - a2 * b2 / r2 - r2))
 
-    def hoop(self, r: Floats) -> Floats:
+    def hoop(self, r: float | Floats) -> Floats:
         """Hoop stress [Pa]."""
         a2, b2, r2 = self.inner**2, self.outer**2, np.asarray(r) ** 2
         nu = self.plane.nu

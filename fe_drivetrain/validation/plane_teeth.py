@@ -368,7 +368,8 @@ def meshed_pair(
     """
     path = pair.path
     step = pair.first.base_pitch / steps
-    places = path.start + step * np.arange(int((path.end - path.start) / step) + 1)
+    count = int((path.end - path.start) / step) + 1
+    places = np.asarray(path.start + step * np.arange(count, dtype=np.float64))
     one, two = pair.curvatures(places)
     first = compliances(mesh_teeth(pair.first, one, hubs[0], size), plane)
     second = compliances(mesh_teeth(pair.second, two[::-1], hubs[1], size), plane)

@@ -27,6 +27,14 @@ TABLE_6_1 = "Al-Hamadani 2018, Table 6.1"
 TABLE_6_2 = "Al-Hamadani 2018, Table 6.2"
 TABLE_6_4 = "Al-Hamadani 2018, Table 6.4"
 
+#: Table 4.1: name of each drivetrain's table, power [W] and rated speed [rpm].
+RATED = {
+    "D": ("nrel_750kw", 750e3, 18.6),
+    "A": ("drivetrain_a", 3e6, 14.8),
+    "B": ("drivetrain_b", 3e6, 16.1),
+    "C": ("drivetrain_c", 2e6, 16.0),
+}
+
 #: Table 6.1 [Hz], as printed: generator's speed constant (its spring on), then variable (off).
 TWO = {"fixed": ("0.864", "5.888"), "free": ("0", "2.524")}
 FIVE = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +12,7 @@ from fe_drivetrain.interfaces import fixed
 from fe_drivetrain.mesh import Block, brick, joined
 from fe_drivetrain.operator import traction_loads
 from fe_drivetrain.solve import solve_solid
-from fe_drivetrain.validation.manufactured import (
-    LAME,
-)
+from fe_drivetrain.validation.manufactured import LAME, NORMS, relative_errors
 
 SHEAR_MODULUS = LAME[1]
 INNER, OUTER = 0.15, 0.35  # radii [m]
@@ -72,6 +71,11 @@ class Torsion:
         length = float(np.ptp(points[:, 0]))
         return self.torque**2 * length / float(F @ u)
 
+    def errors(self, blocks: Sequence[Block], places: Sequence[Floats]) -> list[float]:
+        """Relative error of GJ, with its sign, of each mesh with its nodes (n, 3) at places [m]."""
+        found = (self.solve(*on) for on in zip(blocks, places, strict=True))
+        return [rigidity / self.rigidity - 1.0 for rigidity in found]
+
 
 @dataclass(frozen=True)
 class Bush:
@@ -115,3 +119,11 @@ class Bush:
         prescribed = columns, values.ravel()[columns]
         none = np.zeros(3 * len(points))
         return solve_solid(points, block.cells, LAME, [], none, prescribed).u[:, 0]
+
+    def errors(self, blocks: Sequence[Block], places: Sequence[Floats]) -> dict[str, list[float]]:
+        """Relative errors by norm of each mesh with its nodes (n, 3) at places [m]."""
+        found = [
+            relative_errors(points, block.cells, self.solve(block, points), self, LAME, degree=6)
+            for block, points in zip(blocks, places, strict=True)
+        ]
+        return dict(zip(NORMS, np.transpose(found).tolist(), strict=True))

@@ -67,10 +67,15 @@ class Tube:
         return self.material.youngs_modulus * self.area
 
     @property
+    def shear_coefficient(self) -> float:
+        """Cowper's [-]."""
+        ratio = self.inner / self.outer
+        return float(cowper_shear_coefficient(self.material.poisson_ratio, ratio))
+
+    @property
     def kGA(self) -> float:
         """Shear rigidity with Cowper's coefficient [N]."""
-        nu, m = self.material.poisson_ratio, self.inner / self.outer
-        return float(cowper_shear_coefficient(nu, m)) * self.material.shear_modulus * self.area
+        return self.shear_coefficient * self.material.shear_modulus * self.area
 
 
 def solid_and_bored(
@@ -101,20 +106,14 @@ def sag(load: float, EI: float, kGA: float, length: float) -> float:
     return load * length**4 / (8 * EI) + load * length**2 / (2 * kGA)
 
 
-def recovery_error(per_turn: int) -> float:
-    """Error of stress recovered at the skin of a shaft in bending or torsion, over the stress.
+def within_recovery(per_turn: int) -> tuple[float, str]:
+    """How far stress recovered at the skin of a bent or twisted shaft may be wrong, relative; why.
 
     A straight line through the two Gauss points of an element of arc h misses a function of unit
     second derivative by h^2 / 12 at its end; the same again for the radius.
     """
-    return float((2 * np.pi / per_turn) ** 2 / 6)
-
-
-RECOVERED = (
-    "stress is recovered linearly in each element: h^2 / 12 for the arc h of an element, and as "
-    "much for the radius"
-)
-"""Why recovered stress is as wrong as `recovery_error` says."""
+    why = "stress is recovered linearly in each element: h^2 / 12 for the arc h of an element, and "
+    return float((2 * np.pi / per_turn) ** 2 / 6), why + "as much for the radius"
 
 
 def anticlastic_error(per_turn: int) -> float:

@@ -111,6 +111,23 @@ def series_stiffness(shaft: Shaft, shear_modulus: float) -> float:
     return 1.0 / sum(_compliance(piece, shear_modulus) for piece in shaft.pieces)
 
 
+def added_length(shaft: Shaft, shear_modulus: float, stiffness: float) -> float:
+    """Length of the last part that twists as much as steps add to the series, over its diameter.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        Parts of uniform diameter.
+    shear_modulus : float
+        G [Pa].
+    stiffness : float
+        Of the shaft, steps and all [N m/rad].
+    """
+    last, G = shaft.pieces[-1], shear_modulus
+    polar = polar_moment(last.outer_diameter, last.inner_diameter)
+    return (1 / stiffness - 1 / series_stiffness(shaft, G)) * G * polar / last.outer_diameter
+
+
 def _compliance(piece: Section, shear_modulus: float) -> float:
     start, end = piece.outer_diameter / 2, piece.end_diameter / 2
     if start == end:

@@ -1,0 +1,294 @@
+"""What design load cases leave out: resonance, misalignment, voltage dips; loads at interfaces."""
+
+import numpy as np
+
+from fe_drivetrain.beam import Beam, BeamSection, condensed_beam
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.hub_loads import Condition, hub_loads
+from fe_drivetrain.procedure import (
+    Dip,
+    ThreePoints,
+    analysed,
+    driven_motions,
+    drivetrain_excitations,
+    element_torques,
+    imbalance,
+    influence_of_offsets,
+    protest_catalogue,
+    resonances,
+    three_point_loads,
+    write_load_csv,
+    write_load_json,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import damped, gear_masses, natural_modes, shaft_damping, two_masses
+from fe_drivetrain.validation import published_drivetrains as published
+
+TABLE = published.table("drivetrain_c")
+SPEEDS = (9.0, 18.0)  # rpm
+PLACES = ThreePoints(
+    hub=-1.5,
+    bearing=0.0,
+    entrance=1.4,
+    arms=2.2,
+    output=3.1,
+    generator=4.5,
+    between_arms=2.4,
+    offset=0.5,
+    shaft_mass=8e3,
+    shaft_centre=0.4,
+    gearbox_mass=12e3,
+    gearbox_centre=2.1,
+    generator_mass=7e3,
+    ratio=100.0,
+)
+SECOND = 1.2  # m, of a second main bearing
+TOLERANCE = 0.5e-3  # m
+BEARING, ARM, RATIO = 3e9, 1e8, 0.01  # N/m, N/m, of critical damping
+DIPS = [(depth, seconds) for depth in (0.2, 0.5, 0.8, 1.0) for seconds in (0.1, 0.15, 0.25, 0.5)]
+
+
+@case(
+    "What design load cases leave out: resonance, misalignment, voltage dips",
+    source="PROTEST 2010, ECN-E--10-100, Tables 4.1 to 4.5, section 4.2, appendix A; "
+    "Al-Hamadani 2018, Tables 4.3 and 4.7 (drivetrain C)",
+)
+def run(run: Run, page: Page) -> None:
+    """The catalogue's gaps, each run; and loads at interfaces that are in equilibrium."""
+    catalogue = protest_catalogue()
+    page.section("Design loads without a load case")
+    page.table(
+        f"Of {len(catalogue.design_loads)} design loads, those that load cases do not cover",
+        [
+            {"load": load.name, "table": load.table, "covered": load.covered, "run": load.remedy}
+            for load in catalogue.uncovered
+        ],
+    )
+    with run.step("resonance"):
+        resonance(page)
+    with run.step("misalignment"):
+        misalignment(page)
+    with run.step("voltage dips"):
+        dips(page)
+    with run.step("interfaces"):
+        interfaces(run, page)
+
+
+def resonance(page: Page) -> None:
+    """Register of excitations against the modes of a gearbox with three stages."""
+    system = gear_masses(TABLE, "free")
+    modes = natural_modes(system)
+    register = drivetrain_excitations(TABLE)
+    found = resonances(register, modes, tuple(e.name for e in system.elements), SPEEDS)
+    rows: list[Record] = [
+        {
+            "excitation": m.excitation,
+            "mode": m.mode,
+            "frequency [Hz]": m.frequency,
+            "crossing [rpm]": m.crossing,
+            "margin": m.margin,
+            "energy share": m.share,
+            "verdict": m.verdict,
+        }
+        for m in found
+        if m.verdict in ("resonance", "near")
+    ]
+    by_name = {e.name: e for e in register}
+    page.vanishes(
+        "frequencies of excitations at their crossings, largest relative error",
+        max(abs(by_name[m.excitation].frequency(m.crossing) / m.frequency - 1.0) for m in found),
+        within=1e-12,
+        why="rounding",
+        source="n = 60 f / order",
+        basis="self-consistency",
+    )
+    met = sum(m.verdict == "resonance" for m in found)
+    crossed = sum(m.margin == 0.0 for m in found)
+    page.section("Resonance")
+    page.table(f"Excitations that meet a mode from {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm", rows)
+    lines = dict.fromkeys(m.excitation for m in found if m.verdict == "resonance")
+    speeds = np.array([0.0, SPEEDS[1]])
+    frequencies = sorted({m.frequency for m in found if m.verdict == "resonance"})
+    page.chart(
+        "Campbell diagram: modes that are met, and what meets them; shaded: operation",
+        [
+            *(
+                trace(name, speeds, [by_name[name].frequency(float(v)) for v in speeds])
+                for name in lines
+            ),
+            *(
+                trace(f"{f:.1f} Hz", speeds, [f, f], line={"dash": "dot"}, showlegend=False)
+                for f in frequencies
+            ),
+        ],
+        "rotor speed [rpm]",
+        "frequency [Hz]",
+        safe=SPEEDS,
+    )
+    page.data("resonances", rows)
+    page.answer(
+        f"Excitations of drivetrain C cross a frequency {crossed} times in operation, {met} times "
+        "at a part that has 1 % or more of the mode's energy."
+    )
+
+
+def misalignment(page: Page) -> None:
+    """Tolerances at the supports of a drivetrain on three points, and on four."""
+    stations = np.array([PLACES.hub, PLACES.bearing, SECOND, PLACES.arms])
+    beam = Beam([BeamSection(PLACES.arms - PLACES.hub, 0.6)], [], start=PLACES.hub)
+    K = condensed_beam(beam, ("hub", "bearing", "second", "arms"), stations).stiffness
+    half = 0.5 * PLACES.between_arms
+    three = [
+        ("bearing, axial", 1, {0: 1.0}, BEARING),
+        ("bearing, lateral", 1, {1: 1.0}, BEARING),
+        ("bearing, vertical", 1, {2: 1.0}, BEARING),
+        ("arms, lateral", 3, {1: 1.0}, ARM),
+        ("left arm, vertical", 3, {2: 1.0, 3: half}, ARM),
+        ("right arm, vertical", 3, {2: 1.0, 3: -half}, ARM),
+    ]
+    four = [
+        *three,
+        ("second bearing, lateral", 2, {1: 1.0}, BEARING),
+        ("second bearing, vertical", 2, {2: 1.0}, BEARING),
+    ]
+    rows: list[Record] = []
+    for name, held in (("three points", three), ("four points", four)):
+        H = np.zeros((len(held), len(K)))
+        for row, (_, station, entries, _) in zip(H, held, strict=True):
+            for direction, value in entries.items():
+                row[6 * station + direction] = value
+        found = influence_of_offsets(
+            K, H, np.array([k for *_, k in held]), tuple(n for n, *_ in held)
+        )
+        page.equals(
+            f"{name}: degree of static indeterminacy",
+            float(found.degree),
+            float(len(held) - 6),
+            within=0.0,
+            why="a count",
+            source="six rigid motions",
+            measure="identity",
+        )
+        if not found.degree:
+            page.vanishes(
+                f"{name}: largest force of misalignment [N]",
+                float(np.abs(found.forces(np.full(len(held), TOLERANCE))).max()),
+                within=0.0,
+                why="there is no state of stress that is in equilibrium with itself",
+                source="statically determinate supports",
+            )
+        forces, _ = found.worst(np.full(len(held), TOLERANCE))
+        for support, force in zip(found.names, forces, strict=True):
+            rows.append(
+                {
+                    "drivetrain on": name,
+                    "support": support,
+                    "worst force [kN]": round(float(force)) / 1e3,
+                }
+            )
+    page.section("Misalignment")
+    page.table(
+        f"Worst force in each support, all supports anywhere within {TOLERANCE * 1e3:g} mm", rows
+    )
+    page.data("misalignment", rows)
+    worst = max(rows, key=lambda row: float(row["worst force [kN]"]))
+    page.answer(
+        f"Offsets of {TOLERANCE * 1e3:g} mm load no support of a drivetrain on three points, and "
+        f"those of one with two main bearings by up to {worst['worst force [kN]']:.0f} kN "
+        f"({worst['support']})."
+    )
+
+
+def dips(page: Page) -> None:
+    """Torque of the shaft while the generator's dips, over depth and duration."""
+    free = two_masses(TABLE, "free")
+    front, rear = free.J
+    inertia = float(front * rear / (front + rear))
+    system = damped(free, {"shafts": shaft_damping(RATIO, inertia, float(free.k[0]))})
+    frequency = float(natural_modes(system).frequencies[1])
+    step = 1.0 / (200.0 * frequency)
+    time = np.arange(0.0, 4.0, step)
+    rows: list[Record] = []
+    shown: dict[str, Floats] = {}
+    for depth, seconds in DIPS:
+        brake = Dip(0.2, depth, seconds).shares(time)
+        motions = driven_motions(system, np.stack([np.ones_like(time), -brake]), step)
+        torque = element_torques(system, motions)[0]
+        rows.append(
+            {
+                "depth": depth,
+                "duration [s]": seconds,
+                "largest torque / before": float(torque.max()),
+                "least torque / before": float(torque.min()),
+                "reversals": int(np.count_nonzero(np.diff(np.sign(torque)))),
+            }
+        )
+        if seconds == 0.15:
+            shown[f"depth {depth:g}"] = torque
+    page.at_most(
+        "largest torque of all dips, over that before",
+        max(float(row["largest torque / before"]) for row in rows),
+        1.0 + 2.0 * max(d for d, _ in DIPS) * float(front / (front + rear)),
+        why="without damping two steps leave an amplitude of twice one step at most",
+        source="an oscillator: 1 + 2 depth J_r / (J_r + J_g)",
+        measure="reaction",
+    )
+    page.section("Voltage dips")
+    page.chart(
+        "Torque of the low-speed shaft over that before, dips of 0.15 s",
+        [trace(name, time[::4], torque[::4]) for name, torque in shown.items()],
+        "time [s]",
+        "torque / torque before",
+    )
+    page.table(f"Dips by depth and duration; first frequency {frequency:.2f} Hz", rows)
+    page.data("dips", rows)
+    worst = max(rows, key=lambda row: float(row["largest torque / before"]))
+    page.answer(
+        "A dip of the generator's whole torque leaves up to "
+        f"{worst['largest torque / before']:.2f} times the torque before in the shaft "
+        f"({worst['duration [s]']:g} s): how its length falls on the period of "
+        f"{1 / frequency:.2f} s matters as much as its depth."
+    )
+    page.assume(
+        "damping ratio of the drivetrain", RATIO, "", "the tables of drivetrain C have none"
+    )
+
+
+def interfaces(run: Run, page: Page) -> None:
+    """Loads at all interfaces from simulated hub loads, in equilibrium, exported."""
+    made = hub_loads(Condition(16.0, "medium", 0.2, 1), duration=60.0 if run.quick else 600.0)
+    table = three_point_loads(PLACES, made.time, made.loads)
+    for body in table.bodies:
+        page.vanishes(
+            f"{body.name}: error of equilibrium in any row, over the largest load",
+            float(np.abs(imbalance(table, body.name)).max()),
+            within=1e-12,
+            why="rounding",
+            source="forces and moments of all interfaces, and the weight",
+        )
+    arms = [table.interface(f"{side} arm").loads[:, 2] for side in ("left", "right")]
+    housing = 0.5 * PLACES.between_arms * (arms[0] - arms[1])
+    torque = made.loads[:, 3]
+    page.vanishes(
+        "torque of the arms and T_LSS - T_HSS, largest difference over the torque",
+        float(np.abs(housing + torque * (1.0 - 1.0 / PLACES.ratio)).max() / np.abs(torque).max()),
+        within=1e-12,
+        why="rounding",
+        source="torque of the housing",
+    )
+    rows = [
+        {key: value for key, value in row.items() if key not in ("levels", "seconds", "source")}
+        for row in analysed(table)
+        if max(abs(row["least"]), abs(row["largest"])) > 0.0
+    ]
+    write_load_csv(table, run.folder / "interfaces.csv")
+    write_load_json(table, run.folder / "interfaces.json")
+    page.section("Loads at interfaces")
+    page.table("Loads at interfaces at 16 m/s (interfaces.csv and .json have every row)", rows)
+    page.text(
+        "The drivetrain stands on a main bearing without moments and two torque arms, so that the "
+        "loads follow from those of the hub. Equivalent loads are at 1 Hz, by the slope of the "
+        "S-N curve. Places and masses are assumed, of a machine of 2 MW."
+    )

@@ -1,0 +1,10 @@
+"""The six steps by which a team validates a drivetrain, pitch or yaw model (PROTEST 2010).
+
+In: torsional systems, load histories, tables of loads at interfaces. Out: virtual measurements,
+identified parameters with bands, drive torques, duty, and what the report's own equations make of
+the same data.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

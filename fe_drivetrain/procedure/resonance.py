@@ -1,0 +1,232 @@
+"""Excitations of a drivetrain against its natural frequencies: crossings, margins, energy shares.
+
+PROTEST 2010 names resonance as a load that no load case covers (section 4.2), and asks for a
+Campbell diagram and the distribution of energy in each mode (appendix A). An excitation of an order
+k of a shaft meets a frequency f at the rotor speed n = 60 f / (k i), i the speed of the shaft over
+the rotor's. It matters where the mode moves the body at which it acts: by the share of that in the
+energy of the mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.torsion.gear_table import (
+    GENERATOR,
+    ROTOR,
+    Drivetrain,
+    PlanetaryStage,
+)
+from fe_drivetrain.torsion.system import Modes
+
+NEAR, MOVED = 0.1, 0.01
+"""Margin below which a frequency is near, and energy share below which a mode is not excited."""
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """Something periodic in the rotation of a shaft.
+
+    Attributes
+    ----------
+    name : str
+        As in "3P", "stage 2 mesh 1x".
+    per_turn : float
+        Periods for one turn of the rotor.
+    at : tuple of str
+        Parts of the model at which it acts: inertias or elements.
+    """
+
+    name: str
+    per_turn: float
+    at: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        if not self.per_turn > 0.0:
+            raise InputError(
+                f"excitation {self.name!r} has {self.per_turn:g} periods a turn of the rotor: give "
+                "a "
+                "number above 0"
+            )
+
+    def frequency(self, speed: float) -> float:
+        """At a speed of the rotor [Hz].
+
+        Parameters
+        ----------
+        speed : float
+            [rpm].
+        """
+        return self.per_turn * speed / 60.0
+
+    def crossing(self, frequency: float) -> float:
+        """Speed of the rotor at which it has a frequency [rpm].
+
+        Parameters
+        ----------
+        frequency : float
+            [Hz].
+        """
+        return 60.0 * frequency / self.per_turn
+
+
+def drivetrain_excitations(table: Drivetrain, blades: int = 3) -> tuple[Excitation, ...]:
+    """Blade passing, imbalance of shafts, planets passing, meshes up to 3x and their sidebands.
+
+    Parameters
+    ----------
+    table : Drivetrain
+        Stages without teeth have no mesh frequency, and are left out of the register.
+    blades : int
+        Of the rotor.
+
+    Returns
+    -------
+    tuple of Excitation
+        They act at the parts of `torsion.gear_masses` of the same table.
+    """
+    found = [
+        Excitation("1P", 1.0, (ROTOR,)),
+        *(Excitation(f"{k * blades}P", float(k * blades), (ROTOR,)) for k in (1, 2)),
+    ]
+    speed = 1.0
+    for number, stage in enumerate(table.stages, start=1):
+        name = f"stage {number}"
+        if isinstance(stage, PlanetaryStage):
+            planets = range(1, stage.planets + 1)
+            parts = tuple(f"{name} {mesh}-planet {i}" for mesh in ("ring", "sun") for i in planets)
+            found.append(Excitation(f"{name} planets passing", stage.planets * speed, parts))
+        else:
+            parts = (f"{name} mesh",)
+        if stage.teeth:
+            # of the fixed ring for each turn of the carrier, of the gear for each of its own
+            mesh = stage.teeth[0] * speed
+            found += [Excitation(f"{name} mesh {k}x", k * mesh, parts) for k in (1, 2, 3)]
+            for sign, word in ((1.0, "+"), (-1.0, "-")):
+                found.append(Excitation(f"{name} mesh 1x {word} shaft", mesh + sign * speed, parts))
+        speed *= stage.speed_ratio
+    return (
+        *found,
+        *(Excitation(f"generator {k}x", k * speed, (GENERATOR,)) for k in (1, 2)),
+    )
+
+
+Verdict = Literal["resonance", "near", "clear", "not excited"]
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """An excitation and a mode.
+
+    Attributes
+    ----------
+    excitation : str
+    mode : int
+        From 1, free turning left out.
+    frequency : float
+        Of the mode [Hz].
+    crossing : float
+        Speed of the rotor at which they meet [rpm].
+    margin : float
+        Least distance of both frequencies over that of the mode, within the range of speeds.
+    share : float
+        Of the parts at which the excitation acts in the energy of the mode: kinetic of inertias,
+        strain of elements.
+    verdict : str
+        "resonance" where they meet in the range, "near", "clear"; "not excited" of a small share.
+    """
+
+    excitation: str
+    mode: int
+    frequency: float
+    crossing: float
+    margin: float
+    share: float
+    verdict: Verdict
+
+
+def resonances(
+    excitations: Iterable[Excitation],
+    modes: Modes,
+    elements: tuple[str, ...],
+    speeds: tuple[float, float],
+    near: float = NEAR,
+    moved: float = MOVED,
+) -> list[Meeting]:
+    """All excitations against all modes.
+
+    Parameters
+    ----------
+    excitations : iterable of Excitation
+        Register.
+    modes : Modes
+        Of a model with the parts at which they act.
+    elements : tuple of str
+        Names of its elements, in their order.
+    speeds : tuple of float
+        Least and largest speed of the rotor in operation [rpm].
+    near : float
+        Margin below which a mode is near.
+    moved : float
+        Share below which a mode is not excited.
+
+    Returns
+    -------
+    list of Meeting
+
+    Raises
+    ------
+    InputError
+        An excitation acts at no part of the model, or the range is empty.
+    """
+    low, high = speeds
+    if not 0.0 <= low < high:
+        raise InputError(
+            f"speeds from {low:g} to {high:g} rpm are no range: give the least, from 0, and the "
+            "largest above it"
+        )
+    found = []
+    moving = [m for m, f in enumerate(modes.frequencies) if f > 0.0]
+    for excitation in excitations:
+        shares = _shares(excitation, modes, elements)
+        for number, m in enumerate(moving, start=1):
+            frequency, share = float(modes.frequencies[m]), float(shares[m])
+            crossing = excitation.crossing(frequency)
+            if low <= crossing <= high:
+                margin = 0.0
+            else:
+                nearest = low if crossing < low else high
+                margin = abs(excitation.frequency(nearest) / frequency - 1.0)
+            verdict: Verdict = (
+                "not excited"
+                if share < moved
+                else "resonance"
+                if margin == 0.0
+                else "near"
+                if margin < near
+                else "clear"
+            )
+            found.append(
+                Meeting(excitation.name, number, frequency, crossing, margin, share, verdict)
+            )
+    return found
+
+
+def _shares(excitation: Excitation, modes: Modes, elements: tuple[str, ...]) -> Floats:
+    """(n,) share of the excited parts in the energy of each mode."""
+    total = 0.0 * modes.frequencies
+    for part in excitation.at:
+        if part in modes.names:
+            total += modes.inertia_shares[modes.names.index(part)]
+        elif part in elements:
+            total += modes.stiffness_shares[elements.index(part)]
+        else:
+            raise InputError(
+                f"excitation {excitation.name!r} acts at {part!r}, which is no part of the model: "
+                f"use some of {', '.join((*modes.names, *elements))}"
+            )
+    return total
