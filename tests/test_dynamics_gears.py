@@ -4,10 +4,16 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.gear_pairs import contact_ratios, machine_pairs, with_iso_stiffness
+from fe_drivetrain.dynamics.gear_pairs import (
+    contact_ratios,
+    machine_pairs,
+    mesh_courses,
+    with_iso_stiffness,
+)
 from fe_drivetrain.dynamics.levels import Level, machine_system
-from fe_drivetrain.dynamics.meshing import machine_meshing
+from fe_drivetrain.dynamics.meshing import machine_meshing, varying_equations
 from fe_drivetrain.dynamics.tables import Machine, library_machine
+from fe_drivetrain.gear.pair_stiffness import constant_law
 from fe_drivetrain.validation.published_gears import nrel_5mw
 
 
@@ -41,6 +47,20 @@ def test_contact_ratios_are_what_varying_meshes_need() -> None:
     assert all(1.0 < ratio < 3.5 for ratio in ratios.values())
     meshing = machine_meshing(machine, 1.267, ratios)
     assert meshing["stage 2 sun-planet 3"].contact_ratio == ratios["stage 2 sun-planet"]
+
+
+def test_meshes_vary_as_those_of_their_gears() -> None:
+    machine = library_machine("nrel_5mw")
+    courses = mesh_courses(machine, lambda pair: constant_law(14e9))
+    meshing = machine_meshing(machine, 1.267, contact_ratios(machine), courses)
+    system = machine_system(machine, Level.TORSIONAL)
+    springs = varying_equations(system, meshing).springs
+    row = system.spring_names.index("stage 2 ring-planet 2 slice 1")
+    # teeth that all are as stiff: one pair or two, of the contact ratio on average
+    ratio = contact_ratios(machine)["stage 2 ring-planet"]
+    wave = springs.waves[springs.wave[row]][:, 0]
+    # the table of 200 phases rounds the contact ratio to 1/200
+    assert [wave.min(), wave.max()] == pytest.approx([1 / ratio, 2 / ratio], rel=5e-3)
 
 
 def test_missing_data_of_gears_is_named() -> None:

@@ -1,11 +1,14 @@
 """Gears of a machine that has all of their data: pairs, mesh stiffness and contact ratios."""
 
+from collections.abc import Callable
 from math import radians
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.tables import Machine, ParallelData, PlanetaryData
 from fe_drivetrain.gear.involute import Gear, Pair
 from fe_drivetrain.gear.iso import iso_stiffness
+from fe_drivetrain.gear.meshes import StiffnessTable, mesh_stiffness
+from fe_drivetrain.gear.pair_stiffness import Law
 
 
 def machine_pairs(machine: Machine) -> dict[str, Pair]:
@@ -76,6 +79,24 @@ def contact_ratios(machine: Machine) -> dict[str, float]:
         As of `machine_pairs`.
     """
     return {name: pair.contact_ratio for name, pair in machine_pairs(machine).items()}
+
+
+def mesh_courses(machine: Machine, law: Callable[[Pair], Law]) -> dict[str, StiffnessTable]:
+    """Stiffness of all meshes over their phase, as `machine_meshing` takes it.
+
+    Parameters
+    ----------
+    machine : Machine
+        As of `machine_pairs`.
+    law : callable
+        From a pair of gears to the law of one pair of teeth, such as `parabolic_law`.
+
+    Returns
+    -------
+    courses : dict[str, StiffnessTable]
+        By the names of `machine_pairs` [N/m].
+    """
+    return {name: mesh_stiffness(pair, law(pair)) for name, pair in machine_pairs(machine).items()}
 
 
 def with_iso_stiffness(machine: Machine) -> Machine:
