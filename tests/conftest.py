@@ -127,7 +127,7 @@ class QuickRun:
     def _run(self, case: Case) -> None:
         if case.alone:
             problem = run_cases([case], self.folder, quick=True).get(case.name)
-            if problem is not None and problem.is_missing_tool:
+            if problem is not None and problem.state == "skipped":
                 pytest.skip(problem.message)
             assert problem is None, problem
             return

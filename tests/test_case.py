@@ -1,6 +1,7 @@
 """A result folder appears whole or not at all, and says what was computed."""
 
 import os
+import shlex
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
@@ -9,8 +10,10 @@ from pathlib import Path
 import pytest
 from tiny_case import check_one
 
+from fe_drivetrain.commands.settings import parse_settings
 from fe_drivetrain.common import files
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.answer import headline
 from fe_drivetrain.report.results import Chart, Image, Table, Text, read_results
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case, find_cases
@@ -63,8 +66,31 @@ def test_run_writes_what_it_returns(tmp_path: Path) -> None:
     results = run_case(tiny_case(), out, {"a": [1, "b"]})
     assert read_results(out / "results.json") == results
     assert results.environment.settings == {"a": [1, "b"]}
-    assert set(contents(out)) == {"results.json", "report.html", "one.txt"}
+    assert set(contents(out)) == {"history.sqlite", "results.json", "report.html", "one.txt"}
     assert [path.name for path in out.parent.iterdir()] == ["folder"]
+
+
+def answering(run: Run, page: Page) -> None:
+    page.found("stiffness [MN m/rad]", 579.2, 141.0)
+    page.found("ratio", 2.0)
+    page.headline = "other"
+    page.scene = "shaft: {}"
+    check_one(page)
+
+
+def test_a_case_states_its_answers_and_what_runs_it_again(tmp_path: Path) -> None:
+    settings = {"a": "two words", "k": [1, "b"]}
+    results = run_case(tiny_case(answering), tmp_path / "out", settings, quick=True)
+    stiffness, ratio = results.answers
+    assert (stiffness.quantity, stiffness.unit) == ("stiffness", "MN m/rad")
+    assert (stiffness.computed, stiffness.band) == (579.2, 141.0)
+    assert (ratio.quantity, ratio.unit, ratio.band) == ("ratio", "", None)
+    assert headline(results) == stiffness
+    assert (results.headline, results.scene) == ("other", "shaft: {}")
+    typed = shlex.split(results.environment.command)
+    assert typed[:4] == ["fe-drivetrain", "run", "group/tiny", "--quick"]
+    pairs = [word.partition("=") for word in typed[5::2]]
+    assert {key: parse_settings([f"{key}={value}"])[key] for key, _, value in pairs} == settings
 
 
 def test_every_kind_of_item_survives_the_round_trip(tmp_path: Path) -> None:
@@ -156,7 +182,7 @@ def test_ctrl_c_between_the_two_renames_puts_the_earlier_results_back(
 def test_a_new_run_replaces_the_whole_folder(tmp_path: Path) -> None:
     run_case(tiny_case(), tmp_path / "out")
     run_case(tiny_case(fill), tmp_path / "out")
-    assert set(contents(tmp_path / "out")) == {"results.json", "report.html"}
+    assert set(contents(tmp_path / "out")) == {"history.sqlite", "results.json", "report.html"}
 
 
 def test_an_empty_folder_is_used_and_a_foreign_one_refused(tmp_path: Path) -> None:

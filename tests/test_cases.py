@@ -3,7 +3,7 @@
 import pytest
 from conftest import QuickRun
 
-from fe_drivetrain.report.page import write_index
+from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.suite.case import all_cases
 

@@ -9,6 +9,7 @@ import pytest
 from tiny_case import Result, count
 
 from fe_drivetrain.commands.app import main_of_case
+from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import Case
 
 
@@ -51,6 +52,8 @@ def test_a_script_of_a_case_has_the_same_options(
     status, out, _ = invoke("--out", "x", "--set", "k=1", main=lambda: main_of_case(case))
     assert status == 0
     assert out.endswith("x/report.html\n")
-    assert (tmp_path / "x/report.html").is_file()
+    command = read_results(tmp_path / "x/results.json").environment.command
+    assert command.startswith("python ")
+    assert command.endswith(" --out x --set k=1")
     assert invoke("--set", "k", main=lambda: main_of_case(case))[0] == 2
     assert "A tiny case" in invoke("--help", main=lambda: main_of_case(case))[1]

@@ -29,7 +29,7 @@ def test_every_verdict_is_a_test(tmp_path: Path) -> None:
     results = {"a/good": results_of("a/good", 1.0, 1.05), "a/bad": results_of("a/bad", 2.0, 1.0)}
     problems = {
         "a/broken": Problem("length is -1 <m>"),
-        "a/skipped": Problem("install ccx", is_missing_tool=True),
+        "a/skipped": Problem("install ccx", "skipped"),
     }
     write_junit(path, names, results, problems)
     suites = {s.get("name"): s for s in ElementTree.parse(path).getroot()}

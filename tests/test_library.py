@@ -15,7 +15,7 @@ from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.geometry import build, gmsh_session
 from fe_drivetrain.revolution.rigid_seats import end_stiffness
 from fe_drivetrain.scene.component import COMPONENTS
-from fe_drivetrain.scene.reading import library_scene
+from fe_drivetrain.scene.reading import library_scene, parse_scene, scene_text
 
 TEXTS = {
     file.name.removesuffix(".yaml"): file.read_text("utf-8")
@@ -54,6 +54,14 @@ def test_public_turbines_say_what_is_sourced_assumed_and_left_out(name: str) -> 
     assert re.search(r"\b(19|20)\d\d\b", header)
     for heading in ("Sources", "Assumed", "Not represented"):
         assert heading in header
+
+
+@pytest.mark.parametrize("name", DRIVETRAINS)
+def test_a_scene_written_as_a_file_is_read_as_the_same_scene(name: str) -> None:
+    scene = library_scene(name)
+    assert parse_scene(scene_text(scene)) == scene
+    coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(1.7)})
+    assert parse_scene(scene_text(coarser)) == coarser
 
 
 @pytest.mark.parametrize("name", DRIVETRAINS)

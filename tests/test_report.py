@@ -4,9 +4,12 @@ import base64
 import hashlib
 import json
 import math
+import re
 import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -16,15 +19,11 @@ from numpy.testing import assert_allclose
 from PIL import Image as Pixels
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.report.charts import density_chart, heat_map
-from fe_drivetrain.report.page import (
-    error_text,
-    formatted,
-    safe_range,
-    tolerance_text,
-    write_index,
-    write_page,
-)
+from fe_drivetrain.report.bundle import plotly_file
+from fe_drivetrain.report.charts import PALETTE, density_chart, heat_map
+from fe_drivetrain.report.index import write_index
+from fe_drivetrain.report.number_text import error_text, formatted, safe_range, tolerance_text
+from fe_drivetrain.report.page import write_page
 from fe_drivetrain.report.results import (
     AssumptionRow,
     Chart,
@@ -57,7 +56,7 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.elements.append((tag, dict(attrs)))
-        if tag not in ("meta", "link", "img", "br"):
+        if tag not in ("meta", "link", "img", "br", "input"):
             self.open.append(tag)
         if tag == "script":
             self.scripts.append((dict(attrs), ""))
@@ -118,7 +117,10 @@ def results(string: str = "plain", **changes: object) -> Results:
             platform=string,
             versions={string: string},
             settings={string: string},
+            code=string,
+            command=string,
         ),
+        "scene": string,
     }
     return Results.model_validate(content | changes)
 
@@ -179,7 +181,8 @@ def test_errors_and_tolerances_are_relative_or_in_the_unit() -> None:
 
 def test_the_page_says_what_the_results_say(tmp_path: Path) -> None:
     text = Page(page_of(tmp_path, results("A plain string"))).text()
-    assert "1 of 2 checks pass, 1 fails" in text
+    assert "1 of 2 checks pass" in text
+    assert ", 1 fails" in text
     assert "392\u202f280" in text
     # everywhere but in the chart's JSON and in attributes
     assert text.count("A plain string") >= 18
@@ -230,49 +233,146 @@ def test_figures_need_no_webgl_and_no_finite_numbers(tmp_path: Path) -> None:
     page = Page(page_of(tmp_path, results(sections=[section])))
     ((_, text),) = [s for s in page.scripts if s[0].get("type") == "application/json"]
     (trace,) = json.loads(text)["data"]
-    assert trace == {"type": "scatter", "y": [1.0, None, None]}
+    assert (trace["type"], trace["y"]) == ("scatter", [1.0, None, None])
 
 
-def test_more_traces_than_colours_are_told_apart_by_their_lines(tmp_path: Path) -> None:
-    traces = [{"type": "scatter", "name": str(k), "x": [0], "y": [k]} for k in range(9)]
-    section = Section(title="s", items=[Chart(caption="c", figure={"data": traces})])
-    page = Page(page_of(tmp_path, results(sections=[section])))
+def drawn(folder: Path, *traces: dict[str, object], **layout: object) -> dict[str, Any]:
+    """The figure of such traces as the page has it."""
+    figure = {"data": list(traces), "layout": layout}
+    section = Section(title="s", items=[Chart(caption="c", figure=figure)])
+    page = Page(page_of(folder, results(sections=[section])))
     ((_, text),) = [s for s in page.scripts if s[0].get("type") == "application/json"]
-    drawn = json.loads(text)["data"]
-    assert all("line" not in trace for trace in drawn[:7])
-    assert [trace["line"]["dash"] for trace in drawn[7:]] == ["dash", "dash"]
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def lines(*names: str) -> list[dict[str, object]]:
+    return [{"type": "scatter", "name": name, "x": [1, 2], "y": [1, 2]} for name in names]
+
+
+def test_no_page_has_a_raw_backtick(tmp_path: Path) -> None:
+    said = "run `fe-drivetrain history` now"
+    chart = Chart(caption=said, figure={"data": lines(said), "layout": {"title": {"text": said}}})
+    table = Table(caption=said, columns=[said], rows=[[said]])
+    content = results(said, sections=[Section(title=said, items=[chart, table, Text(text=said)])])
+    page = Page(page_of(tmp_path, content.model_copy(update={"case": "a/b", "scene": ""})))
+    plain = [t for tag, t in page.texts if tag not in ("style", "code", "dd", "td", "pre")]
+    assert not any("`" in text for text in plain)
+    assert all("`" not in (v or "") for _, attributes in page.elements for v in attributes.values())
+    (figure,) = [t for attributes, t in page.scripts if "data-chart" in attributes]
+    assert "`" not in figure
+
+
+def test_no_two_traces_look_the_same(tmp_path: Path) -> None:
+    given = lines(*(str(k) for k in range(len(PALETTE) + 3)))
+    given[2]["line"] = {"color": PALETTE[0]}
+    traces = drawn(tmp_path, *given)["data"]
+    looks = [(trace["line"]["color"], trace["line"].get("dash")) for trace in traces]
+    assert len(set(looks)) == len(looks)
+    assert len({colour for colour, _ in looks}) == len(PALETTE)
+    assert [dash for _, dash in looks[-2:]] == ["dash", "dash"]
+
+
+def test_a_method_has_the_same_colour_in_every_chart(tmp_path: Path) -> None:
+    names = ("other", "hexahedra of 27 nodes", "level 2, meridian in harmonics", "another")
+    colours = []
+    for order in (names, names[::-1]):
+        traces = drawn(tmp_path, *lines(*order))["data"]
+        colours.append({trace["name"]: trace["line"]["color"] for trace in traces})
+        assert len(set(colours[-1].values())) == 4
+    for name in names[1:3]:
+        assert colours[0][name] == colours[1][name]
+
+
+def test_axes_are_equal_where_equal_is_a_diagonal_and_have_no_prefixes(tmp_path: Path) -> None:
+    layout = drawn(tmp_path, *lines("equal", "beam"), yaxis={"title": {"text": "F [kN]"}})["layout"]
+    assert layout["yaxis"]["scaleanchor"] == "x"
+    assert layout["yaxis"]["title"] == {"text": "F [kN]"}
+    assert layout["template"]["layout"]["yaxis"]["exponentformat"] == "power"
+    assert "scaleanchor" not in drawn(tmp_path, *lines("beam"))["layout"].get("yaxis", {})
+
+
+@pytest.mark.parametrize(("most", "tick"), [(5, "D1"), (50, "D2"), (1e5, 1), (1e20, 3)])
+def test_labels_of_a_logarithmic_axis_leave_each_other_room(
+    tmp_path: Path, most: float, tick: object
+) -> None:
+    trace = {"type": "scatter", "x": [1.0, most], "y": [0, 1]}
+    layout = drawn(tmp_path, trace, xaxis={"type": "log"})["layout"]
+    assert layout["xaxis"]["dtick"] == tick
 
 
 def test_the_policy_allows_the_scripts_of_the_page_and_nothing_else(tmp_path: Path) -> None:
     page = Page(page_of(tmp_path, results(HOSTILE)))
     (policy,) = [m["content"] for m in page.all("meta") if "http-equiv" in m]
     assert policy is not None
-    run = [text for attributes, text in page.scripts if "type" not in attributes]
+    run = [text for attributes, text in page.scripts if not attributes]
     digests = [hashlib.sha256(script.encode()).digest() for script in run]
     allowed = " ".join(f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests)
     assert len(run) == 2
-    assert f"script-src {allowed};" in policy
+    assert f"script-src {allowed} 'self' file:;" in policy
     assert "default-src 'none'" in policy
 
 
-def test_the_page_refers_to_nothing_outside_itself(tmp_path: Path) -> None:
+def test_the_page_refers_to_nothing_but_files_of_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "mesh 1e5.vtu").write_text("")
     page = Page(page_of(tmp_path, results("https://example.org/x.png")))
+    addresses = []
     for _, attributes in page.elements:
         for name in ("src", "href", "srcset", "action", "data", "poster"):
-            assert (attributes.get(name) or "#").startswith(("data:", "#"))
+            address = attributes.get(name) or "#"
+            if not address.startswith(("data:", "#")):
+                addresses.append(unquote(address))
+    assert set(addresses) == {
+        f"./{plotly_file()}",
+        "mesh 1e5.vtu",
+        "model.png",
+        "results.json",
+    }
+    assert all((tmp_path / address).is_file() for address in addresses)
     (style,) = [text for tag, text in page.texts if tag == "style"]
     assert "url(" not in style
     assert "@import" not in style
 
 
-def test_plotly_is_embedded_once_and_only_for_charts(tmp_path: Path) -> None:
+def test_plotly_stands_once_beside_the_pages_and_only_for_charts(tmp_path: Path) -> None:
     section = Section(title="s", items=[Chart(caption="c", figure={})] * 3)
-    several = Page(page_of(tmp_path, results(sections=[section])))
-    assert len([1 for attributes, _ in several.scripts if "type" not in attributes]) == 2
-    none = page_of(tmp_path, results(sections=[]))
-    assert "<script" not in none
-    (policy,) = [m["content"] for m in Page(none).all("meta") if "http-equiv" in m]
-    assert "script-src 'none'" in str(policy)
+    case = tmp_path / "group" / "case"
+    case.mkdir(parents=True)
+    (case / "results.json").write_text(results(sections=[]).model_dump_json(), "utf-8")
+    none = write_page(case, tmp_path).read_text("utf-8")
+    assert "plotly" not in none
+    assert "file:" not in none
+    assert list(tmp_path.glob("*.js")) == []
+    (case / "results.json").write_text(results(sections=[section]).model_dump_json(), "utf-8")
+    text = write_page(case, tmp_path).read_text("utf-8")
+    assert [a["src"] for a, _ in Page(text).scripts if "src" in a] == [f"../../{plotly_file()}"]
+    assert len(text) < 60_000
+    (bundle,) = tmp_path.glob("**/*.js")
+    assert bundle == tmp_path / plotly_file()
+    assert "plotly.js" in bundle.read_text("utf-8")[:1000]
+
+
+def test_a_case_can_be_run_again_from_what_its_page_says(tmp_path: Path) -> None:
+    environment = results().environment.model_copy(
+        update={"command": "fe-drivetrain run a/b --set k=-4e5", "code": "c0de" * 16, "quick": True}
+    )
+    content = results(environment=environment, scene="shaft:\n  front: -1e-5\n")
+    text = Page(page_of(tmp_path, content)).text()
+    for said in (
+        "fe-drivetrain run a/b --set k=-4e5",
+        "front: -1e-5",
+        "c0dec0de",
+        "quick: coarser",
+    ):
+        assert said in text
+
+
+def test_no_time_is_negative(tmp_path: Path) -> None:
+    times = {"a": 3.0, "b": 2.0, "side by side in 2 processes": -1.5}
+    text = Page(page_of(tmp_path, results(times=times))).text()
+    assert "saved, side by side in 2 processes\n1.5" in text
+    assert "Computing times: 3.5" in text
+    assert "\u22121.5" not in text
 
 
 def test_images_are_embedded_whole_and_described(tmp_path: Path) -> None:
@@ -315,8 +415,10 @@ def test_an_image_must_be_a_png_in_the_folder(tmp_path: Path, file: str) -> None
 
 def test_contents_lead_to_every_section(tmp_path: Path) -> None:
     sections = [Section(title=f"Part {k}", items=[]) for k in range(3)]
-    page = Page(page_of(tmp_path, results(sections=sections)))
-    links = [(a["href"] or "").removeprefix("#") for a in page.all("a")]
+    text = page_of(tmp_path, results(sections=sections))
+    page = Page(text)
+    nav = text.partition("<nav")[2].partition("</nav>")[0]
+    links = re.findall('href="#([^"]*)"', nav)
     ids = [s["id"] for s in page.all("section")]
     assert links == [i for i in ids if i != "summary"]
     assert len(links) > 4
@@ -327,7 +429,7 @@ def test_tables_have_headers_and_the_page_a_language(tmp_path: Path) -> None:
     assert page.all("html") == [{"lang": "en"}]
     assert all(head.get("scope") in ("col", "row") for head in page.all("th"))
     assert len(page.all("thead")) == len(page.all("table"))
-    assert all(chart["aria-label"] for chart in page.all("div") if chart.get("role") == "img")
+    assert [figure["aria-label"] for figure in page.all("figure") if "aria-label" in figure]
 
 
 def test_the_same_results_make_the_same_page(tmp_path: Path) -> None:

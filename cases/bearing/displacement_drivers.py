@@ -41,6 +41,7 @@ def run(run: Run, page: Page) -> None:
             if (name, housing) == ("X, 38 deg", "left out"):
                 charts(page, axial, loads)
     first = rows[0]
+    page.found("ring moves upwind against the thrust, share of steps [%]", first["upwind [%]"])
     page.answer(
         f"Face to face the inner ring moves upwind against the thrust in {first['upwind [%]']:.0f} "
         f"% of the steps; of these the moment of the rotor's weight prevails in "

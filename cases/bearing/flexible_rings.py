@@ -106,6 +106,7 @@ def run(run: Run, page: Page) -> None:
     rows = _rows(housed)
     at = {row["load"]: row for row in rows}
     changes = [row[CHANGE] for row in rows]
+    page.found("largest change of the peak roller [%]", max(changes, key=abs))
     page.answer(
         f"On the flexible housing the peak roller of bearing S changes by {min(changes):+.1f} to "
         f"{max(changes):+.1f} % against rigid rings: "

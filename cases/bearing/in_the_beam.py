@@ -257,6 +257,7 @@ def differences(page: Page, files: dict[str, list[Answer]], answers: dict[str, A
             )
         )
 
+    page.found("mean moment, constant K_R against the loop [%]", mean(CONSTANT, LOOP))
     page.answer(
         f"The moment on the bearing differs by {mean(CONSTANT, LOOP):.1f} % between a constant K_R "
         f"and the thesis's loop (the thesis: about 3 %), by {mean(LOOP, NEWTON):.1f} % between the "

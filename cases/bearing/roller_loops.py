@@ -140,6 +140,7 @@ def directions(page: Page, loads: dict[str, Floats]) -> None:
     page.data("directions", rows)
     last = {row["bearing"]: row for row in rows if row["wind [m/s]"] == WIND_SPEEDS[-1]}
     key = "force, least to largest [kN]"
+    page.found("range of the radial force at 24 m/s, rollers alone [kN]", last[ALONE][key])
     page.answer(
         f"At 24 m/s the radial force ranges over {last[ALONE][key]:.0f} kN on rollers in a rigid "
         f"housing and {last[CONSTANT][key]:.0f} kN with K_R of 145 MN m/rad (the thesis: under "

@@ -48,6 +48,7 @@ def run(run: Run, page: Page) -> None:
             fits.append(one_bearing(page, name, bearing, flat))
     check_closed_form(page, bearing_s())
     first = fits[0]
+    page.found("slope of the best straight line [MN m/rad]", first["best fit [MN m/rad]"])
     page.answer(
         f"A straight line through all scenarios has a slope of {first['best fit [MN m/rad]']:.0f} "
         f"MN m/rad for {first['bearing']}; the thesis prints {BEST_FIT / 1e6:.0f}. For the contact "

@@ -20,7 +20,14 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.fidelity import meridian_shaft
 from fe_drivetrain.interfaces import roller_loads
 from fe_drivetrain.report import trace
-from fe_drivetrain.scene import Scene, change_scene, joint_stiffness, library_scene, roller_lines
+from fe_drivetrain.scene import (
+    Scene,
+    change_scene,
+    joint_stiffness,
+    library_scene,
+    roller_lines,
+    scene_text,
+)
 from fe_drivetrain.suite import Page, Run
 
 SCENE = "main_bearing_spherical"
@@ -118,6 +125,7 @@ def run(run: Run, page: Page) -> None:
     """Sweep the tilt stiffness of the joint from none to all, and set the other joints beside."""
     scene = change_scene(library_scene(SCENE), run.settings)
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(*SIZES[run.quick])})
+    page.scene = scene_text(scene)
     with run.step("the two limits"):
         limits = Limits(
             spherical=solved(with_joint(scene, interface="averaged")),

@@ -31,11 +31,13 @@ from fe_drivetrain.report import (
     Cell,
     Chart,
     NoPictureError,
+    Solid,
     chart,
     picture_of_displacements,
     trace,
+    write_solid_view,
 )
-from fe_drivetrain.scene import Component, SomeComponent
+from fe_drivetrain.scene import Component, SomeComponent, material_of
 from fe_drivetrain.suite import Page, Run, column
 
 #: Coarsening of the mesh under --quick.
@@ -332,7 +334,9 @@ def show_files(run: Run, page: Page, element: Superelement) -> None:
     page.table(f"{element.name} at {', '.join(element.points)}: stiffness read back", rows)
 
 
-def show_picture(run: Run, page: Page, solid: SolidComponent, motions: Floats, what: str) -> None:
+def show_picture(
+    run: Run, page: Page, component: Component, solid: SolidComponent, motions: Floats, what: str
+) -> None:
     """The solid, deformed."""
     page.section("Deformed")
     with run.step("picture"):
@@ -342,7 +346,13 @@ def show_picture(run: Run, page: Page, solid: SolidComponent, motions: Floats, w
         except NoPictureError as reason:
             page.text(f"No picture: {reason}")
             return
-    page.image(f"{what}; displacements times {factor:g}, and the elements' edges", "deformed.png")
+        lame = dict.fromkeys(solid.mesh.part_names, material_of(component).lame)
+        is_turned = write_solid_view(solid.mesh, u, lame, run.folder / "deformed.3d.json")
+    caption = f"{what}; displacements times {factor:g}"
+    if is_turned:
+        page.add(Solid(caption=caption, file="deformed.3d.json", still="deformed.png"))
+    else:
+        page.image(f"{caption}, and the elements' edges", "deformed.png")
 
 
 def assume_dimensions(page: Page, component: Component) -> None:

@@ -104,8 +104,12 @@ def run(run: Run, page: Page) -> None:
         torque = np.zeros(len(ladder.top.compliance))
         torque[3] = TORQUE
         what = f"Torque of {TORQUE:g} N m at the ring"
-        show_picture(run, page, ladder.solid, ladder.top.compliance @ torque, what)
+        show_picture(run, page, component, ladder.solid, ladder.top.compliance @ torque, what)
     band = ladder.band(torsion)
+    whole = torsion(ladder.top) / 1e6
+    page.found(
+        "torsion of the suspension about x [MN m/rad]", whole, whole * band.relative_uncertainty
+    )
     page.answer(
         f"On the solid the suspension has {torsion(ladder.top):.4g} N m/rad about x "
         f"(± {100 * band.relative_uncertainty:.2g} %), where rigid arms would have "

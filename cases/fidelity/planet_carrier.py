@@ -95,6 +95,9 @@ def run(run: Run, page: Page) -> None:
     top = pin_motions(component, ladder.top)
     skew = 1e6 * RATED * top.tilt * FACE_WIDTH
     off = {of: 100 * (of(ladder.models[-2]) / of(ladder.top) - 1.0) for of in (wind_up, tilt)}
+    wound = 1e3 * RATED / top.wind_up
+    band = wound * bands[0].relative_uncertainty
+    page.found("wind-up of the pins at the rated torque [mrad]", wound, band)
     page.answer(
         f"The pins wind up by {1e3 * RATED / top.wind_up:.3g} mrad at the rated torque "
         f"(± {100 * bands[0].relative_uncertainty:.2g} %) and tilt by "
@@ -114,7 +117,7 @@ def run(run: Run, page: Page) -> None:
             _compare_walls(run, page, component, ladder, bands)
         what = f"Rated torque of {RATED:.4g} N m, shared equally by the pins; the flange is held"
         motions = under_torque(component, ladder.top, RATED)
-        show_picture(run, page, ladder.solid, motions, what)
+        show_picture(run, page, component, ladder.solid, motions, what)
     page.data("wind-up", {m.title: wind_up(m) for m in ladder.models if m.points})
     page.data("tilt at 1 N m", {m.title: 1e-12 * tilt(m) for m in ladder.models if m.points})
     page.data("wind-up band", bands[0].uncertainty)

@@ -165,6 +165,8 @@ def run(run: Run, page: Page) -> None:
         max(abs(row[against]) for row in forces)
         for against in ("torsional-spring against FE [%]", "6x6 against FE [%]")
     )
+    page.found("force on the bearing per N at the hub [N/N]", float(reaction[2, 2]))
+    page.found("error of the torsional-spring beam [%]", spring_error)
     page.answer(
         f"1 N up at the hub puts {reaction[2, 2]:.4g} N and {reaction[4, 2]:.4g} N m on the "
         f"bonded bearing; the pinned beam gives {pinned[2, 2]:.4g} N and no moment.",

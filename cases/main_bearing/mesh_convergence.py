@@ -96,6 +96,7 @@ def run(run: Run, page: Page) -> None:
         what: max(100 * c.relative_uncertainty for q, c in found.items() if what in q)
         for what in ("at the", "K_R")
     }
+    page.found(f"error of the reactions with sizes x {last:g} [%]", largest_error["at the"])
     page.answer(
         f"With sizes x {last:g} ({unknowns[-2]:,} unknowns) the reactions are within "
         f"{largest_error['at the']:.2g} % and K_R within {largest_error['K_R']:.2g} % of their "

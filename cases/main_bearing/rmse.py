@@ -270,6 +270,7 @@ def run(run: Run, page: Page) -> None:
     )
     # the bearing that the scene has comes first
     own_kind = study.kind_of(study.given_scene(run, "bonded"))
+    page.headline = "torsional-spring beam against bonded FE: mean error of the resultant"
     page.answer(
         *(on_spherical + on_bonded if own_kind == "spherical" else on_bonded + on_spherical)
     )

@@ -13,8 +13,9 @@ from fe_drivetrain.common import (
 from fe_drivetrain.report import (
     Image,
     NoPictureError,
+    Solid,
     Text,
-    picture_of_deformation,
+    deformed_shape,
     picture_of_model,
 )
 from fe_drivetrain.response import (
@@ -165,7 +166,9 @@ def _warnings(solutions: Mapping[str, Solved]) -> str:
     return "".join(f". Warning ({label}): {warning}" for warning, label in found.items())
 
 
-def pictures_of(run: Run, solved: Solved, loads: Floats, what: str) -> Sequence[Image | Text]:
+def pictures_of(
+    run: Run, solved: Solved, loads: Floats, what: str
+) -> Sequence[Image | Solid | Text]:
     """Draw the model and its deformed shape.
 
     Parameters
@@ -181,24 +184,17 @@ def pictures_of(run: Run, solved: Solved, loads: Floats, what: str) -> Sequence[
 
     Returns
     -------
-    items : sequence of Image or Text
+    items : sequence of Image, Solid or Text
         For the page; a sentence that says why where nothing can be drawn.
     """
     with run.step("pictures"):
         try:
             picture_of_model(solved.model, run.folder / "model.png")
-            factor = picture_of_deformation(
-                solved.model, solved.response, loads, run.folder / "deformed.png"
-            )
+            shape = deformed_shape(solved.model, solved.response, loads, run.folder, what)
         except NoPictureError as reason:
             return [Text(text=f"No picture: {reason}")]
-    return [
-        Image(caption=f"{solved.scene.title}: parts, loads and supports", file="model.png"),
-        Image(
-            caption=f"Deformed shape, displacements times {factor:,.0f}, under {what}",
-            file="deformed.png",
-        ),
-    ]
+    caption = f"{solved.scene.title}: parts, loads and supports"
+    return [Image(caption=caption, file="model.png"), shape]
 
 
 def assume(page: Page, scene: Scene) -> None:

@@ -22,7 +22,14 @@ from fe_drivetrain.response import (
     tilt_stiffness,
     without_gearbox,
 )
-from fe_drivetrain.scene import Scene, change_scene, coarser_scene, library_scene, read_scene
+from fe_drivetrain.scene import (
+    Scene,
+    change_scene,
+    coarser_scene,
+    library_scene,
+    read_scene,
+    scene_text,
+)
 from fe_drivetrain.solve import METHODS
 from fe_drivetrain.suite import Page, Run
 
@@ -95,6 +102,7 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
         )
     if run.quick and coarsen:
         scene = coarser_scene(scene, *QUICK)
+    page.scene = scene_text(scene)
     return scene
 
 

@@ -119,6 +119,10 @@ def run(run: Run, page: Page) -> None:
             f"Numerical uncertainty from two coarser meshes: {percent[0]:.2g} % in the vertical "
             f"and {percent[1]:.2g} % in the horizontal plane (averaged seat)."
         )
+    for number, (plane, value) in enumerate((("vertical", vertical), ("horizontal", horizontal))):
+        share = percent[number] if series.complete else None
+        band = None if share is None else share / 100.0 * value
+        page.found(f"K_R, {plane} plane [MN m/rad]", value, band)
     load_factors = np.zeros(10)
     load_factors[4] = 1e6
     page.section("Model")

@@ -88,8 +88,8 @@ def solve(run: Run, body: str, unknowns: int) -> Record:
         "error in torsion": found[0] / bodies.torsional_compliance(problem) - 1.0,
         "bound of round-off": round_off(system.K, solution.x),
         "seconds, set-up and solve": seconds,
-        "memory of patches (GiB)": made.bytes / GIB,
-        "memory of a factor (GiB)": None if factor is None else factor / GIB,
+        "memory of patches [GiB]": made.bytes / GIB,
+        "memory of a factor [GiB]": None if factor is None else factor / GIB,
         "second compliance": found[1],
         "converged": solution.energy_error <= solvers.TOLERANCE,
     }
@@ -189,7 +189,7 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
         f"Patches with a spectral coarse space solve {thin['unknowns']:,.0f} unknowns of a thin "
         f"tube in {thin['iterations of patches']:.0f} iterations, {slender['unknowns']:,.0f} of a "
         f"slender shaft in {slender['iterations of patches']:.0f}, in "
-        f"{thin['memory of patches (GiB)']:.2g} and {slender['memory of patches (GiB)']:.2g} GiB "
+        f"{thin['memory of patches [GiB]']:.2g} and {slender['memory of patches [GiB]']:.2g} GiB "
         f"beside the stiffness, right to {max(errors):.0e} in torsion. Multigrid gives up "
         f"{'on both' if len(failed) == 2 else 'on some'} at fewer.",
         memory_of_factors(rows, thin, slender),
@@ -221,7 +221,7 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
         "x",
         (None, None),
     )
-    known = [row for row in rows if row["memory of a factor (GiB)"] is not None]
+    known = [row for row in rows if row["memory of a factor [GiB]"] is not None]
     page.chart(
         "Memory beside the stiffness matrix",
         [
@@ -232,13 +232,13 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
                 mode="lines+markers",
             )
             for key, what, of_rows in (
-                ("memory of patches (GiB)", "patches", rows),
-                ("memory of a factor (GiB)", "direct factor", known),
+                ("memory of patches [GiB]", "patches", rows),
+                ("memory of a factor [GiB]", "direct factor", known),
             )
             for name, series in grouped(of_rows, "body")
         ],
         "unknowns",
-        "memory (GiB)",
+        "memory [GiB]",
         "xy",
     )
     page.table(
@@ -254,11 +254,11 @@ def show(page: Page, rows: list[Record], peak: float) -> None:
 
 def memory_of_factors(rows: list[Record], thin: Record, slender: Record) -> str:
     """A sentence on what direct factors would take."""
-    factors = column(rows, "memory of a factor (GiB)")
+    factors = column(rows, "memory of a factor [GiB]")
     if None in factors:
         return "PARDISO is not installed: what its factor would take is not known."
     tube_memory, rod_memory = (
-        f"{row['memory of a factor (GiB)']:.3g} GiB against {row['memory of patches (GiB)']:.2g} "
+        f"{row['memory of a factor [GiB]']:.3g} GiB against {row['memory of patches [GiB]']:.2g} "
         "GiB of patches"
         for row in (thin, slender)
     )

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import cases
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import PALETTE, trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.fillet_factors import (
     PETERSON,
@@ -23,7 +23,6 @@ from fe_drivetrain.validation.fillet_factors import (
 
 #: r/d of the sweep.
 RADII = (0.03, 0.05, 0.12, 0.2, 0.3)
-COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e")
 
 #: By load: source, formula, tolerance of (load, D/d, r/d), and why.
 Published = Sequence[tuple[str, Formula, Formula, str]]
@@ -156,7 +155,7 @@ def shoulder(load: str, f: Factor) -> Record:
 def add_curves(page: Page, load: str, factors: Sequence[Factor]) -> None:
     """K_t over r/d: points of finite elements, lines of the fits."""
     lines = []
-    for wide, colour in zip(sorted({f.wide for f in factors}), COLOURS, strict=False):
+    for wide, colour in zip(sorted({f.wide for f in factors}), PALETTE, strict=False):
         mine = [f for f in factors if f.wide == wide]
         lines.append(
             trace(

@@ -28,6 +28,7 @@ def run(run: Run, page: Page) -> None:
             series.append(
                 m.convergence(label, divisions, mesh, domain, m.three_waves(), theory, degree=6)
             )
+    page.headline = "P2 curved, quarter ring: order in L2 norm"
     add_manufactured(
         run, page, series, "Straight P2 on a curved body: see the case straight_on_curved."
     )

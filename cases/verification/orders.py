@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_drivetrain.report import Cell, Chart, Table, chart, trace
+from fe_drivetrain.report import PALETTE, Cell, Chart, Table, chart, trace
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.manufactured import Series, three_waves
 
@@ -101,9 +101,8 @@ def add_convergence(page: Page, caption: str, series: Sequence[Series], size: st
 
 def convergence_chart(caption: str, series: Sequence[Series], size: str) -> Chart:
     """Errors over element size, both logarithmic, with the slopes of theory through the finest."""
-    colours = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")
     lines = []
-    for colour, one in zip(colours, series, strict=False):
+    for colour, one in zip(PALETTE, series, strict=False):
         h = np.array(one.sizes)
         for k, (name, values) in enumerate(one.errors.items()):
             style = {"color": colour, "dash": ("solid", "dash", "dashdot")[k]}

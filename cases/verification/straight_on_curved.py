@@ -58,6 +58,7 @@ def run(run: Run, page: Page) -> None:
     exact = SHAFT.rigidity, 1e-3, good, "exact: GJ, Saint-Venant"
     band = SHAFT.rigidity * abs(arcs - coarser) * ratio**4 / (1.0 - ratio**4)
     page.meets(SHAFT.rigidity * (1.0 + arcs), Target(title, *exact, measure="stiffness"), band)
+    page.headline = "shaft, curved P2: order in torsional stiffness"
     page.answer(
         f"With {sides} elements round the shaft the torsional rigidity of straight-sided P2 has an "
         f"error of {chords:.1e} and converges with order {shafts[0].order(STIFFNESS)[0]:.2f}, "

@@ -216,14 +216,16 @@ def advised(
     if chosen is not None and chosen.model.neglects:
         page.answer(f"It neglects {', '.join(chosen.model.neglects)}.")
     known = advice.top if chosen is None else chosen
+    is_exact = known.estimate == 0.0 or known is advice.top
+    error = known.estimate if is_exact else known.error + advice.top.estimate
+    which = f"{quantity.name}: error of level {known.model.level}, {known.model.title}"
+    page.found(f"{which} [%]", 100.0 * error)
     if run.quick:
         page.answer(QUICK_BAND)
     else:
         page.at_most(
-            f"{quantity.name}: error of level {known.model.level}, {known.model.title}",
-            known.estimate
-            if known.estimate == 0.0 or known is advice.top
-            else known.error + advice.top.estimate,
+            which,
+            error,
             tolerance,
             why="the tolerance that was requested",
             source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error "

@@ -6,7 +6,9 @@ Nothing heavy is imported before a command does its work, so that help is quick.
 
 from __future__ import annotations
 
+import shlex
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -14,6 +16,7 @@ import typer
 from fe_drivetrain.commands.compare_runs import compare_runs_command
 from fe_drivetrain.commands.designs import compare_command
 from fe_drivetrain.commands.export import export_command
+from fe_drivetrain.commands.history import history_command
 from fe_drivetrain.commands.life import life_command
 from fe_drivetrain.commands.loads import loads_command
 from fe_drivetrain.commands.new_scene import new_command
@@ -52,6 +55,7 @@ app.command("loads")(loads_command)
 app.command("life")(life_command)
 app.command("list")(list_command)
 app.command("run")(run_command)
+app.command("history")(history_command)
 app.command("compare-runs")(compare_runs_command)
 app.command("export")(export_command)
 app.command("advise")(advise_command)
@@ -107,7 +111,8 @@ def main_of_case(case: Case) -> None:
 
     @script.command(help=f"{case.title}\n\nSource: {case.source}")
     def run_script(out: OutFolder = None, set_: CaseSettings = None, quick: Quick = False) -> None:
-        raise typer.Exit(run_and_print(lambda: [case], out, set_ or (), quick))
+        typed = replace(case, command=shlex.join(["python", *sys.argv]))
+        raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))
 
     prepare_streams()
     script()

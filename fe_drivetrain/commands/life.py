@@ -14,7 +14,7 @@ from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings
-from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
+from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 
@@ -195,6 +195,7 @@ def life_command(
             lambda run, page: lived(
                 run, page, found, bearings, files, rules, reading, place, choices, resume
             ),
+            command=as_typed(),
         )
         with show_steps() as report:
             report("bearings")

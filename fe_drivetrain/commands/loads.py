@@ -12,7 +12,7 @@ import typer
 from fe_drivetrain.commands.options import Channels, Mapping, Resume, RotorSpeed, Skip, Slopes
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
-from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
+from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 
@@ -222,6 +222,7 @@ def loads_command(
             lambda run, page: loaded(
                 run, page, found, options, wanted, place, events, others, resume, writer, reactions
             ),
+            command=as_typed(),
         )
         with show_steps() as report:
             results = run_case(case, out.resolve(), report=report)

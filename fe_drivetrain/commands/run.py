@@ -158,7 +158,7 @@ def run_and_print(
             results, problems = _run_several(cases, out, values, quick, resume)
         if junit is not None:
             write_junit(junit, [case.name for case in cases], results, problems)
-        if any(not problem.is_missing_tool for problem in problems.values()):
+        if any(problem.state != "skipped" for problem in problems.values()):
             return MISTAKE
         return PASSED if all(found.passed for found in results.values()) else FAILED
 
@@ -258,7 +258,7 @@ def tables_text(results: Results, page: Path) -> str:
     -------
     str
     """
-    from fe_drivetrain.report.page import formatted
+    from fe_drivetrain.report.number_text import formatted
     from fe_drivetrain.report.results import Table
 
     lines = [*results.summary]
@@ -302,7 +302,7 @@ def several_results_text(
     for name in names:
         if name in problems:
             problem = problems[name]
-            kind = "skip" if problem.is_missing_tool else "none"
+            kind = "skip" if problem.state == "skipped" else "none"
             lines.append(f"{kind}  {name}: {problem.message}")
             continue
         found = results[name]

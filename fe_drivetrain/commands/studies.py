@@ -21,7 +21,7 @@ from fe_drivetrain.commands.settings import (
     parse_settings,
     parse_tolerance,
 )
-from fe_drivetrain.commands.terminal import FAILED, PASSED, guarded, write
+from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 
@@ -316,7 +316,7 @@ def _results_of_scene(
     from fe_drivetrain.suite.result_folders import run_case
 
     name = Path(scene).stem
-    case = Case(f"{command}/{name}", title, f"the scene {name}", study)
+    case = Case(f"{command}/{name}", title, f"the scene {name}", study, command=as_typed())
     folder = Path("reports", command, name) if out is None else out
     with show_steps() as report:
         results = run_case(case, folder.resolve(), quick=quick, report=report)

@@ -27,11 +27,8 @@ from fe_drivetrain.fidelity.quantities import UNIT, unit_numbers
 from fe_drivetrain.histories.damage import SLOPES
 from fe_drivetrain.mesh.files import write
 from fe_drivetrain.report.charts import trace
-from fe_drivetrain.report.pictures import (
-    NoPictureError,
-    picture_of_deformation,
-    picture_of_model,
-)
+from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
+from fe_drivetrain.report.solid_view import deformed_shape
 from fe_drivetrain.response.cached import cached_response
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
@@ -193,19 +190,16 @@ def _check(page: Page, scene: Scene, response: Response, levels: Levels) -> None
 
 
 def _pictures(run: Run, page: Page, model: Model, response: Response, factors: Floats) -> None:
+    weights = " and all weights" if factors[8] else ""
     with run.step("pictures"):
         try:
             picture_of_model(model, run.folder / "model.png")
-            times = picture_of_deformation(model, response, factors, run.folder / "deformed.png")
+            shape = deformed_shape(model, response, factors, run.folder, f"the mean load{weights}")
         except NoPictureError as reason:
             page.text(f"No picture: {reason}")
             return
     page.image(f"{model.scene.title}: parts, loads and supports", "model.png")
-    weights = " and all weights" if factors[8] else ""
-    page.image(
-        f"Deformed shape, displacements times {times:,.0f}, under the mean load{weights}",
-        "deformed.png",
-    )
+    page.add(shape)
 
 
 def _stiffness(run: Run, page: Page, model: Model, response: Response, levels: Levels) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import signal
 import sys
 import warnings
@@ -20,6 +21,11 @@ PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
 """Exit statuses: all checks pass, one fails, wrong input, stopped by Ctrl-C, stopped by SIGTERM."""
 
 KEPT = "results of an earlier run are unchanged"
+
+
+def as_typed() -> str:
+    """The words of this command, to be typed again."""
+    return shlex.join(["fe-drivetrain", *sys.argv[1:]])
 
 
 def guarded(work: Callable[[], int], kept: str = KEPT) -> int:

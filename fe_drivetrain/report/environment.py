@@ -24,9 +24,9 @@ _PACKAGES = (
 
 
 def environment(
-    settings: Mapping[str, Any], seed: int | None = None, quick: bool = False
+    settings: Mapping[str, Any], seed: int | None = None, quick: bool = False, command: str = ""
 ) -> Environment:
-    """Date, platform, versions, and the user's settings."""
+    """Date, platform, versions, the user's settings, and what to type."""
     versions = {}
     for name in _PACKAGES:
         try:
@@ -42,4 +42,5 @@ def environment(
         seed=seed,
         quick=quick,
         code=program_hash(),
+        command=command,
     )

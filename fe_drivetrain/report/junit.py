@@ -40,7 +40,7 @@ def write_junit(
         if found is None:
             problem = problems[name]
             test = ElementTree.SubElement(suite, "testcase", classname=name, name="runs")
-            outcome = "skipped" if problem.is_missing_tool else "error"
+            outcome = "skipped" if problem.state == "skipped" else "error"
             ElementTree.SubElement(test, outcome, message=problem.message)
         else:
             if found.environment.quick:

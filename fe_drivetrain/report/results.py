@@ -1,5 +1,6 @@
 """What a case found, as data: written to results.json, and the page is made from that alone."""
 
+import math
 import statistics
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -78,6 +79,37 @@ def is_met(verdict: Verdict) -> bool:
         return verdict.upper is not None and reference <= computed <= verdict.upper
     size = abs(reference) if verdict.relative else 1.0
     return abs(computed - reference) <= verdict.tolerance * size
+
+
+def share_of_tolerance(verdict: Verdict) -> float:
+    """How much of what a check allows is used up: beyond 1 it fails.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The check. Of a bound it is the value over the bound, or the bound over the value; of a
+        range the distance from its middle over half its width; of a statement 0 or infinity.
+
+    Returns
+    -------
+    share : float
+        From 0 on; infinite where the computed value is not a number.
+    """
+    computed, reference = verdict.computed, verdict.reference
+    if verdict.check in ("equals", "vanishes"):
+        allowed = verdict.tolerance * (abs(reference) if verdict.relative else 1.0)
+        used = abs(computed - reference)
+    elif verdict.check == "between" and verdict.upper is not None:
+        used = abs(computed - 0.5 * (reference + verdict.upper))
+        allowed = 0.5 * (verdict.upper - reference)
+    elif verdict.check == "at most" and computed > 0.0 and reference > 0.0:
+        used, allowed = computed, reference
+    elif verdict.check == "at least" and computed > 0.0 and reference > 0.0:
+        used, allowed = reference, computed
+    else:
+        return 0.0 if verdict.passed else math.inf
+    share = used / allowed if allowed > 0.0 else (0.0 if verdict.passed else math.inf)
+    return share if math.isfinite(share) else math.inf
 
 
 def expectation(verdict: Verdict) -> str:
@@ -182,6 +214,19 @@ def bias_and_scatter(verdicts: Iterable[Verdict]) -> list[Statistic]:
     ]
 
 
+class Figure(_Result):
+    """A value that answers what was asked, and is not judged."""
+
+    model_config = ConfigDict(ser_json_inf_nan="strings")
+
+    quantity: str
+    unit: str
+    computed: float
+    band: float | None = Field(
+        default=None, ge=0, description="half width of its numerical uncertainty, in its unit"
+    )
+
+
 class Text(_Result):
     """A paragraph."""
 
@@ -214,11 +259,20 @@ class Image(_Result):
     file: str
 
 
+class Solid(_Result):
+    """A deformed model in three dimensions, of `report.solid_view`, beside results.json."""
+
+    kind: Literal["solid"] = "solid"
+    caption: str
+    file: str
+    still: str = Field(default="", description="a PNG in its place, on paper and without WebGL")
+
+
 class Section(_Result):
     """A heading and what stands under it."""
 
     title: str
-    items: Sequence[Annotated[Text | Table | Chart | Image, Field(discriminator="kind")]]
+    items: Sequence[Annotated[Text | Table | Chart | Image | Solid, Field(discriminator="kind")]]
 
 
 class AssumptionRow(_Result):
@@ -254,14 +308,19 @@ class Environment(_Result):
     seed: int | None = None
     quick: bool = Field(default=False, description="whether the run was coarser and smaller")
     code: str = Field(default="", description="SHA-256 of the program's sources")
+    command: str = Field(default="", description="what to type to run it again")
+
+
+State = Literal["failed", "not run", "running", "planned", "skipped"]
+"""Of a case without results of this run: it ended by an error, or its turn never came since the run
+was stopped; it is at work; its turn comes; a program that it needs is not installed."""
 
 
 class Problem(NamedTuple):
     """Why a case has no results, or none of this run."""
 
     message: str
-    is_missing_tool: bool = False
-    is_pending: bool = False
+    state: State = "failed"
 
 
 class Results(_Result):
@@ -275,12 +334,18 @@ class Results(_Result):
         default=[], description="what must be known before any figure, in sentences"
     )
     summary: list[str] = Field(description="the answer first, in a few sentences")
+    answers: list[Figure] = Field(default=[], description="values that answer what was asked")
+    headline: str = Field(
+        default="",
+        description="quantity of the check that answers what was asked; empty: the first",
+    )
     verdicts: list[Verdict]
     sections: list[Section]
     limits: list[Limit] = []
     assumptions: list[AssumptionRow] = []
     times: dict[str, float] = Field(default={}, description="wall time of each step [s]")
     figures: dict[str, Any] = Field(default={}, description="named numbers for other programs")
+    scene: str = Field(default="", description="the scene as a file, of a case that has one")
     environment: Environment
 
     @property

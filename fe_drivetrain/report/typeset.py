@@ -8,21 +8,24 @@ MINUS = "\u2212"
 THIN_SPACE = "\u202f"
 """The narrow no-break one: a number never breaks over two lines."""
 
-_SUPERSCRIPTS = str.maketrans("-0123456789.", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹\u00b7")
+_SUPERSCRIPTS = str.maketrans("-+0123456789./hkmnpT", "⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹\u00b7ᐟʰᵏᵐⁿᵖᵀ")
 # 1e-8, 3.4e+08; not x1e5 of a name, #009e73 of a colour, nor key=4e5 of a command
 _SCIENTIFIC = re.compile(r"(?<![\w.=#])(-?\d+(?:\.\d+)?)e([+-]?\d+)\b")
 _FACTOR = re.compile(r"(?<=\d\))e([+-]?\d+)\b")
-_POWER = re.compile(r"\^(-?\d+(?:\.\d+)?)(?![\d/])")
+# m^2, x^-1.5, h^p, cells^-1/2 (but of l^3/3EI the power is 3), e^(n + 1)
+_POWER = re.compile(
+    r"\^(?:(-?\d+/\d+)(?![\w.])|(-?\d+(?:\.\d+)?)(?!\d)|([hkmnpT])\b|\(([-+\d./hkmnpT ]+)\))"
+)
 _NEGATIVE = re.compile(r"(?<![\w.=\"'\])-])-(?=\d)")
 
 
 def superscript(power: int | str) -> str:
     """A power in superscripts."""
-    return str(power).translate(_SUPERSCRIPTS)
+    return str(power).replace(" ", "").translate(_SUPERSCRIPTS)
 
 
 def typeset(text: str) -> str:
-    """Text with m^2 as m², 1e-8 as 10⁻⁸, 3.4e+08 as 3.4 × 10⁸, and minus signs before numbers.
+    """Text with m^2 as m², h^p as hᵖ, 1e-8 as 10⁻⁸, 3.4e+08 as 3.4 × 10⁸, and minus signs.
 
     A number and its % stay on one line. What is to be typed again, as ``--set key=-4e5``, is
     left alone.
@@ -30,7 +33,7 @@ def typeset(text: str) -> str:
     text = _SCIENTIFIC.sub(_power_of_ten, text)
     text = _FACTOR.sub(lambda found: f"\u00a0×\u00a010{superscript(int(found[1]))}", text)
     text = re.sub(r"(?<=\d) ?%", "\u00a0%", text)
-    text = _POWER.sub(lambda found: superscript(found[1]), text)
+    text = _POWER.sub(lambda found: superscript(found[found.lastindex or 0]), text)
     return _NEGATIVE.sub(MINUS, text)
 
 

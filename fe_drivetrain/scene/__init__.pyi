@@ -24,6 +24,7 @@ from .reading import library_scene as library_scene
 from .reading import parse_scene as parse_scene
 from .reading import read_component as read_component
 from .reading import read_scene as read_scene
+from .reading import scene_text as scene_text
 from .scene import Coupling as Coupling
 from .scene import Gearbox as Gearbox
 from .scene import Hub as Hub

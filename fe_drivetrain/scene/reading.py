@@ -58,6 +58,14 @@ def parse_scene(
     return validated(Scene, data, source)
 
 
+def scene_text(scene: Scene) -> str:
+    """A scene as a file: plain YAML that `parse_scene` reads as the same scene."""
+    import yaml
+
+    data = scene.model_dump(mode="json", exclude_unset=True)
+    return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
+
+
 def library_scene(name: str) -> Scene:
     """A scene that comes with the package, by name: "main_bearing_spherical", "..._bonded"."""
     return parse_scene(library_text(name), source=name)

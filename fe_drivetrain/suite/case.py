@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 import importlib
 import importlib.util
+import json
 import pkgutil
 import re
+import shlex
 from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -49,6 +51,8 @@ class Case:
     changes : str
         What its other keys change: "scene", or a kind of component, as in "planet_carrier"; empty
         where it takes no others.
+    command : str
+        What to type to run it again; that of ``fe-drivetrain run`` where left out.
     """
 
     name: str
@@ -58,6 +62,7 @@ class Case:
     alone: bool = False
     settings: tuple[str, ...] = ()
     changes: str = ""
+    command: str = ""
 
     def results(self, run: Run) -> Results:
         """Run the case; what it found."""
@@ -73,14 +78,29 @@ class Case:
             source=page.source or self.source,
             notes=[*([QUICK] if run.quick else []), *page.notes],
             summary=page.summary,
+            answers=page.answers,
             verdicts=page.verdicts,
             sections=page.sections,
             limits=page.limits,
             assumptions=page.assumptions,
             times=run.times,
             figures=page.figures,
-            environment=environment(run.settings, page.seed, run.quick),
+            scene=page.scene,
+            headline=page.headline,
+            environment=environment(
+                run.settings, page.seed, run.quick, self.command or self._typed(run)
+            ),
         )
+
+    def _typed(self, run: Run) -> str:
+        """What runs it with the same settings."""
+        values = (
+            f"{key}={value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)}"
+            for key, value in run.settings.items()
+        )
+        sets = (word for value in values for word in ("--set", value))
+        quick = ["--quick"] if run.quick else []
+        return shlex.join(["fe-drivetrain", "run", self.name, *quick, *sets])
 
 
 def all_cases() -> dict[str, Case]:

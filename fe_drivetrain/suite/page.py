@@ -13,10 +13,12 @@ from fe_drivetrain.report.results import (
     Basis,
     Cell,
     Chart,
+    Figure,
     Image,
     Limit,
     Measure,
     Section,
+    Solid,
     Table,
     Text,
     Verdict,
@@ -28,8 +30,7 @@ from fe_drivetrain.suite.records import (
     as_json,
     column,
     counted,
-    group_name,
-    grouped,
+    curves,
     plain_cells,
 )
 from fe_drivetrain.suite.targets import MEASURES, Target, split_unit
@@ -51,6 +52,8 @@ class Page:
         Of all checks so far.
     summary : list of str
         The answer, in sentences.
+    answers : list of Figure
+        Values that answer what was asked.
     sections : list of Section
         Headings, and what stands under them.
     limits : list of Limit
@@ -59,23 +62,23 @@ class Page:
         Values that the sources do not give.
     figures : dict
         Named numbers for other programs.
+    scene, headline : str
+        The scene as a file; quantity of the check that answers, or empty for the first value.
     seed : int or None
         Of random numbers; None where there are none.
     """
 
     def __init__(self) -> None:
-        self.subject = ""
-        self.source = ""
+        self.subject = self.source = self.scene = self.headline = ""
         self.notes: list[str] = []
         self.verdicts: list[Verdict] = []
         self.summary: list[str] = []
+        self.answers: list[Figure] = []
         self.sections: list[Section] = []
         self.limits: list[Limit] = []
         self.assumptions: list[AssumptionRow] = []
         self.figures: dict[str, Any] = {}
         self.seed: int | None = 0
-
-    # checks
 
     def equals(
         self,
@@ -287,11 +290,14 @@ class Page:
             )
         )
 
-    # words, charts, tables
-
     def answer(self, *sentences: str) -> None:
         """The answer first: added to the summary on top of the page."""
         self.summary.extend(sentences)
+
+    def found(self, quantity: str, value: float, band: float | None = None) -> None:
+        """A value that answers what was asked, and is not judged; `band` as for `equals`."""
+        quantity, unit = split_unit(quantity)
+        self.answers.append(Figure(quantity=quantity, unit=unit, computed=value, band=band))
 
     def note(self, sentence: str) -> None:
         """State, above all else, what must be known before any figure; the same sentence once."""
@@ -302,7 +308,7 @@ class Page:
         """Begin a section; what is added from now on stands under its heading."""
         self.sections.append(Section(title=title, items=[]))
 
-    def add(self, *items: Text | Table | Chart | Image) -> None:
+    def add(self, *items: Text | Table | Chart | Image | Solid) -> None:
         """Add to the section that was begun last; without one, to a section "Results"."""
         if not self.sections:
             self.section("Results")
@@ -444,14 +450,7 @@ class Page:
         """
         mode = "markers" if points else "lines+markers"
         keys = {y: ""} if isinstance(y, str) else y
-        traces = []
-        for group, of in grouped(rows, by) if by else [("", rows)]:
-            for key, name in keys.items():
-                # a record without that value has no point
-                at = [row for row in of if row[key] is not None]
-                parts = (group_name(by, group) if by else "", name)
-                title = ", ".join(part for part in parts if part) or key
-                traces.append(trace(title, column(at, x), column(at, key), mode=mode))
+        traces = curves(rows, x, keys, by, mode)
         ends = rounded([min(column(rows, x)), max(column(rows, x))])
         traces += [
             trace(name, ends, [value, value], line={"dash": "dot"})

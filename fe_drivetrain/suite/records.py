@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.results import Cell
 from fe_drivetrain.suite.targets import split_unit
 
@@ -98,6 +99,40 @@ class MeshSeries(NamedTuple):
         last = self.rows[-3:]
         sizes = [float(n) ** (-1.0 / self.dimension) for n in column(last, self.by)]
         return observed_order(sizes, column(last, key))
+
+
+def curves(
+    rows: Sequence[Record], x: str, keys: Mapping[str, str], by: str | None, mode: str
+) -> list[Any]:
+    """Traces of a sweep; see `fe_drivetrain.suite.Page.sweep`.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        The points.
+    x : str
+        Key of the horizontal axis.
+    keys : mapping
+        Key of each curve, and its name.
+    by : str or None
+        Key that tells the curves apart.
+    mode : str
+        Of the drawing, as Plotly has it.
+
+    Returns
+    -------
+    list
+        For a chart.
+    """
+    traces = []
+    for group, of in grouped(rows, by) if by else [("", rows)]:
+        for key, name in keys.items():
+            # a record without that value has no point
+            at = [row for row in of if row[key] is not None]
+            parts = (group_name(by, group) if by else "", name)
+            title = ", ".join(part for part in parts if part) or key
+            traces.append(trace(title, column(at, x), column(at, key), mode=mode))
+    return traces
 
 
 def plain_cells(cells: Sequence[Any]) -> list[Cell]:

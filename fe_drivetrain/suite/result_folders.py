@@ -23,6 +23,25 @@ def result_folder(out: Path, case: Case) -> Path:
     return out.joinpath(*case.name.split("/"))
 
 
+def shared_folder(out: Path, case: Case) -> Path | None:
+    """The folder whose pages share a history and scripts; None where ``out`` stands by itself.
+
+    Parameters
+    ----------
+    out : Path
+        The result folder.
+    case : Case
+        Whose it is.
+
+    Returns
+    -------
+    Path or None
+        ``reports`` of ``reports/GROUP/NAME``.
+    """
+    name = tuple(case.name.split("/"))
+    return out.parents[len(name) - 1] if out.parts[-len(name) :] == name else None
+
+
 def run_case(
     case: Case,
     out: Path,
@@ -54,21 +73,54 @@ def run_case(
     InputError
         The settings are wrong, or ``out`` cannot be written or holds something else.
     """
+    from fe_drivetrain.report.history import carry_history, check_history, record_run
+
     out = Path(out)
     taken = settings_by_case([case], settings or {})[case.name]
     folder = new_folder(out)
     try:
-        results = run_into(case, folder.path, taken, quick, report)
+        shared = shared_folder(out, case)
+        if shared is None:
+            carry_history(out, folder.path)
+        check_history(shared or folder.path)
+        results = run_into(case, folder.path, taken, quick, report, shared)
         put_in_place(folder, out)
+        record_run(shared or out, results)
     finally:
         folder.discard()
     return results
 
 
 def run_into(
-    case: Case, folder: Path, settings: Mapping[str, Any], quick: bool, report: Progress
+    case: Case,
+    folder: Path,
+    settings: Mapping[str, Any],
+    quick: bool,
+    report: Progress,
+    shared: Path | None = None,
 ) -> Results:
-    """Run a case and write its results and its page into a folder as it goes; see `run_case`."""
+    """Run a case and write its results and its page into a folder as it goes; see `run_case`.
+
+    Parameters
+    ----------
+    case : Case
+        What to run.
+    folder : Path
+        Where it writes.
+    settings : mapping
+        As of `Run`.
+    quick : bool
+        As of `Run`.
+    report : callable
+        As of `Run`.
+    shared : Path, optional
+        As of `fe_drivetrain.report.write_page`.
+
+    Returns
+    -------
+    Results
+        As written.
+    """
     from fe_drivetrain.common import cache
     from fe_drivetrain.report.page import write_page
 
@@ -77,7 +129,7 @@ def run_into(
         results = case.results(run)
     with run.step("report"):
         (folder / "results.json").write_text(results.model_dump_json(indent=1), "utf-8")
-        write_page(folder)
+        write_page(folder, shared)
     return results
 
 

@@ -104,7 +104,7 @@ def compare_runs(before: Path, after: Path) -> RunComparison:
         if modes[0] != modes[1]:
             changes.append(Change(name, "mode", "run on another mesh and fewer loads", *modes))
         found, same = _checks(name, first[name], second[name])
-        changes += found
+        changes += [*found, *_answers(name, first[name], second[name])]
         checks += len(first[name].verdicts)
         equal += same
         old = Counter(_numbers(first[name].figures))
@@ -144,13 +144,28 @@ def _checks(case: str, before: Results, after: Results) -> tuple[list[Change], i
     changes += [Change(case, "new check", key[0], None, v.computed) for key, v in added.items()]
     for key in old.keys() & new.keys():
         changed = _verdict_change(case, key[0], old[key], new[key])
-        if not _same(old[key].computed, new[key].computed):
-            error = _relative(old[key].computed, new[key].computed)
-            kind = "rounding" if error <= ROUND_OFF else "value"
-            changed.append(Change(case, kind, key[0], old[key].computed, new[key].computed))
+        changed += _value_change(case, key[0], old[key].computed, new[key].computed)
         changes += changed
         same += not changed
     return changes, same
+
+
+def _answers(case: str, before: Results, after: Results) -> list[Change]:
+    """Answers of a case, which are not judged, that have other values."""
+    new = {answer.quantity: answer.computed for answer in after.answers}
+    return [
+        change
+        for old in before.answers
+        if old.quantity in new
+        for change in _value_change(case, old.quantity, old.computed, new[old.quantity])
+    ]
+
+
+def _value_change(case: str, what: str, before: float, after: float) -> list[Change]:
+    if _same(before, after):
+        return []
+    kind = "rounding" if _relative(before, after) <= ROUND_OFF else "value"
+    return [Change(case, kind, what, before, after)]
 
 
 def _verdict_change(case: str, what: str, before: Verdict, after: Verdict) -> list[Change]:

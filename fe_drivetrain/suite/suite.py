@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import traceback
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Future
@@ -13,7 +14,7 @@ from fe_drivetrain.common.files import HiddenFolder, sentence_about
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.report.results import Problem
-from fe_drivetrain.suite.case import Case
+from fe_drivetrain.suite.case import Case, all_cases
 from fe_drivetrain.suite.result_folders import (
     new_folder,
     put_in_place,
@@ -22,8 +23,10 @@ from fe_drivetrain.suite.result_folders import (
 )
 from fe_drivetrain.suite.settings import settings_by_case
 
-NOT_RUN = Problem("not run: the run has not come to its end", is_pending=True)
-"""Of a case that has not had its turn."""
+NOT_RUN = Problem("not run: the run has not come to its end", "not run")
+"""Of a case that has not had its turn, or not come to its end."""
+_PLANNED = Problem("waits for its turn", "planned")
+_RUNNING = Problem("at work", "running")
 
 
 def run_cases(
@@ -66,23 +69,40 @@ def run_cases(
     InputError
         A result folder cannot be written or holds something else, or no case takes a setting.
     """
-    from fe_drivetrain.report.page import write_index
+    from fe_drivetrain.report.history import check_history, record_run
+    from fe_drivetrain.report.index import write_index
+    from fe_drivetrain.report.results import read_results
 
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
     cases = [case for case in cases if case.name not in kept]
+    known = list(all_cases())
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
-    pending = {case.name: NOT_RUN for case in cases}
+    pending = {case.name: _PLANNED for case in cases}
+    writing = threading.Lock()  # steps are reported by several threads
+
+    def show(step: str, lane: int = 0) -> None:
+        name = step.partition(": ")[0]
+        if lane != OVERALL and pending.get(name) is _PLANNED:
+            with writing:
+                if name in pending:
+                    pending[name] = _RUNNING
+                    write_index(out, problems | pending, known)
+        report(step, lane)
 
     def finish(case: Case, problem: Problem | None) -> None:
         if problem:
             problems[case.name] = problem
         else:
             put_in_place(folders[case.name], result_folder(out, case))
-        del pending[case.name]
+        with writing:
+            del pending[case.name]
+        if not problem:
+            record_run(out, read_results(result_folder(out, case) / "results.json"))
+        with writing:
+            write_index(out, problems | pending, known)  # a run that is killed later could not
         count()
-        write_index(out, problems | pending)  # a run that is killed later could not
 
     def count() -> None:
         if len(cases) > 1:
@@ -91,28 +111,31 @@ def run_cases(
     try:
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
-        write_index(out, problems | pending)
+        check_history(out)
+        write_index(out, problems | pending, known)
         count()
         beside = [case for case in cases if not case.alone]
-        with Processes(len(beside), report, each_for_itself=True) as processes:
+        with Processes(len(beside), show, each_for_itself=True) as processes:
             jobs: dict[Future[Problem | None], Case] = {
-                processes.start(_run, case, folders[case.name].path, taken[case.name], quick): case
+                processes.start(
+                    _run, case, folders[case.name].path, taken[case.name], quick, out
+                ): case
                 for case in beside
             }
             for job in processes.finished(jobs):
                 finish(jobs[job], _outcome(job))
         for case in cases:
             if case.alone:
-                with Processes(1, report, always=True, each_for_itself=True) as processes:
+                with Processes(1, show, always=True, each_for_itself=True) as processes:
                     job = processes.start(
-                        _run, case, folders[case.name].path, taken[case.name], quick
+                        _run, case, folders[case.name].path, taken[case.name], quick, out
                     )
                     finish(case, _outcome(job))
     finally:
         for folder in folders.values():
             folder.discard()
         if len(folders) == len(cases):  # else nothing was begun
-            write_index(out, problems | pending)
+            write_index(out, problems | dict.fromkeys(pending, NOT_RUN), known)
     return problems
 
 
@@ -125,7 +148,12 @@ def _outcome(job: Future[Problem | None]) -> Problem | None:
 
 
 def _run(
-    report: Progress, case: Case, folder: Path, settings: Mapping[str, Any], quick: bool
+    report: Progress,
+    case: Case,
+    folder: Path,
+    settings: Mapping[str, Any],
+    quick: bool,
+    shared: Path,
 ) -> Problem | None:
     """Run a case into a folder; why there are no results, if there are none."""
 
@@ -133,9 +161,9 @@ def _run(
         report(f"{case.name}: {step}" if step else "", lane)
 
     try:
-        run_into(case, folder, settings, quick, named)
+        run_into(case, folder, settings, quick, named, shared)
     except InputError as error:
-        return Problem(str(error), isinstance(error, MissingToolError))
+        return Problem(str(error), "skipped" if isinstance(error, MissingToolError) else "failed")
     except Exception as error:
         sentence = sentence_about(error) if isinstance(error, OSError) else None
         if sentence is not None:

@@ -1,0 +1,194 @@
+"""The pages of a folder of many cases: a row for each case, one for each check, and the atlas."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
+from fe_drivetrain.report.history import Point, points_over_runs
+from fe_drivetrain.report.rendering import policy_hash, read_template, templates
+from fe_drivetrain.report.results import (
+    Figure,
+    Problem,
+    Results,
+    Verdict,
+    bias_and_scatter,
+    read_results,
+    results_below,
+    share_of_tolerance,
+)
+from fe_drivetrain.report.trend import change_text, sparkline
+
+WORDS = {
+    "fail": "FAIL",
+    "failed": "no result",
+    "not run": "not run",
+    "running": "running",
+    "planned": "planned",
+    "skipped": "skipped",
+    "pass": "pass",
+}
+"""Verdicts of cases, worst first, as the page prints them."""
+
+_MOST = 1e9  # share of a tolerance, as the page sorts it
+
+
+@dataclass(frozen=True)
+class Row:
+    """A case as the index lists it.
+
+    Attributes
+    ----------
+    name : str
+        "GROUP/NAME".
+    state : str
+        Key of `WORDS`.
+    problem : str
+        Why there are no results; empty where there are.
+    results : Results or None
+        What was found.
+    worst : Verdict or None
+        The check that uses up most of what it allows.
+    answer : Figure, Verdict or None
+        The value that answers what was asked.
+    points : sequence of Point
+        Its quantity over the runs so far.
+    """
+
+    name: str
+    state: str
+    problem: str = ""
+    results: Results | None = None
+    worst: Verdict | None = None
+    answer: Figure | Verdict | None = None
+    points: Sequence[Point] = ()
+
+    @property
+    def group(self) -> str:
+        """Folder of the case."""
+        return self.name.partition("/")[0]
+
+    @property
+    def quick(self) -> bool:
+        """Whether the run was coarser and smaller."""
+        return self.results is not None and self.results.environment.quick
+
+    @property
+    def badness(self) -> tuple[int, float]:
+        """Sorts rows worst first."""
+        share = share_of_tolerance(self.worst) if self.worst else 0.0
+        return list(WORDS).index(self.state), -share
+
+
+def write_index(
+    folder: Path, problems: Mapping[str, Problem] | None = None, known: Iterable[str] = ()
+) -> Path:
+    """Write the pages of all results below a folder.
+
+    index.html has a row for each case, worst first; checks.html beside it one for each check;
+    where there are limits of methods among them, atlas.html lists these.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds GROUP/NAME/results.json of any number of cases.
+    problems : Mapping[str, Problem] or None
+        Why a case has no results now, or none of this run, by its name; it is listed with that.
+    known : Iterable[str]
+        Names of all cases of the program: those that are not in the folder are named apart.
+
+    Returns
+    -------
+    page
+        Path of index.html in the same folder; each page appears whole or not at all.
+    """
+    folder = Path(folder)
+    rows = sorted(_rows(folder, problems or {}), key=lambda row: (row.badness, row.name))
+    with_results = [(row, row.results) for row in rows if row.results]
+    verdicts = [v for _, results in with_results for v in results.verdicts]
+    limits = [
+        (limit, row.name)
+        for row, results in sorted(with_results, key=lambda pair: pair[0].name)
+        for limit in results.limits
+    ]
+    quick = sorted(row.name for row in rows if row.quick)
+    states = Counter(row.state for row in rows)
+    _write(
+        folder / "index.html",
+        "index.html",
+        rows=rows,
+        missing=sorted(set(known) - {row.name for row in rows}),
+        words=WORDS,
+        states={state: states[state] for state in WORDS if states[state]},
+        groups=Counter(sorted(row.group for row in rows)),
+        quick=len(quick),
+        unfinished=sum(states[state] for state in ("not run", "running", "planned")),
+        total=len(rows) - states["skipped"],
+        verdicts=verdicts,
+        statistics=bias_and_scatter(verdicts),
+        has_atlas=bool(limits),
+    )
+    checks = [(row, v) for row, results in with_results for v in results.verdicts]
+    checks.sort(key=lambda pair: (pair[1].passed, -share_of_tolerance(pair[1])))
+    _write(folder / "checks.html", "checks.html", checks=checks)
+    if limits:
+        _write(
+            folder / "atlas.html",
+            "atlas.html",
+            limits=[limit for limit, _ in limits],
+            pages=[name for _, name in limits],
+            quick=sorted({name for _, name in limits} & set(quick)),
+        )
+    else:
+        (folder / "atlas.html").unlink(missing_ok=True)
+    return folder / "index.html"
+
+
+def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
+    rows = [Row(name, p.state, problem=p.message) for name, p in problems.items()]
+    for name, file in results_below(folder).items():
+        if name in problems:
+            continue
+        try:
+            status = file.stat()
+            results = _read(file, status.st_mtime_ns, status.st_size, status.st_ino)
+        except (OSError, ValueError):  # of another version, say
+            problem = "its results.json cannot be read: run it again"
+            rows.append(Row(name, "failed", problem=problem))
+            continue
+        worst = max(results.verdicts, key=share_of_tolerance, default=None)
+        state = "pass" if results.passed else "fail"
+        answer = headline(results)
+        points = points_over_runs(folder, results, answer) if answer else []
+        rows.append(Row(name, state, "", results, worst, answer, points))
+    return rows
+
+
+@lru_cache(maxsize=1024)
+def _read(file: Path, *_state: int) -> Results:
+    """As `read_results`, read once: a run of many cases writes its index after each of them."""
+    return read_results(file)
+
+
+def _write(page: Path, template: str, **content: Any) -> None:
+    script = read_template("listing.js")
+    environment = templates()
+    environment.filters |= {
+        "share": lambda verdict: min(share_of_tolerance(verdict), _MOST),
+        "share_text": lambda share: f"{100 * share:.3g}\u00a0%" if share < _MOST else "∞",
+        "answer": answer_sentence,
+        "with_band": value_with_band,
+        "sparkline": sparkline,
+        "change": change_text,
+    }
+    with atomic_path(page) as unfinished:
+        text = environment.get_template(template).render(
+            script=script, script_hash=policy_hash(script), **content
+        )
+        unfinished.write_text(text, encoding="utf-8")

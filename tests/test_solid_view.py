@@ -1,0 +1,112 @@
+"""A deformed model for the browser: the same solid as the mesh, within its digits."""
+
+import base64
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.mesh.mesh import boundary
+from fe_drivetrain.operator.stress import nodal_stresses, von_mises
+from fe_drivetrain.report import solid_view
+from fe_drivetrain.report.solid_view import write_solid_view
+from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.unit_loads import Response
+
+STEEL = (115e9, 77e9)
+LIMIT = 3_000_000  # bytes
+
+
+def decoded(view: dict[str, Any], name: str, kind: str) -> Any:
+    return np.frombuffer(base64.b64decode(view[name]), dtype=kind)
+
+
+@pytest.fixture(scope="module")
+def u(bonded_response: Response) -> Floats:
+    """Under 1 MN down at the hub."""
+    return bonded_response.displacements[..., 2] * -1e6
+
+
+@pytest.fixture(scope="module")
+def view(bonded_model: Model, u: Floats, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    path = tmp_path_factory.mktemp("view") / "view.json"
+    mesh = bonded_model.mesh
+    assert write_solid_view(mesh, u, dict.fromkeys(mesh.part_names, STEEL), path)
+    assert path.stat().st_size < LIMIT
+    return json.loads(path.read_text("utf-8"))
+
+
+def vertices(view: dict[str, Any]) -> Floats:
+    steps = decoded(view, "positions", "<i2").reshape(-1, 3)
+    return np.asarray(view["middle"]) + view["reach"] * steps / 32767.0
+
+
+def test_each_part_is_closed_turned_outward_and_has_its_volume(
+    view: dict[str, Any], bonded_model: Model
+) -> None:
+    points = vertices(view)
+    triangles = decoded(view, "triangles", "<u4").reshape(-1, 3)
+    mesh = bonded_model.mesh
+    assert [part["name"] for part in view["parts"]] == list(mesh.part_names)
+    for part in view["parts"]:
+        own = triangles[part["first"] : part["first"] + part["count"]]
+        edges = np.concatenate([own[:, [0, 1]], own[:, [1, 2]], own[:, [2, 0]]])
+        back = {(b, a) for a, b in edges.tolist()}
+        assert back == {(a, b) for a, b in edges.tolist()}
+        a, b, c = (points[own[:, k]] for k in range(3))
+        volume = np.einsum("ni,ni->", a, np.cross(b, c)) / 6.0
+        # the exact one by the six-node triangles themselves, each as four flat ones
+        six = mesh.points[boundary(mesh, part["name"])]
+        flat = np.concatenate([six[:, [0, 3, 5]], six[:, [3, 1, 4]], six[:, [5, 4, 2]], six[:, 3:]])
+        exact = np.einsum("ni,ni->", flat[:, 0], np.cross(flat[:, 1], flat[:, 2])) / 6.0
+        assert volume > 0.0
+        assert_allclose(volume, exact, rtol=1e-3)
+
+
+def test_values_are_those_of_the_nodes(
+    view: dict[str, Any], bonded_model: Model, u: Floats
+) -> None:
+    mesh = bonded_model.mesh
+    points = vertices(view)
+    moved = view["largest"] * decoded(view, "displacements", "<i2").reshape(-1, 3) / 32767.0
+    stress = view["greatest"] * decoded(view, "stresses", "<i2") / 32767.0
+    part = view["parts"][0]
+    own = np.unique(decoded(view, "triangles", "<u4")[: 3 * part["count"]])
+    s = von_mises(
+        nodal_stresses(mesh.points, mesh.cells[mesh.part_cells("shaft")], u.ravel(), STEEL)
+    )
+    nodes = mesh.part_nodes("shaft")
+    for vertex in own[::97]:
+        distance = np.linalg.norm(mesh.points[nodes] - points[vertex], axis=1)
+        node = nodes[np.argmin(distance)]
+        assert distance.min() < 1e-4 * view["reach"]
+        assert_allclose(moved[vertex], u[node], atol=1e-4 * view["largest"])
+        assert_allclose(stress[vertex], s[node], atol=1e-4 * view["greatest"])
+    assert_allclose(view["largest"], np.linalg.norm(u, axis=1).max(), rtol=1e-6)
+    assert_allclose(view["factor"] * view["largest"] / (2.0 * view["reach"]), 0.08, rtol=0.2)
+
+
+def test_of_a_fine_surface_there_are_corners_alone_and_of_one_too_fine_nothing(
+    bonded_model: Model, u: Floats, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mesh = bonded_model.mesh
+    facets = sum(len(boundary(mesh, part)) for part in mesh.part_names)
+    lame = dict.fromkeys(mesh.part_names, STEEL)
+    monkeypatch.setattr(solid_view, "MOST_TRIANGLES", facets)
+    assert write_solid_view(mesh, u, lame, tmp_path / "coarse.json")
+    coarse = json.loads((tmp_path / "coarse.json").read_text("utf-8"))
+    assert sum(part["count"] for part in coarse["parts"]) == facets
+    monkeypatch.setattr(solid_view, "MOST_TRIANGLES", facets - 1)
+    assert not write_solid_view(mesh, u, lame, tmp_path / "none.json")
+    assert not (tmp_path / "none.json").exists()
+
+
+def test_a_surface_of_the_largest_size_takes_less_than_3_mb() -> None:
+    """Half as many vertices as triangles: 14 and 12 bytes for each, in letters of 6 bits."""
+    triangles = solid_view.MOST_TRIANGLES
+    vertices = 0.5 * triangles
+    assert (14.0 * vertices + 12.0 * triangles) * 8.0 / 6.0 < LIMIT
