@@ -35,6 +35,10 @@ from .equations import varying as varying
 from .equations import wave_table as wave_table
 from .flexible import Flexible as Flexible
 from .flexible import Housing as Housing
+from .gear_pairs import contact_ratios as contact_ratios
+from .gear_pairs import machine_pairs as machine_pairs
+from .gear_pairs import mesh_courses as mesh_courses
+from .gear_pairs import with_iso_stiffness as with_iso_stiffness
 from .integration import AVERAGE as AVERAGE
 from .integration import LINEAR as LINEAR
 from .integration import Motion as Motion
@@ -81,6 +85,12 @@ from .response import frequency_response as frequency_response
 from .response import mesh_orders as mesh_orders
 from .response import modal_response as modal_response
 from .response import speed_diagram as speed_diagram
+from .roller_seats import OnRollers as OnRollers
+from .roller_seats import Seat as Seat
+from .roller_seats import machine_seat as machine_seat
+from .roller_seats import planet_seats as planet_seats
+from .roller_seats import seat as seat
+from .roller_seats import static_on_rollers as static_on_rollers
 from .springs import Mesh as Mesh
 from .springs import Place as Place
 from .springs import Spring as Spring

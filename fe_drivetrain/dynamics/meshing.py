@@ -87,7 +87,10 @@ class Meshing:
 
 
 def machine_meshing(
-    machine: Machine, speed: float, contact_ratios: Mapping[str, float]
+    machine: Machine,
+    speed: float,
+    contact_ratios: Mapping[str, float],
+    courses: Mapping[str, MeshStiffness | StiffnessTable] | None = None,
 ) -> dict[str, Meshing]:
     """Frequencies and phases of all meshes of a machine, from its teeth.
 
@@ -101,6 +104,8 @@ def machine_meshing(
         Of the rotor [rad/s].
     contact_ratios : Mapping[str, float]
         By "stage 1 sun-planet", "stage 1 ring-planet", "stage 2 mesh" and so on.
+    courses : Mapping[str, MeshStiffness or StiffnessTable], optional
+        By the same names, of meshes that vary otherwise than as a square wave.
 
     Returns
     -------
@@ -112,7 +117,7 @@ def machine_meshing(
     InputError
         A contact ratio is missing, or a stage has no teeth.
     """
-    found = {}
+    found, given = {}, courses or {}
     for number, ((_, teeth), stage) in enumerate(
         zip(machine.meshing, machine.stages, strict=True), start=1
     ):
@@ -121,13 +126,16 @@ def machine_meshing(
             places = np.array(equal_angles(stage.planets))
             phases = (of(teeth[1], teeth[0], places) for of in (sun_phases, ring_phases))
             for kind, of in zip(("sun-planet", "ring-planet"), phases, strict=True):
-                ratio = _ratio(contact_ratios, f"stage {number} {kind}")
+                mesh = f"stage {number} {kind}"
+                ratio = _ratio(contact_ratios, mesh)
                 for planet, phase in enumerate(of, start=1):
                     name = f"stage {number} {kind} {planet}"
-                    found[name] = Meshing(ratio, frequency, -float(phase) % 1.0)
+                    turned = -float(phase) % 1.0
+                    found[name] = Meshing(ratio, frequency, turned, given.get(mesh))
         else:
             name = f"stage {number} mesh"
-            found[name] = Meshing(_ratio(contact_ratios, name), frequency)
+            ratio = _ratio(contact_ratios, name)
+            found[name] = Meshing(ratio, frequency, course=given.get(name))
     return found
 
 

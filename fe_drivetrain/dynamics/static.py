@@ -76,13 +76,10 @@ def static(
     Raises
     ------
     InputError
-        Something moves freely, a name is no spring, or the contacts do not settle.
+        Something moves freely, a name is no spring, or one that cannot change, or the contacts do
+        not settle.
     """
-    short = np.zeros(len(system.spring_names))
-    for name, gap in (gaps or {}).items():
-        short[system.spring(name)] = gap
-    one_sided = np.zeros(len(short), dtype=bool)
-    one_sided[[system.spring(name) for name in contacts]] = True
+    short, one_sided = gaps_and_contacts(system, gaps, contacts)
     closed = np.ones(len(short), dtype=bool)
     tried: set[bytes] = set()
     while True:
@@ -101,6 +98,18 @@ def static(
                 "the contacts of the system do not settle: the same ones open and close in turn; "
                 "give the bodies that they hold a weak bearing, or less load"
             )
+
+
+def gaps_and_contacts(
+    system: System, gaps: Mapping[str, float] | None, contacts: Sequence[str]
+) -> tuple[Floats, Bools]:
+    """(m,) gaps of all springs [m, rad], and whether each only presses; as of `static`."""
+    short = np.zeros(len(system.spring_names))
+    for name, gap in (gaps or {}).items():
+        short[system.changeable(name)] = gap
+    one_sided = np.zeros(len(short), dtype=bool)
+    one_sided[[system.changeable(name) for name in contacts]] = True
+    return short, one_sided
 
 
 def _solved(system: System, K: Floats, f: Floats) -> Floats:

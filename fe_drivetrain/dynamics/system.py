@@ -48,6 +48,8 @@ class System:
         (6 b, n) motions of all bodies by the degrees of freedom.
     body_mass : Floats
         (b,) [kg].
+    unchangeable : tuple[str, ...]
+        Springs by whose stiffness motions without mass have been eliminated.
     """
 
     names: tuple[str, ...]
@@ -62,6 +64,7 @@ class System:
     bodies: tuple[str, ...]
     expansion: Floats
     body_mass: Floats
+    unchangeable: tuple[str, ...] = ()
 
     @property
     def K(self) -> Floats:
@@ -98,6 +101,22 @@ class System:
         if name not in self.spring_names:
             raise InputError(f"no spring {name!r}: use one of {', '.join(self.spring_names[:40])}")
         return self.spring_names.index(name)
+
+    def changeable(self, name: str) -> int:
+        """Number of a spring that may get another stiffness, a gap, or lose contact.
+
+        Raises
+        ------
+        InputError
+            There is none of that name, or a motion without mass was eliminated by its stiffness.
+        """
+        if name in self.unchangeable:
+            raise InputError(
+                f"spring {name!r} holds a body without mass, which was eliminated by its "
+                "stiffness, and cannot change: make the system as assemble(a.bodies, a.springs, "
+                "a.superelements) with a = assembly(machine, ...)"
+            )
+        return self.spring(name)
 
     def motion_of(self, body: str, q: Floats) -> Floats:
         """(6, ...) motion of a body that belongs to degrees of freedom (n, ...).
@@ -143,11 +162,11 @@ def with_stiffness(system: System, stiffness: dict[str, float]) -> System:
     Raises
     ------
     InputError
-        A name is no spring.
+        A name is no spring, or one that cannot change.
     """
     values = system.stiffness.copy()
     for name, value in stiffness.items():
-        values[system.spring(name)] = value
+        values[system.changeable(name)] = value
     return replace(system, stiffness=values)
 
 
@@ -178,7 +197,8 @@ def with_proportional_damping(system: System, seconds: float) -> System:
 def without_massless(system: System) -> System:
     """The system with what has no mass eliminated, which is exact for linear springs.
 
-    Nodes of a shaft without mass follow what they are connected to; nothing may load them.
+    Nodes of a shaft without mass follow what they are connected to; nothing may load them, and the
+    springs on them may not change.
     """
     empty = system.mass.diagonal() <= 0
     if not empty.any():
@@ -198,8 +218,10 @@ def without_massless(system: System) -> System:
     def on(A: Floats) -> Floats:
         return np.asarray(S.T @ A @ S)
 
+    held_by = np.flatnonzero(system.rows[:, gone].any(axis=1))
     return replace(
         system,
+        unchangeable=tuple(system.spring_names[int(k)] for k in held_by),
         names=tuple(system.names[int(k)] for k in kept),
         mass=on(system.mass),
         gyroscopic=on(system.gyroscopic),

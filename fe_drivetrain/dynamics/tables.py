@@ -136,6 +136,11 @@ class _Gears(Part):
     module: float | None = dimension(None, of="normal module", gt=0)
     helix: float = dimension(0.0, of="helix angle at the reference circle", unit="deg", ge=0)
     pressure_angle: float = dimension(20.0, of="normal pressure angle", unit="deg", gt=0)
+    shifts: tuple[float, ...] | None = Field(
+        default=None, description="profile shifts in modules, as teeth; of a ring as ISO 21771"
+    )
+    tips: tuple[float, ...] | None = Field(default=None, description="tip diameters, as teeth, m")
+    blank: float = dimension(1.0, of="factor C_R of the gear blanks, ISO 6336-1", unit="-", gt=0)
     hand: Literal[-1, 0, 1] = Field(default=0, description="1 right, -1 left, 0 spur")
     centre_distance: float = dimension(of="centre distance", gt=0)
     face_width: float = dimension(of="face width in contact", gt=0)
@@ -146,6 +151,22 @@ class _Gears(Part):
         description="line: meshes in N/m along the line of action; axis: in N m/rad about the "
         "planet's, or the gear's, axis",
     )
+
+    def check_gears(self, teeth: tuple[int, ...] | None) -> None:
+        """Refuse shifts or tips of another number of gears than there are.
+
+        Raises
+        ------
+        InputError
+            They are not as many as the teeth.
+        """
+        for name in ("shifts", "tips"):
+            given = getattr(self, name)
+            if given is not None and len(given) != len(teeth or ()):
+                raise InputError(
+                    f"{name} of a stage are {list(given)} but must be as many as its "
+                    f"{len(teeth or ())} teeth: give one for each gear"
+                )
 
     def mesh(self, teeth: int) -> Mesh:
         """Working angles of a mesh: of the sum of teeth if external, their difference if internal.
@@ -188,6 +209,7 @@ class PlanetaryData(_Gears):
                 )
             ring, _, sun = self.teeth
             check_assembly(self.name or "planetary stage", sun, ring, self.planets)
+        self.check_gears(self.teeth)
         return self
 
     @property
@@ -241,6 +263,7 @@ class ParallelData(_Gears):
                 f"a parallel stage needs the teeth of gear and pinion, not {list(self.teeth)}: "
                 "give two numbers above 0"
             )
+        self.check_gears(self.teeth)
         return self
 
     @property
