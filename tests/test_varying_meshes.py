@@ -1,6 +1,7 @@
 """Meshes that vary as teeth come and go: waves, frequencies from teeth, lines in the spectrum."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -156,3 +157,13 @@ def test_the_examples_of_the_docs_run() -> None:
         exec(block, found)
     assert found["motion"].converged
     assert found["stopped"].ratio("HSS")[0] == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_mesh_that_was_eliminated_cannot_vary() -> None:
+    machine = library_machine("nrel_5mw")
+    system = machine_system(machine, Level.TORSIONAL)
+    mesh = "stage 3 mesh"
+    name = next(spring for spring in system.spring_names if spring.startswith(mesh))
+    eliminated = replace(system, unchangeable=(name,))
+    with pytest.raises(InputError, match="eliminated by its stiffness"):
+        varying_equations(eliminated, {mesh: Meshing(1.6, 128.0)})

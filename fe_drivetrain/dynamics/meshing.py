@@ -179,7 +179,7 @@ def varying_equations(
     Raises
     ------
     InputError
-        A mesh is not in the system.
+        A mesh is not in the system, or a body without mass was eliminated by it.
     """
     count = len(system.spring_names)
     wave, phase, frequency = np.full(count, -1), np.zeros(count), np.zeros(count)
@@ -191,6 +191,8 @@ def varying_equations(
             for i, spring in enumerate(system.spring_names)
             if spring == name or spring.startswith(f"{name} slice ")
         ]
+        for i in of:
+            system.changeable(system.spring_names[i])
         if not of:
             raise InputError(f"no mesh {name!r} in the system: correct its name")
         waves.append(
