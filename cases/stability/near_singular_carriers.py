@@ -1,0 +1,132 @@
+"""A planet carrier from next to nothing to next to rigid: torque balance, and what is refused."""
+
+from dataclasses import replace
+from math import cos, radians
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.compare import decades, fitted_exponent, safe_range
+from fe_drivetrain.dynamics import (
+    Flexible,
+    Level,
+    Static,
+    System,
+    library_machine,
+    machine_system,
+    static,
+    steady_load,
+)
+from fe_drivetrain.fidelity.component_frames import carrier_frame
+from fe_drivetrain.report import crosses, trace
+from fe_drivetrain.scene import CarrierComponent, library_component
+from fe_drivetrain.suite import Page, Run
+
+MACHINE, TORQUE = library_machine("nrel_5mw"), 3.946e6  # N m, rated
+#: Base radius of the first stage's sun of 19 teeth, module 45 mm; its ring has 56.
+SUN = 0.5 * 19 * 0.045 * cos(radians(20.0))  # m
+EXACT = TORQUE / (1.0 + 56.0 / 19.0) / SUN  # N, of all meshes of the sun together
+FACTOR = "stiffness of the carrier, over that of the library's"
+WITHIN = 1e-6
+
+
+def loaded(flexible: Flexible | None) -> Static:
+    """The 5 MW gearbox under rated torque and gravity, at one azimuth."""
+    system: System = machine_system(
+        MACHINE, Level.RIGID, held_generator=True, flexible=flexible or Flexible()
+    )
+    return static(system, steady_load(MACHINE, system, TORQUE, np.zeros(6)))
+
+
+def meshes(found: Static) -> list[float]:
+    """Force of the sun on each planet [N]."""
+    return [found.force(f"stage 1 sun-planet {k}") for k in (1, 2, 3)]
+
+
+@case(
+    "Near-singular carriers: torque balance from next to no stiffness to next to rigid",
+    source="statics: a sun's meshes carry its torque, whatever the carrier's stiffness",
+)
+def run(run: Run, page: Page) -> None:
+    """Scale the stiffness of a condensed carrier over thirty decades."""
+    component = library_component("planet_carrier")
+    assert isinstance(component, CarrierComponent)
+    body = carrier_frame(component)
+    rigid = meshes(loaded(None))
+    factors = decades(-18, 12, 1 if run.quick else 4)
+    imbalance, apart = np.full((2, len(factors)), np.nan)
+    refused: list[str] = []
+    for k, factor in enumerate(factors):
+        scaled = replace(body, stiffness=body.stiffness * factor)
+        try:
+            forces = meshes(run.clocked("stiffnesses", loaded, Flexible({1: scaled})))
+        except InputError as error:
+            refused.append(str(error))
+            continue
+        imbalance[k] = max(abs(sum(forces) / EXACT - 1.0), 1e-17)
+        apart[k] = max(abs(forces[0] / rigid[0] - 1.0), 1e-17)
+    check(page, factors, imbalance, apart, refused)
+    low, high = safe_range(factors, np.nan_to_num(imbalance, nan=1.0), WITHIN)
+    page.limit(
+        "stiffness of a flexible carrier",
+        FACTOR,
+        low=low,
+        high=high,
+        criterion=f"mesh forces of the sun carry its torque within {WITHIN:g}",
+        beyond="below: round-off of the pins' springs is as large as the carrier's stiffness; "
+        "above: that of the carrier is as large as what the meshes give",
+        program="refuses a motion that is free but for round-off, by its name",
+        remedy="leave the carrier rigid, or hold what nothing holds",
+    )
+    page.answer(
+        f"From {low:.0e} to {high:.0e} times its stiffness a carrier hands on its torque within "
+        f"{WITHIN:g}; {len(refused)} of {len(factors)} stiffnesses, all of them smaller, are "
+        "refused with the motion that is free. Ever stiffer, it goes to the rigid carrier as one "
+        "over its stiffness."
+    )
+    page.section("Over the carrier's stiffness")
+    curves = {"torque balance of the sun": imbalance, "planet 1 against a rigid carrier": apart}
+    without = factors[np.isnan(imbalance)]
+    page.chart(
+        "Relative errors and differences; shaded: safe; crosses: refused",
+        [trace(name, factors, y, mode="lines+markers") for name, y in curves.items()]
+        + [crosses("refused", without)],
+        FACTOR,
+        "relative",
+        "xy",
+        (low, high),
+    )
+    page.data("sweep", {"factor": factors, **curves})
+
+
+def check(
+    page: Page, factors: Floats, imbalance: Floats, apart: Floats, refused: list[str]
+) -> None:
+    """Balance at the library's stiffness, the rigid limit, and what is refused."""
+    page.at_most(
+        "error of the torque balance at the library's stiffness",
+        float(imbalance[np.abs(np.log(factors)).argmin()]),
+        1e-10,
+        why="round-off of springs that are a million times as stiff as the softest",
+        source="torque over base radius",
+    )
+    far = slice(*np.searchsorted(factors, [9.0, 2e4]).tolist())
+    slope, spread = fitted_exponent(factors[far], apart[far], (1e-7, 1e-2))
+    page.equals(
+        "difference to a rigid carrier over the stiffness, exponent",
+        slope,
+        -1.0,
+        within=0.1,
+        why="at ten times the stiffness the next order is a tenth",
+        source="springs in series",
+        measure="order",
+        band=spread,
+    )
+    page.holds(
+        "what is refused is softer than all that is solved, and a free motion is named",
+        bool(np.isnan(imbalance[: len(refused)]).all())
+        and all("can move freely" in text for text in refused),
+        why="a carrier without stiffness leaves its planets loose",
+        source="eigenvalues of the stiffness on a unit diagonal",
+    )
