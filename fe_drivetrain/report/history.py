@@ -153,10 +153,25 @@ def carry_history(before: Path, after: Path) -> None:
     InputError
         As of `check_history`.
     """
-    if (before / FILE).is_file():
-        # not as a file: what a killed run has left unfinished is taken back first
-        with _opened(before) as source, _opened(after) as target:
-            source.backup(target)
+    file = before / FILE
+    while (number := _number(file)) is not None:
+        try:
+            # not as a file: what a killed run has left unfinished is taken back first
+            with _opened(before) as source, _opened(after) as target:
+                source.backup(target)
+            return
+        except InputError:
+            # another run may have put its folder in place meanwhile: then that one's is copied
+            if _number(file) == number:
+                raise
+
+
+def _number(file: Path) -> int | None:
+    """That of its inode, which another file in its place has not; None where there is none."""
+    try:
+        return file.stat().st_ino
+    except FileNotFoundError:
+        return None
 
 
 def record_run(folder: Path, results: Results) -> None:
@@ -301,6 +316,12 @@ def _opened(folder: Path) -> Iterator[sqlite3.Connection]:
             database.executescript(_TABLES)
             yield database
     except sqlite3.DatabaseError as error:
+        # the extended codes of SQLite have the kind in their last byte
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+        if code in (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_FULL):
+            raise InputError(
+                f"{file} cannot be read or written ({error}): see whether its disk is full"
+            ) from error
         raise InputError(
             f"{file} cannot be used as history of the runs ({error}): move it away, and the next "
             "run begins another"

@@ -84,8 +84,11 @@ def run_case(
             carry_history(out, folder.path)
         check_history(shared or folder.path)
         results = run_into(case, folder.path, taken, quick, report, shared)
+        if shared is None:  # before others see the folder, and may put another in its place
+            record_run(folder.path, results)
         put_in_place(folder, out)
-        record_run(shared or out, results)
+        if shared is not None:
+            record_run(shared, results)
     finally:
         folder.discard()
     return results
