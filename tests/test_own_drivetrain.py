@@ -533,13 +533,14 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
     write_outb(tmp_path / "outputs" / "run.outb", rotating_columns())
     commands = commands_of_the_readme()
     assert [words[0] for words in commands] == [
-        *("new", "check", "study", "advise", "loads"),
+        *("new", "check", "study", "advise", "compare", "loads"),
         *2 * ["export"],
     ]
     for words in commands:
         coarse = [] if words[0] in ("new", "loads") else QUICK
         status, out, err = invoke(*words, *coarse)
-        assert status == 0, (words, err)
+        # the bands of so coarse a mesh may be wider than what is compared
+        assert status in ((0, 1) if words[0] == "compare" else (0,)), (words, err)
         assert out
         if words[0] == "new":
             assert parse_scene(documented.read_text("utf-8"))
@@ -549,6 +550,7 @@ def test_the_readme_on_ones_own_drivetrain_works_word_for_word(
         "reports/loads/report.html",
         "reports/study/mine/reactions_run.csv",
         "reports/advise/mine/report.html",
+        "reports/compare/mine/report.html",
         "mine.inp",
         "shaft.bdf",
     ):
