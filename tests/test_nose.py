@@ -155,7 +155,7 @@ def test_a_motion_between_shaft_and_nose_is_the_influence_of_a_bearings_force(
     """Mueller-Breslau: it moves each load by as much as that load puts on the bearing."""
     _, model, response = assembly
     for name, component in (("upwind", 4), ("downwind", 2)):
-        # an iteration is as good as its tolerance beside the jump, which is far larger than the rest
+        # an iteration is as good as its tolerance beside the jump, which is far larger
         influence = reaction_influences(model, name, [component], "superlu")
         (moved,) = (model.unit_loads().T @ influence).T
         expected = response.reactions[name][component]
