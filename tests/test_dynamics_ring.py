@@ -51,7 +51,7 @@ def test_a_ring_squeezed_across_its_diameter() -> None:
 
 
 def test_the_first_harmonic_would_be_a_translation() -> None:
-    # n = 1 has no bending, and moves every radius along y alike
+    # n = 1 has no bending, and moves every radius equally along y
     ring = rim(0.02)
     assert ring.stiffness(1) == 0.0
     for radius in (0.9 * ring.radius, ring.radius):

@@ -160,7 +160,7 @@ def test_joints_over_faces_cost_no_iterations(jointed):
 def test_a_joined_preconditioner_is_symmetric_and_positive(jointed, rng):
     system, F = jointed
     made = multigrid.build(system)
-    free = system.joints.free
+    free = system.joints().free
     a, b = rng.standard_normal((2, len(F), 3)) * free[:, None]
     Ma, Mb = made.precondition(a), made.precondition(b)
     assert not Ma[~free].any()

@@ -3,18 +3,9 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.dynamics import (
-    State,
-    equations_of_motion,
-    fourier_wave,
-    integrate,
-    spring_laws,
-    steady,
-)
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation.mathieu import exact_growth
+from fe_drivetrain.validation.mathieu import exact_growth, stepped_growth
 
 DEPTHS = (0.02, 0.05, 0.1, 0.2)
 STEPS = 128
@@ -30,7 +21,7 @@ def run(run: Run, page: Page) -> None:
     rows = []
     with run.step("growth at twice the natural frequency"):
         for depth in DEPTHS[1:] if run.quick else DEPTHS:
-            found, right = growth(depth, 2.0), exact_growth(depth, 2.0)
+            found, right = stepped_growth(depth, 2.0, STEPS), exact_growth(depth, 2.0)
             page.equals(
                 f"depth {depth}: growth at twice the natural frequency [1/s]",
                 found,
@@ -60,7 +51,7 @@ def run(run: Run, page: Page) -> None:
     depth = 0.1
     at = np.linspace(1.9, 2.1, 10 if run.quick else 40)
     with run.step("tongue"):
-        ours = np.array([growth(depth, float(W)) for W in at])
+        ours = np.array([stepped_growth(depth, float(W), STEPS) for W in at])
         exact = np.array([exact_growth(depth, float(W)) for W in at])
     inside = np.abs(at - 2.0) < depth / 2.0
     page.holds(
@@ -69,7 +60,7 @@ def run(run: Run, page: Page) -> None:
         why="the edges are that far but for the square of the depth",
         source="averaging, first order in the depth",
     )
-    more = 100.0 * np.expm1(2.0 * np.pi * growth(depth, 2.0))
+    more = 100.0 * np.expm1(2.0 * np.pi * stepped_growth(depth, 2.0, STEPS))
     page.answer(
         "A stiffness that varies by 10 % at twice the natural frequency makes motion grow by "
         f"{more:.0f} % in each natural period; damping of e / 4 = {depth / 4:g} stops that.",
@@ -90,19 +81,3 @@ def run(run: Run, page: Page) -> None:
         "growth [1/s]",
     )
     page.data("tongue", {"W": at, "growth": ours, "exact": exact})
-
-
-def growth(depth: float, frequency: float) -> float:
-    """Rate of growth [1/s] from two periods of the mesh by average acceleration, w = 1 rad/s."""
-    period = 2.0 * np.pi / frequency
-    wave = fourier_wave([depth], [0.0])
-    springs = spring_laws([[1.0]], 1.0, wave=0, frequency=1.0 / period, waves=[wave])
-    one = equations_of_motion([1.0], springs)
-
-    def after(q: float, velocity: float) -> Floats:
-        start = State(np.array([q]), np.array([velocity]), np.zeros(1))
-        end = integrate(one, steady([0.0]), period, period / STEPS, start=start).end
-        return np.array([end.q[0], end.velocity[0]])
-
-    step = np.column_stack([after(1.0, 0.0), after(0.0, 1.0)])
-    return float(np.log(np.abs(np.linalg.eigvals(step)).max()) / period)

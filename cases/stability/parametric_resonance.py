@@ -3,17 +3,9 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
-from fe_drivetrain.dynamics import (
-    State,
-    equations_of_motion,
-    fourier_wave,
-    integrate,
-    spring_laws,
-    steady,
-)
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.validation.mathieu import stepped_growth
 
 DEPTHS = (0.05, 0.1, 0.2, 0.4)
 DAMPING = "damping ratio over a quarter of the stiffness's variation"
@@ -30,7 +22,9 @@ def run(run: Run, page: Page) -> None:
     rates, bounds = {}, {}
     with run.step("growth"):
         for e in DEPTHS[1:3] if run.quick else DEPTHS:
-            rates[e] = np.array([growth(e, float(z) * e / 4.0) for z in over]) / (e / 4.0)
+            ratios = [float(z) * e / 4.0 for z in over]
+            found = np.array([stepped_growth(e, 2.0, STEPS, ratio) for ratio in ratios])
+            rates[e] = found / (e / 4.0)
             # the rate falls evenly: between the last that grows and the first that does not
             bounds[e] = float(np.interp(0.0, -rates[e], over))
     for e, bound in bounds.items():
@@ -66,25 +60,3 @@ def run(run: Run, page: Page) -> None:
         safe=(1.0, None),
     )
     page.data("growth", {"damping": over, **{f"e = {e}": rate for e, rate in rates.items()}})
-
-
-def growth(depth: float, ratio: float) -> float:
-    """Rate [1/s] for w = 1 rad/s, from the step of one period of the mesh."""
-    period = np.pi
-    springs = spring_laws(
-        [[1.0]],
-        1.0,
-        2.0 * ratio,
-        wave=0,
-        frequency=1.0 / period,
-        waves=[fourier_wave([depth], [0.0])],
-    )
-    one = equations_of_motion([1.0], springs)
-
-    def after(q: float, velocity: float) -> Floats:
-        start = State(np.array([q]), np.array([velocity]), np.zeros(1))
-        end = integrate(one, steady([0.0]), period, period / STEPS, start=start).end
-        return np.array([end.q[0], end.velocity[0]])
-
-    step = np.column_stack([after(1.0, 0.0), after(0.0, 1.0)])
-    return float(np.log(np.abs(np.linalg.eigvals(step)).max()) / period)

@@ -22,7 +22,7 @@ from fe_drivetrain.dynamics.equations import (
     wave_table,
 )
 from fe_drivetrain.dynamics.planetary import equal_angles
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.system import System, springs_named
 from fe_drivetrain.dynamics.tables import Machine, PlanetaryData
 from fe_drivetrain.gear.meshes import MeshStiffness, StiffnessTable, square_wave_series
 from fe_drivetrain.gear.planets import ring_phases, sun_phases
@@ -186,15 +186,9 @@ def varying_equations(
     half = np.zeros(count)
     waves: list[Floats] = []
     for name, mesh in meshing.items():
-        of = [
-            i
-            for i, spring in enumerate(system.spring_names)
-            if spring == name or spring.startswith(f"{name} slice ")
-        ]
+        of = springs_named(system.spring_names, name, "mesh")
         for i in of:
             system.changeable(system.spring_names[i])
-        if not of:
-            raise InputError(f"no mesh {name!r} in the system: correct its name")
         waves.append(
             contact_wave(mesh.contact_ratio, harmonics)
             if mesh.course is None

@@ -8,7 +8,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.system import System, springs_named
 
 #: Of the stiffness on a unit diagonal: an eigenvalue below is that of a free motion.
 FREE = 1e-12
@@ -43,11 +43,7 @@ class Static:
         InputError
             There is no such spring.
         """
-        names = self.system.spring_names
-        chosen = [k for k, n in enumerate(names) if n == name or n.startswith(f"{name} slice ")]
-        if not chosen:
-            raise InputError(f"no spring {name!r}: use one of {', '.join(names[:40])}")
-        return float(self.forces[chosen].sum())
+        return float(self.forces[springs_named(self.system.spring_names, name)].sum())
 
 
 def static(
@@ -155,14 +151,7 @@ class Turn:
         InputError
             There is no such spring.
         """
-        chosen = [
-            k
-            for k, n in enumerate(self.spring_names)
-            if n == name or n.startswith(f"{name} slice ")
-        ]
-        if not chosen:
-            raise InputError(f"no spring {name!r}: use one of {', '.join(self.spring_names[:40])}")
-        return np.asarray(self.forces[:, chosen].sum(axis=1))
+        return np.asarray(self.forces[:, springs_named(self.spring_names, name)].sum(axis=1))
 
     def resultant(self, name: str) -> Floats:
         """(s,) radial load of a bearing, by its springs NAME uy and NAME uz [N]."""

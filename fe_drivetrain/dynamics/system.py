@@ -9,6 +9,7 @@ a dense stiffness, of superelements. In a frame that turns at the speed W about 
 with the skew gyroscopic matrix G and the centripetal matrix Z, both for 1 rad/s.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +17,29 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_solve
+
+
+def springs_named(names: Sequence[str], name: str, what: str = "spring") -> list[int]:
+    """Numbers of the springs of that name, or of all slices of the mesh of that name.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of all springs.
+    name : str
+        Of a spring or a mesh.
+    what : str
+        Which of both it is, for the message.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    found = [k for k, n in enumerate(names) if n == name or n.startswith(f"{name} slice ")]
+    if not found:
+        raise InputError(f"no {what} {name!r}: use one of {', '.join(names[:40])}")
+    return found
 
 
 @dataclass(frozen=True)

@@ -170,7 +170,7 @@ class Advice:
         """Difference of a result to the next one, relative to that; NaN of the last."""
         if number == len(self.results) - 1:
             return float("nan")
-        return relative_difference(self.results[number].values, self.results[number + 1].values)
+        return _difference(self.results[number].values, self.results[number + 1].values)
 
     def sentence(self) -> str:
         """The answer."""
@@ -298,15 +298,32 @@ def _run_on_springs(
             bounds = hard, yielding
         model, bound = (shaft_level(scene, level, springs, body) for springs in bounds)
         values = quantity.of(model, length)
-        estimate = relative_difference(quantity.of(bound, length), values) / 2
-        if previous is not None:
-            estimate += relative_difference(previous, values)
         # the error of a shaft is only known from the next one
-        estimate = float("nan") if previous is None else estimate
+        estimate = float("nan")
+        if previous is not None:
+            estimate = band_on_springs(values, quantity.of(bound, length), previous)
         if add(model, seconds + condensing + model.cost.seconds, estimate):
             return stiff, True
         previous = values
     return stiff, False
+
+
+def band_on_springs(values: Floats, bound: Floats, cheaper: Floats) -> float:
+    """Expected error of a shaft on housings that were solved apart, relative.
+
+    Parameters
+    ----------
+    values, bound : Floats
+        (k,) on housings whose faces keep their shape, and on the softest.
+    cheaper : Floats
+        (k,) of the shaft of the level before.
+
+    Returns
+    -------
+    float
+        Half of what the bounds differ by, and the change from the level before.
+    """
+    return _difference(bound, values) / 2 + _difference(cheaper, values)
 
 
 def banded_assembly(
@@ -415,7 +432,7 @@ def _judged(
             f"quantity {quantity.name!r} is zero at level {top.model.level}{decided} for {of}: "
             "ask for another, or give another load"
         )
-    judged = [replace(r, error=relative_difference(r.values, top.values)) for r in results]
+    judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
     chosen = None
     for number, result in enumerate(judged):
         # the uncertainty of the top counts against all levels below it
@@ -427,7 +444,7 @@ def _judged(
     return Advice(quantity, tolerance, judged, chosen, springs)
 
 
-def relative_difference(values: Floats, reference: Floats) -> float:
+def _difference(values: Floats, reference: Floats) -> float:
     """Norm of the difference of two vectors, relative to the norm of the second."""
     return float(np.linalg.norm(values - reference) / np.linalg.norm(reference))
 

@@ -16,7 +16,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import silent
-from fe_drivetrain.fidelity.adviser import Quantity, banded_assembly, relative_difference
+from fe_drivetrain.fidelity.adviser import Quantity, band_on_springs, banded_assembly
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.fidelity.quantities import NOISE
 from fe_drivetrain.fidelity.shafts import condensed_shaft
@@ -70,45 +70,43 @@ class Difference:
 
         Of several values it is the norm of their changes, and has no sign.
         """
-        first = self.values[0]
-        size = abs(first.size)
-        return np.array(
-            [self._change(other) / size if size > 0.0 else np.inf for other in self.values[1:]]
-        )
+        return self._over(self._absolute, self._first)
 
     @property
     def bands(self) -> Floats:
         """(n,) what each change may be wrong by: the bands of its two values together."""
-        first = self.values[0]
-        size = abs(first.size)
-        bands = [first.band * size + other.band * abs(other.size) for other in self.values[1:]]
-        return np.array([band / size if size > 0.0 else np.inf for band in bands])
+        return self._over(self._uncertain, self._first)
 
     @property
     def ranks(self) -> Floats:
         """(n,) size of each change, relative to the larger of its two values: 1 from zero."""
-        return np.array([abs(self._change(other)) / self._larger(other) for other in self._others])
+        return np.abs(self._over(self._absolute, self._larger))
 
     @property
     def rank_bands(self) -> Floats:
         """(n,) what each of the `ranks` may be wrong by."""
-        first = self.values[0]
-        bands = [first.band * abs(first.size) + o.band * abs(o.size) for o in self._others]
-        return np.array([b / self._larger(o) for b, o in zip(bands, self._others, strict=True)])
+        return self._over(self._uncertain, self._larger)
 
     @property
     def is_known(self) -> bool:
         """Whether a change is larger than its band."""
         return bool((self.ranks > self.rank_bands).any())
 
-    @property
-    def _others(self) -> tuple[Value, ...]:
-        return self.values[1:]
+    def _over(self, part: Callable[[Value], float], size: Callable[[Value], float]) -> Floats:
+        """(n,) of the designs after the first; nothing over nothing is nothing."""
+        found = [(part(other), size(other)) for other in self.values[1:]]
+        return np.array([p / s if s > 0.0 else np.inf * p if p else 0.0 for p, s in found])
+
+    def _first(self, other: Value) -> float:
+        return abs(self.values[0].size)
 
     def _larger(self, other: Value) -> float:
-        return max(abs(self.values[0].size), abs(other.size)) or 1.0
+        return max(abs(self.values[0].size), abs(other.size))
 
-    def _change(self, other: Value) -> float:
+    def _uncertain(self, other: Value) -> float:
+        return sum(value.band * abs(value.size) for value in (self.values[0], other))
+
+    def _absolute(self, other: Value) -> float:
         first = self.values[0].values
         change = other.values - first
         if len(first) == 1:
@@ -294,7 +292,6 @@ def _on_springs(
         if not values.any():
             found[one.name] = Value(values, 0.0, 2)
             continue
-        band = relative_difference(one.of(bound, length), values) / 2
-        band += relative_difference(one.of(beam, length), values)
+        band = band_on_springs(values, one.of(bound, length), one.of(beam, length))
         found[one.name] = Value(values, band, 2)
     return found

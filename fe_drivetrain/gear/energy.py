@@ -14,6 +14,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.gear.flank_stress import half_width, reduced_modulus
 from fe_drivetrain.gear.involute import Gear, Pair
 from fe_drivetrain.gear.pair_stiffness import Law
 from fe_drivetrain.gear.profile import flank_normals, flank_points, tooth_outline
@@ -213,8 +214,8 @@ def line_contact(
         Approach over load [m^2/N]; it falls with the logarithm of the load.
     """
     E, nu = steel.youngs_modulus, steel.poisson_ratio
-    half_width = contact_half_width(load, curvatures, steel)
-    shape = sum(2.0 * np.log(2.0 * h / half_width) - nu / (1.0 - nu) for h in depths)
+    strip = contact_half_width(load, curvatures, steel)
+    shape = sum(2.0 * np.log(2.0 * h / strip) - nu / (1.0 - nu) for h in depths)
     return np.asarray((1.0 - nu**2) / (pi * E) * shape, dtype=np.float64)
 
 
@@ -238,8 +239,7 @@ def contact_half_width(
         sqrt(8 F' R (1 - nu^2) / (pi E)) with 1 / R the sum of curvatures [m].
     """
     relative = 1.0 / (1.0 / curvatures[0] + 1.0 / curvatures[1])
-    modulus = steel.youngs_modulus / (1.0 - steel.poisson_ratio**2)
-    return np.asarray(np.sqrt(8.0 * load * relative / (pi * modulus)), dtype=np.float64)
+    return half_width(load, relative, reduced_modulus(steel.youngs_modulus, steel.poisson_ratio))
 
 
 def energy_law(

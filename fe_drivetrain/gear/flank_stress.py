@@ -38,6 +38,21 @@ def reduced_modulus(youngs_modulus: float = 206e9, poisson_ratio: float = 0.3) -
     return youngs_modulus / (2.0 * (1.0 - poisson_ratio**2))
 
 
+def half_width(load: float, radius: float | Floats, modulus: float) -> Floats:
+    """Half the width of a line contact, a = sqrt(4 q R / (pi E_R)) [m] (Hertz 1881).
+
+    Parameters
+    ----------
+    load : float
+        On a length of face [N/m].
+    radius : float or ndarray
+        Relative radius of curvature [m].
+    modulus : float
+        As of `reduced_modulus` [Pa].
+    """
+    return np.asarray(np.sqrt(4.0 * load * radius / (pi * modulus)), dtype=np.float64)
+
+
 @dataclass(frozen=True)
 class LineContact:
     """Two cylinders pressed together.
@@ -67,7 +82,7 @@ class LineContact:
     @property
     def half_width(self) -> float:
         """Of the strip, a = sqrt(4 q R / (pi E_R)) [m]."""
-        return sqrt(4.0 * self.load * self.radius / (pi * self.modulus))
+        return float(half_width(self.load, self.radius, self.modulus))
 
     @property
     def pressure(self) -> float:

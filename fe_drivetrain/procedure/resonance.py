@@ -49,8 +49,7 @@ class Excitation:
         if not self.per_turn > 0.0:
             raise InputError(
                 f"excitation {self.name!r} has {self.per_turn:g} periods a turn of the rotor: give "
-                "a "
-                "number above 0"
+                "a number above 0"
             )
 
     def frequency(self, speed: float) -> float:

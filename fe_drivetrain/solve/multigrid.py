@@ -188,9 +188,9 @@ def build(system: System, options: Options = DEFAULTS) -> Hierarchy | Joined:
     InputError
         The system is singular.
     """
-    joints = system.joints
-    if joints is None:
+    if system.joints is None:
         return _hierarchy(system, options)
+    joints = system.joints()
     hierarchy = _hierarchy(joints.bodies, options)
     rows = joints.sums.rows
     some = np.array_split(np.arange(rows.shape[0]), -(-rows.shape[0] // _COLUMNS))

@@ -5,8 +5,9 @@ stay blocks, whatever an interface took from them, and solvers learn of nodes, r
 corner nodes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,8 +71,9 @@ class System:
         Number of degrees of freedom that are left.
     elements : Elements or None
         What it was made of; None where that is not known.
-    joints : Joints or None
-        Its joints that take means over faces, apart from its bodies; None where there are none.
+    joints : callable or None
+        Makes its joints that take means over faces, apart from its bodies, for methods that want
+        them so; None where there are none.
     """
 
     K: sparse.bsr_array
@@ -80,7 +82,7 @@ class System:
     body: Ints
     n_free: int
     elements: Elements | None = None
-    joints: "Joints | None" = None
+    joints: "Callable[[], Joints] | None" = None
 
 
 @dataclass(frozen=True)
@@ -128,16 +130,26 @@ def reduce(
     elements = Elements(
         points, cells, diagonal_blocks(K)[: len(points)], elimination.T, elimination.free
     )
-    sums = sums_of(elimination, springs)
-    joints = None
-    if sums is not None:
-        faces = np.diff(sums.rows.tocsc().indptr) > 0
-        ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-        bodies = reduced_stiffness(K - sums.springs.tobsr((3, 3)), sums.elimination)
-        on_ground = in_blocks(bodies + ground.tocsr().tobsr((3, 3)))
-        joints = Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
     system = _system(points, cells, reduced_stiffness(K, elimination), elimination)
+    means = [c.is_mean for c in elimination.constraints] + [point.is_mean for point, _ in springs]
+    joints = partial(_joints, points, cells, K, elimination, springs) if any(means) else None
     return replace(system, elements=elements, joints=joints)
+
+
+def _joints(
+    points: Floats,
+    cells: Ints,
+    K: sparse.bsr_array,
+    elimination: Elimination,
+    springs: Sequence[tuple[ReferencePoint, Floats]],
+) -> Joints:
+    """Joints and bodies apart; arguments as of `reduce`."""
+    sums = sums_of(elimination, springs)
+    faces = np.diff(sums.rows.tocsc().indptr) > 0
+    ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
+    bodies = reduced_stiffness(K - sums.springs.tobsr((3, 3)), sums.elimination)
+    on_ground = in_blocks(bodies + ground.tocsr().tobsr((3, 3)))
+    return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 
 
 def _system(

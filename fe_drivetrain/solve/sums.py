@@ -54,10 +54,8 @@ class Sums:
     springs: sparse.csr_array
 
 
-def sums_of(
-    elimination: Elimination, springs: Sequence[tuple[ReferencePoint, Floats]]
-) -> Sums | None:
-    """The joints that take means over faces, where there are any.
+def sums_of(elimination: Elimination, springs: Sequence[tuple[ReferencePoint, Floats]]) -> Sums:
+    """The joints that take means over faces, of which there is one at least.
 
     Parameters
     ----------
@@ -68,8 +66,6 @@ def sums_of(
     """
     joints = [c for c in elimination.constraints if c.is_mean]
     on_means = [(point, k) for point, k in springs if point.is_mean]
-    if not joints and not on_means:
-        return None
     n = len(elimination.free)
     dofs = np.concatenate([_NONE, *(c.sums for c in joints)])
     others = [c for c in elimination.constraints if not c.is_mean]

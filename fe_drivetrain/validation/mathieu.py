@@ -1,9 +1,11 @@
-"""Mathieu's equation x'' + (1 + e cos W t) x = 0, integrated by itself."""
+"""Mathieu's equation x'' + (1 + e cos W t) x = 0: exactly, and as a spring in time steps."""
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.dynamics.equations import equations_of_motion, fourier_wave, spring_laws, steady
+from fe_drivetrain.dynamics.integration import State, integrate
 
 
 def exact_growth(depth: float, frequency: float) -> float:
@@ -30,3 +32,31 @@ def exact_growth(depth: float, frequency: float) -> float:
     end = solve_ivp(rates, (0.0, period), [1, 0, 0, 1], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
     values = np.linalg.eigvals(end.reshape(2, 2).T)
     return float(np.log(np.abs(values).max()) / period)
+
+
+def stepped_growth(depth: float, frequency: float, steps: int, damping: float = 0.0) -> float:
+    """Rate of growth [1/s] by average acceleration, from the motion over one period of the spring.
+
+    Parameters
+    ----------
+    depth : float
+        e.
+    frequency : float
+        W [rad/s].
+    steps : int
+        In a period.
+    damping : float
+        Ratio to critical damping.
+    """
+    period = 2.0 * np.pi / frequency
+    wave = fourier_wave([depth], [0.0])
+    springs = spring_laws([[1.0]], 1.0, 2.0 * damping, wave=0, frequency=1.0 / period, waves=[wave])
+    one = equations_of_motion([1.0], springs)
+
+    def after(q: float, velocity: float) -> Floats:
+        start = State(np.array([q]), np.array([velocity]), np.zeros(1))
+        end = integrate(one, steady([0.0]), period, period / steps, start=start).end
+        return np.array([end.q[0], end.velocity[0]])
+
+    step = np.column_stack([after(1.0, 0.0), after(0.0, 1.0)])
+    return float(np.log(np.abs(np.linalg.eigvals(step)).max()) / period)
