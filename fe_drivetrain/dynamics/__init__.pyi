@@ -59,6 +59,9 @@ from .levels import torsional as torsional
 from .machines import constant_power as constant_power
 from .machines import grid_spring as grid_spring
 from .machines import slip_line as slip_line
+from .mesh_errors import MeshError as MeshError
+from .mesh_errors import error_of_slices as error_of_slices
+from .mesh_errors import harmonic_error as harmonic_error
 from .meshing import Meshing as Meshing
 from .meshing import contact_wave as contact_wave
 from .meshing import machine_meshing as machine_meshing
@@ -81,10 +84,12 @@ from .planetary import equal_angles as equal_angles
 from .planetary import excited_motion as excited_motion
 from .planetary import springs_of as springs_of
 from .response import Crossing as Crossing
+from .response import MeshResponse as MeshResponse
 from .response import absolute_sun_orders as absolute_sun_orders
 from .response import crossings as crossings
 from .response import frequency_response as frequency_response
 from .response import mesh_orders as mesh_orders
+from .response import mesh_response as mesh_response
 from .response import modal_response as modal_response
 from .response import speed_diagram as speed_diagram
 from .roller_seats import OnRollers as OnRollers
