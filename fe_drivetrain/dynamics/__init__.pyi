@@ -98,6 +98,9 @@ from .roller_seats import machine_seat as machine_seat
 from .roller_seats import planet_seats as planet_seats
 from .roller_seats import seat as seat
 from .roller_seats import static_on_rollers as static_on_rollers
+from .roller_seats import without_bearings as without_bearings
+from .roller_steps import RollerMotion as RollerMotion
+from .roller_steps import integrate_on_rollers as integrate_on_rollers
 from .springs import Mesh as Mesh
 from .springs import Place as Place
 from .springs import Spring as Spring

@@ -154,6 +154,13 @@ def _touches(laws: Laws, i: int, t: float, z: Floats) -> bool:  # pragma: no cov
 
 
 @njit(cache=True, error_model="numpy")
+def touching(laws: Laws, t: float, z: Floats, damps: Floats) -> None:  # pragma: no cover
+    """Into damps (q,): 1 of each law in contact at values z (r,) of the rows, else 0."""
+    for i in range(len(laws.row)):
+        damps[i] = 1.0 if _touches(laws, i, t, z) else 0.0
+
+
+@njit(cache=True, error_model="numpy")
 def law_forces(
     laws: Laws,
     t: float,
@@ -366,8 +373,8 @@ def march(
     _times(R, u, z)
     _times(R, v, zr)
     _times(R, a, za)
+    touching(laws, begin, z, damps)
     for i in range(q):
-        damps[i] = 1.0 if _touches(laws, i, begin, z) else 0.0
         if laws.angle[i] >= 0:
             is_phase[laws.angle[i]] = 1.0
     stored, power, followed = law_forces(laws, begin, z, zr, damps, 0.0, d, tangent, spring, damper)
@@ -401,8 +408,7 @@ def march(
             energy = power1 = followed1 = 0.0
             if q > 0:
                 _times(R, step, free)
-                for i in range(q):
-                    damps[i] = 1.0 if _touches(laws, i, t - dt, z) else 0.0
+                touching(laws, t - dt, z, damps)
                 for i in range(r):
                     free[i] += z[i]
                     new[i] = free[i]
