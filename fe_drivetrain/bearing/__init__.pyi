@@ -61,5 +61,6 @@ from .rating import ratings as ratings
 from .rolling import Equilibrium as Equilibrium
 from .rolling import equilibrium as equilibrium
 from .rolling import three_degrees as three_degrees
+from .stored_energy import energy_of as energy_of
 from .tables import ReducedTable as ReducedTable
 from .tables import reduced_table as reduced_table
