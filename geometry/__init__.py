@@ -14,6 +14,7 @@ from .part import LENGTH_TOLERANCE, Assumption, Part
 from .planet_carrier import PlanetCarrier
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
+from .step_files import write_step
 from .walls import within_walls
 
 __all__ = [
@@ -48,4 +49,5 @@ __all__ = [
     "size_name",
     "unit_solids",
     "within_walls",
+    "write_step",
 ]

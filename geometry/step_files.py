@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import gmsh
@@ -16,6 +18,21 @@ from fe_drivetrain.common.files import atomic_path
 _MILLIMETRE = re.compile(
     r"(LENGTH_UNIT\(\s*\)\s*NAMED_UNIT\(\*\)\s*)SI_UNIT\(\.MILLI\.,\.METRE\.\)"
 )
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """OpenCASCADE tells standard output what it writes, whatever gmsh's options are."""
+    sys.stdout.flush()
+    before = os.dup(1)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+    finally:
+        os.dup2(before, 1)
+        os.close(before)
+        os.close(nowhere)
 
 
 def write_step(path: str | os.PathLike[str], volumes: Sequence[int], unit: str = "m") -> None:
@@ -50,7 +67,8 @@ def write_step(path: str | os.PathLike[str], volumes: Sequence[int], unit: str =
     occ.synchronize()
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / "part.step"
-        gmsh.write(str(made))
+        with _silent():
+            gmsh.write(str(made))
         text = made.read_text("utf-8")
     if unit == "m":
         text, count = _MILLIMETRE.subn(r"\1SI_UNIT($,.METRE.)", text)

@@ -286,3 +286,25 @@ def test_files_are_looked_for_beside_the_scene(files, tmp_path):
     assert read_scene(tmp_path / "mine.yaml").bearing_units[0].foreign.file == str(
         tmp_path / "block.step"
     )
+
+
+def test_the_command_shows_bores_and_planes_and_proposes_a_housing(files, invoke, tmp_path):
+    status, out, _ = invoke("part", str(files / "named.step"))
+    assert status == 0
+    assert "1 solid, 18 faces, 43 edges, 117.263 dm^3" in out
+    assert "S1  cylinder  radius 300  length 300" in out
+    assert "colour #ff0000" in out
+    text = SCENE.format(housing="", joint="interface: bonded")
+    proposal = out[out.index("    housing:\n") :]
+    text = text.replace("    housing: {}\n", proposal)
+    (tmp_path / "named.step").write_bytes((files / "named.step").read_bytes())
+    (tmp_path / "mine.yaml").write_text(text)
+    housing = read_scene(tmp_path / "mine.yaml").bearing_units[0].foreign
+    assert volume(placed_housing(housing, BEARING, COARSE).mesh) > 0.11
+
+
+def test_the_command_shows_sets_of_a_mesh(files, invoke):
+    status, out, _ = invoke("part", str(files / "unit.inp"))
+    assert status == 0
+    assert "tetrahedra of 10 nodes" in out
+    assert "sets of nodes by label: BASE, BORE" in out

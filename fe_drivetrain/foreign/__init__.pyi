@@ -9,3 +9,5 @@ from .housing import placed_housing as placed_housing
 from .reading import LIMITS as LIMITS
 from .reading import Limits as Limits
 from .reading import read_in_process as read_in_process
+from .survey import Survey as Survey
+from .survey import surveyed as surveyed

@@ -91,7 +91,7 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
     import gmsh
 
     from fe_drivetrain.common.errors import InputError
-    from fe_drivetrain.foreign import step_solid
+    from fe_drivetrain.foreign import step_mesh, step_solid
     from fe_drivetrain.geometry.session import gmsh_session
 
     with gmsh_session():
@@ -105,12 +105,12 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
                 "face"
             )
         seat["holes"] = (
-            step_solid.bolt_holes(survey, request, _held(survey, request))
+            step_mesh.bolt_holes(survey, request, _held(survey, request))
             if request.get("bolts")
             else []
         )
-        step_solid.cut(survey, request)
-        step_solid.mesh(survey, request["size"], request["per_turn"])
+        step_mesh.cut(survey, request)
+        step_mesh.mesh(survey, request["size"], request["per_turn"])
         tags, xyz, _ = gmsh.model.mesh.getNodes()
         number = np.full(int(tags.max()) + 1, -1)
         number[tags] = np.arange(len(tags))
