@@ -22,7 +22,7 @@ FLOORS = (
     {"bearing", "gear", "mesh", "scene", "torsion", "hub_loads"},
     {"life", "operator", "revolution"},
     {"interfaces"},
-    {"solve"},
+    {"foreign", "solve"},
     {"beam", "response"},
     {"dynamics", "fidelity", "peers", "procedure", "report", "rings"},
     {"coupled", "export", "suite", "uncertainty", "validation"},

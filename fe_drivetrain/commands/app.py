@@ -20,6 +20,7 @@ from fe_drivetrain.commands.history import history_command
 from fe_drivetrain.commands.life import life_command
 from fe_drivetrain.commands.loads import loads_command
 from fe_drivetrain.commands.new_scene import new_command
+from fe_drivetrain.commands.part import part_command
 from fe_drivetrain.commands.run import (
     OutFolder,
     Quick,
@@ -49,6 +50,7 @@ app = typer.Typer(no_args_is_help=True, **_LOOK)
 """The commands of ``fe-drivetrain``."""
 
 app.command("new")(new_command)
+app.command("part")(part_command)
 app.command("check")(check_command)
 app.command("study")(study_command)
 app.command("loads")(loads_command)
