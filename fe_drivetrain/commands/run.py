@@ -156,7 +156,7 @@ def run_and_print(
             )
         if junit is not None:
             from fe_drivetrain.report.junit import write_junit
-            from fe_drivetrain.suite.suite import NOT_RUN
+            from fe_drivetrain.suite.result_folders import NOT_RUN
 
             # stays if the run is stopped
             write_junit(junit, [c.name for c in cases], {}, {c.name: NOT_RUN for c in cases})
