@@ -115,6 +115,15 @@ def test_lives_of_the_page_are_in_order(run_page: Runner) -> None:
     assert years["L10r"] < years["L10"]
 
 
+def test_plots_show_what_was_computed(run_page: Runner, tmp_path: Path) -> None:
+    names = run_page("how-to/plots.md")
+    assert len(names["over_time"].data) == len(names["on_bearing"].data) == 6
+    forces = [trace.y for trace in names["beside"].data if trace.x[0] == "Fx"]
+    assert np.sum(forces, axis=0) == pytest.approx([200.0, 0.0, -400.0], abs=1e-6)  # kN
+    assert names["ladder"].data[-1].name == "tolerance"
+    assert (tmp_path / "ring.html").stat().st_size > 1e5
+
+
 def test_modes_bring_frequencies_down_to_those_of_the_shaft(run_page: Runner) -> None:
     errors = run_page("how-to/craig-bampton-modes.md")["errors"]
     for fewer, more in ((0, 4), (4, 8), (8, 16)):  # by Rayleigh: from above, never up again
