@@ -11,7 +11,9 @@ from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.plots.figures import LEAST, figure, load_lines, stiffness_map
 from fe_drivetrain.plots.style import PALETTE
 from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.solve.solvers import Diagnostics
 
+DIRECT = Diagnostics(0.0, 0.0, 0.0, 0, "superlu", "small", 0.0, 0.0, 0, 0)
 LOADS = np.array([1e5, 2e4, -3e5, 8e5, 4e5, -1e5])
 
 
@@ -28,8 +30,10 @@ def test_a_history_has_a_line_for_each_component_in_thousands() -> None:
         load_lines(time, np.ones((4, 6)))
 
 
-def test_bars_of_a_response_balance_the_load(bonded_response: Response) -> None:
-    shown = bonded_response.plot(LOADS)
+def test_bars_of_a_response_balance_the_load() -> None:
+    whole = np.eye(6, 10)
+    reactions = {"main_bearing": 0.7 * whole, "gearbox": 0.3 * whole, "main_bearing.seat": whole}
+    shown = Response(reactions, {}, {}, {}, np.zeros((0, 3, 10)), 0.0, 0.0, DIRECT).plot(LOADS)
     assert {trace.name for trace in shown.data} == {"main_bearing", "gearbox"}
     forces = [trace.y for trace in shown.data if trace.x[0] == "Fx"]
     assert np.sum(forces, axis=0) == pytest.approx(LOADS[:3] / 1e3)

@@ -237,8 +237,12 @@ def _titled(title: str) -> dict[str, Any]:
     """A title on top, the legend between it and the plot."""
     if not title:
         return {}
-    place = {"x": 0, "xref": "paper", "y": 0.97, "yref": "container", "yanchor": "top"}
-    return {"title": {"text": title, **place}, "legend": LEGEND, "margin": {"t": 90}}
+    place = {"x": 0, "xref": "paper", "y": 1, "yref": "container", "yanchor": "top"}
+    return {
+        "title": {"text": title, "pad": {"t": 12}, **place},
+        "legend": LEGEND,
+        "margin": {"t": 90},
+    }
 
 
 def _panel(component: int) -> dict[str, str]:

@@ -114,7 +114,7 @@ def _listed(case: Case, shared: Path | None) -> Iterator[None]:
 
     def write(own: Mapping[str, Problem]) -> None:
         others = {name: why for name, why in problems_before(shared).items() if name != case.name}
-        write_index(shared, others | own, known)
+        write_index(shared, {**others, **own}, known)
 
     known = list(all_cases())
     write({case.name: RUNNING})
