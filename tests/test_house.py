@@ -18,7 +18,7 @@ LIBRARY = sorted(GRAPH.keys() - {"geometry", "cases"})
 #: From the ground floor up: a room imports from lower floors only.
 FLOORS = (
     {"common"},
-    {"geometry", "compare", "histories"},
+    {"geometry", "compare", "histories", "plots"},
     {"bearing", "gear", "mesh", "scene", "torsion", "hub_loads"},
     {"life", "operator", "revolution"},
     {"interfaces"},
