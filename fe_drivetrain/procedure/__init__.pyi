@@ -50,6 +50,7 @@ from .iteration_log import next_entry as next_entry
 from .iteration_log import procedure_of as procedure_of
 from .iteration_log import read_log as read_log
 from .iteration_log import write_log as write_log
+from .levels import level_loads as level_loads
 from .measured_channels import captured as captured
 from .measured_channels import compared as compared
 from .measured_channels import statistic as statistic
@@ -61,6 +62,8 @@ from .motions import band_torque as band_torque
 from .motions import driven_motions as driven_motions
 from .motions import element_torques as element_torques
 from .motions import periodic_motions as periodic_motions
+from .moving import Mounts as Mounts
+from .moving import moving_three_points as moving_three_points
 from .project import EvidenceLink as EvidenceLink
 from .project import Project as Project
 from .project import parse_project as parse_project
