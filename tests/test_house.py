@@ -24,8 +24,8 @@ FLOORS = (
     {"interfaces"},
     {"foreign", "solve"},
     {"beam", "response"},
-    {"dynamics", "fidelity", "peers", "procedure", "report", "rings"},
-    {"coupled", "export", "suite", "uncertainty", "validation"},
+    {"dynamics", "fidelity", "peers", "report", "rings"},
+    {"coupled", "export", "procedure", "suite", "uncertainty", "validation"},
     {"commands"},
     {"cases"},
 )

@@ -37,6 +37,7 @@ from fe_drivetrain.commands.studies import (
     uncertainty_command,
 )
 from fe_drivetrain.commands.terminal import prepare_streams, write
+from fe_drivetrain.commands.validate import validate_command
 
 if TYPE_CHECKING:
     from fe_drivetrain.suite.case import Case
@@ -64,6 +65,7 @@ app.command("export")(export_command)
 app.command("advise")(advise_command)
 app.command("compare")(compare_command)
 app.command("uncertainty")(uncertainty_command)
+app.command("validate")(validate_command)
 
 
 def _show_version(wanted: bool) -> None:
