@@ -44,6 +44,11 @@ from .resonance import Excitation as Excitation
 from .resonance import Meeting as Meeting
 from .resonance import drivetrain_excitations as drivetrain_excitations
 from .resonance import resonances as resonances
+from .ring_shapes import GAUGES as GAUGES
+from .ring_shapes import FittedShape as FittedShape
+from .ring_shapes import RingShape as RingShape
+from .ring_shapes import fitted_shape as fitted_shape
+from .ring_shapes import ring_under_forces as ring_under_forces
 from .sensors import Sensor as Sensor
 from .sensors import counted_angle as counted_angle
 from .sensors import measured as measured
