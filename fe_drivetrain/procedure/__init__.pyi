@@ -33,6 +33,10 @@ from .interface_loads import imbalance as imbalance
 from .interface_loads import read_load_json as read_load_json
 from .interface_loads import write_load_csv as write_load_csv
 from .interface_loads import write_load_json as write_load_json
+from .measured_quantities import Quantities as Quantities
+from .measured_quantities import QuantityList as QuantityList
+from .measured_quantities import filled_table as filled_table
+from .measured_quantities import listed_quantities as listed_quantities
 from .misalignment import Misalignment as Misalignment
 from .misalignment import influence_of_offsets as influence_of_offsets
 from .motions import Motions as Motions
