@@ -55,6 +55,10 @@ from .measured_channels import captured as captured
 from .measured_channels import compared as compared
 from .measured_channels import statistic as statistic
 from .measured_channels import windows_by_wind as windows_by_wind
+from .measured_quantities import Quantities as Quantities
+from .measured_quantities import QuantityList as QuantityList
+from .measured_quantities import filled_table as filled_table
+from .measured_quantities import listed_quantities as listed_quantities
 from .misalignment import Misalignment as Misalignment
 from .misalignment import influence_of_offsets as influence_of_offsets
 from .motions import Motions as Motions
@@ -85,6 +89,11 @@ from .resonance import Excitation as Excitation
 from .resonance import Meeting as Meeting
 from .resonance import drivetrain_excitations as drivetrain_excitations
 from .resonance import resonances as resonances
+from .ring_shapes import GAUGES as GAUGES
+from .ring_shapes import FittedShape as FittedShape
+from .ring_shapes import RingShape as RingShape
+from .ring_shapes import fitted_shape as fitted_shape
+from .ring_shapes import ring_under_forces as ring_under_forces
 from .sensors import Sensor as Sensor
 from .sensors import counted_angle as counted_angle
 from .sensors import measured as measured

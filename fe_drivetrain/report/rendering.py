@@ -15,6 +15,7 @@ from urllib.parse import quote
 import jinja2
 from markupsafe import Markup, escape
 
+from fe_drivetrain.common.typeset import typeset
 from fe_drivetrain.report.number_text import (
     band_text,
     computed_text,
@@ -24,7 +25,6 @@ from fe_drivetrain.report.number_text import (
     safe_range,
     tolerance_text,
 )
-from fe_drivetrain.report.typeset import typeset
 
 _TEMPLATES = Path(__file__).parent / "templates"
 
