@@ -100,6 +100,7 @@ from .sensors import measured as measured
 from .sensors import sampling_rates as sampling_rates
 from .sensors import scaled_to_power as scaled_to_power
 from .sensors import timed_angle as timed_angle
+from .signatures import content_digest as content_digest
 from .slewing import SlewingDrive as SlewingDrive
 from .slewing import drive_torque as drive_torque
 from .slewing import friction_torque as friction_torque
