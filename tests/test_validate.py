@@ -43,7 +43,7 @@ EVIDENCE = (
     "procedure/campaign",
     "drivetrain/from_table",
     "dynamics/drivetrain_levels",
-    "histories/counting",
+    "procedure/interfaces",
 )
 Content = dict[str, Any]
 Invoke = Callable[..., Result]
