@@ -74,6 +74,17 @@ from .project import parse_project as parse_project
 from .project import project_schema as project_schema
 from .project import read_project as read_project
 from .project import starting_project as starting_project
+from .reduction import Influence as Influence
+from .reduction import Trial as Trial
+from .reduction import frequencies_on as frequencies_on
+from .reduction import frequency_that_holds as frequency_that_holds
+from .reduction import influences as influences
+from .reduction import locked_basis as locked_basis
+from .reduction import mode_error as mode_error
+from .reduction import one_after_another as one_after_another
+from .reduction import spring_groups as spring_groups
+from .reduction import threshold_share as threshold_share
+from .reduction import torque_signal as torque_signal
 from .resonance import Excitation as Excitation
 from .resonance import Meeting as Meeting
 from .resonance import drivetrain_excitations as drivetrain_excitations
@@ -89,6 +100,7 @@ from .sensors import measured as measured
 from .sensors import sampling_rates as sampling_rates
 from .sensors import scaled_to_power as scaled_to_power
 from .sensors import timed_angle as timed_angle
+from .signatures import content_digest as content_digest
 from .slewing import SlewingDrive as SlewingDrive
 from .slewing import drive_torque as drive_torque
 from .slewing import friction_torque as friction_torque
