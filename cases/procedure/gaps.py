@@ -80,8 +80,8 @@ def resonance(page: Page) -> None:
     """Register of excitations against the modes of a gearbox with three stages."""
     system = gear_masses(TABLE, "free")
     modes = natural_modes(system)
-    register = drivetrain_excitations(TABLE)
-    found = resonances(register, modes, tuple(e.name for e in system.elements), SPEEDS)
+    register = drivetrain_excitations(TABLE.stages)
+    found = resonances(register, modes, SPEEDS)
     rows: list[Record] = [
         {
             "excitation": m.excitation,
