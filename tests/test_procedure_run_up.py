@@ -25,7 +25,9 @@ def test_the_exact_response_is_that_of_integration(sweep: Sweep) -> None:
     def rate(t: float, y: np.ndarray) -> list[float]:
         return [y[1], np.cos(sweep.phase(t)) - 2.0 * zeta * w * y[1] - w**2 * y[0]]
 
-    found = solve_ivp(rate, (0.0, 5.0), [0.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-13, method="DOP853")
+    found = solve_ivp(
+        rate, (0.0, 5.0), [0.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-13, method="DOP853"
+    )
     exact = swept_response(3.0, zeta, sweep, time).real
     assert np.abs(found.y[0] - exact).max() < 1e-7 * np.abs(exact).max()
 

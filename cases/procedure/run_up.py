@@ -52,7 +52,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("register"):
         found = register(page, system, modes)
     with run.step("run-up"):
-        signal, exact, step, orders = run_up(system, modes, 0.5 if run.quick else 1.0)
+        signal, exact, step, orders = simulated_run_up(system, modes, 0.5 if run.quick else 1.0)
     error = float(np.abs(signal - exact).max() / np.abs(exact).max())
     fastest = 2.0 * np.pi * orders * END / 60.0 * step
     page.vanishes(
@@ -141,7 +141,9 @@ def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
     return found
 
 
-def run_up(system: System, modes: SystemModes, share: float) -> tuple[Floats, Floats, float, float]:
+def simulated_run_up(
+    system: System, modes: SystemModes, share: float
+) -> tuple[Floats, Floats, float, float]:
     """Radial motion of a planet while the speed rises evenly, by matrices and by exact modes."""
     order = mesh_orders(MACHINE.stages)["stage 1"]
     seconds = SECONDS * share
@@ -210,8 +212,8 @@ def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
         measure="frequency",
     )
     page.text(
-        f"The ridge follows the mesh order to within {float(np.abs(ridge - met).max()):.1f} Hz, and "
-        "is brightest where it has just passed a mode that moves the planet."
+        f"The ridge follows the mesh order to within {float(np.abs(ridge - met).max()):.1f} Hz, "
+        "and is brightest where it has just passed a mode that moves the planet."
     )
 
 

@@ -1,6 +1,8 @@
 from .decay import Decay as Decay
 from .decay import logarithmic_decrement as logarithmic_decrement
+from .duty import Governing as Governing
 from .duty import Moves as Moves
+from .duty import governing_torque as governing_torque
 from .duty import moves as moves
 from .duty import peak_times as peak_times
 from .duty import thermal_torque as thermal_torque
@@ -37,6 +39,11 @@ from .measured_quantities import Quantities as Quantities
 from .measured_quantities import QuantityList as QuantityList
 from .measured_quantities import filled_table as filled_table
 from .measured_quantities import listed_quantities as listed_quantities
+from .measurement_cases import MeasurementCase as MeasurementCase
+from .measurement_cases import MeasurementCases as MeasurementCases
+from .measurement_cases import case_channels as case_channels
+from .measurement_cases import protest_measurement_cases as protest_measurement_cases
+from .measurement_cases import read_measurement_cases as read_measurement_cases
 from .misalignment import Misalignment as Misalignment
 from .misalignment import influence_of_offsets as influence_of_offsets
 from .motions import Motions as Motions
@@ -81,3 +88,4 @@ from .steps import require_complete as require_complete
 from .three_points import ThreePoints as ThreePoints
 from .three_points import three_point_loads as three_point_loads
 from .voltage_dips import Dip as Dip
+from .voltage_dips import TorqueTable as TorqueTable
