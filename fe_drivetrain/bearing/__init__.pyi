@@ -61,6 +61,7 @@ from .rating import ratings as ratings
 from .rolling import Equilibrium as Equilibrium
 from .rolling import equilibrium as equilibrium
 from .rolling import three_degrees as three_degrees
+from .stored_energy import energy_of as energy_of
 from .subsurface import Exposure as Exposure
 from .subsurface import HardenedCase as HardenedCase
 from .subsurface import exposure as exposure

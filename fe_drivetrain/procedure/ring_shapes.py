@@ -94,7 +94,8 @@ class RingShape:
         outside : float
             Distance of the gauge from the neutral line, below zero of those inside of it [m].
         """
-        return self._waves(angle, outside * (self.orders**2 - 1.0) / self.radius**2)
+        bent = np.asarray((self.orders**2 - 1.0) / self.radius**2, dtype=np.float64)
+        return self._waves(angle, outside * bent)
 
     def diameter(self, angle: ArrayLike) -> Floats:
         """Change of the diameter, as a displacement transducer across the ring has it [m].
