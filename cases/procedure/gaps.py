@@ -342,7 +342,7 @@ def interfaces(run: Run, page: Page) -> None:
         source="torque of the housing",
     )
     rows = [
-        {key: value for key, value in row.items() if key not in ("levels", "seconds", "source")}
+        {k: v for k, v in row.items() if not isinstance(v, list) and k != "source"}
         for row in analysed(table)
         if max(abs(row["least"]), abs(row["largest"])) > 0.0
     ]
