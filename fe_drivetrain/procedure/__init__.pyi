@@ -9,7 +9,9 @@ from .channels import read_channels as read_channels
 from .channels import write_channels as write_channels
 from .decay import Decay as Decay
 from .decay import logarithmic_decrement as logarithmic_decrement
+from .duty import Governing as Governing
 from .duty import Moves as Moves
+from .duty import governing_torque as governing_torque
 from .duty import moves as moves
 from .duty import peak_times as peak_times
 from .duty import thermal_torque as thermal_torque
@@ -59,6 +61,11 @@ from .measured_quantities import Quantities as Quantities
 from .measured_quantities import QuantityList as QuantityList
 from .measured_quantities import filled_table as filled_table
 from .measured_quantities import listed_quantities as listed_quantities
+from .measurement_cases import MeasurementCase as MeasurementCase
+from .measurement_cases import MeasurementCases as MeasurementCases
+from .measurement_cases import case_channels as case_channels
+from .measurement_cases import protest_measurement_cases as protest_measurement_cases
+from .measurement_cases import read_measurement_cases as read_measurement_cases
 from .misalignment import Misalignment as Misalignment
 from .misalignment import influence_of_offsets as influence_of_offsets
 from .motions import Motions as Motions
@@ -87,6 +94,7 @@ from .reduction import threshold_share as threshold_share
 from .reduction import torque_signal as torque_signal
 from .resonance import Excitation as Excitation
 from .resonance import Meeting as Meeting
+from .resonance import SharedModes as SharedModes
 from .resonance import drivetrain_excitations as drivetrain_excitations
 from .resonance import resonances as resonances
 from .ring_shapes import GAUGES as GAUGES
@@ -94,6 +102,10 @@ from .ring_shapes import FittedShape as FittedShape
 from .ring_shapes import RingShape as RingShape
 from .ring_shapes import fitted_shape as fitted_shape
 from .ring_shapes import ring_under_forces as ring_under_forces
+from .run_up import RunUpPeak as RunUpPeak
+from .run_up import Sweep as Sweep
+from .run_up import run_up_peak as run_up_peak
+from .run_up import swept_response as swept_response
 from .sensors import Sensor as Sensor
 from .sensors import counted_angle as counted_angle
 from .sensors import measured as measured
@@ -118,3 +130,4 @@ from .steps import require_complete as require_complete
 from .three_points import ThreePoints as ThreePoints
 from .three_points import three_point_loads as three_point_loads
 from .voltage_dips import Dip as Dip
+from .voltage_dips import TorqueTable as TorqueTable
