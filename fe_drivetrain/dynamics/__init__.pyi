@@ -136,3 +136,8 @@ from .tables import Machine as Machine
 from .tables import library_machine as library_machine
 from .tables import parse_machine as parse_machine
 from .tables import read_machine as read_machine
+from .travelling import Travelled as Travelled
+from .travelling import Travelling as Travelling
+from .travelling import integrate_travelling as integrate_travelling
+from .travelling import travelling as travelling
+from .travelling import travelling_of as travelling_of

@@ -4,6 +4,7 @@ All levels are of one table, with the same inertias, meshes and bearings, and of
 that a level differs from the one below by nothing but the degrees of freedom that it lets move.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import pairwise
@@ -74,7 +75,7 @@ class Assembly:
 def machine_system(
     machine: Machine,
     level: Level = Level.RIGID,
-    azimuth: float = 0.0,
+    azimuth: float | Mapping[int, float] = 0.0,
     elements: int = 6,
     held_generator: bool = False,
     flexible: Flexible | None = None,
@@ -91,8 +92,9 @@ def machine_system(
         Its table.
     level : Level
         What may move.
-    azimuth : float
-        Of the rotor's shaft [rad]; carriers behind it turn at their own ratios.
+    azimuth : float or mapping of int to float
+        Of the rotor's shaft [rad], carriers behind it turning at their own ratios; or of carriers
+        by the number of their stage, from 1, others being at 0.
     elements : int
         Of each flexible shaft, beside the stations of its bearings.
     held_generator : bool
@@ -107,7 +109,7 @@ def machine_system(
 def assembly(
     machine: Machine,
     level: Level = Level.RIGID,
-    azimuth: float = 0.0,
+    azimuth: float | Mapping[int, float] = 0.0,
     elements: int = 6,
     held_generator: bool = False,
     flexible: Flexible | None = None,
@@ -131,7 +133,12 @@ def assembly(
     )
     driving, ends = "rotor", []
     for number, stage in enumerate(machine.stages, start=1):
-        name, turned = f"stage {number}", azimuth * machine.speeds[number - 1]
+        name = f"stage {number}"
+        turned = (
+            azimuth.get(number, 0.0)
+            if isinstance(azimuth, Mapping)
+            else azimuth * machine.speeds[number - 1]
+        )
         if isinstance(stage, PlanetaryData):
             carrier = None if level is Level.TORSIONAL else gives.carriers.get(number)
             built = planetary_set(machine, number, free, turned)
