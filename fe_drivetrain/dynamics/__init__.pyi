@@ -33,6 +33,7 @@ from .equations import steady as steady
 from .equations import summed as summed
 from .equations import varying as varying
 from .equations import wave_table as wave_table
+from .flexible import ElasticHousing as ElasticHousing
 from .flexible import Flexible as Flexible
 from .flexible import Housing as Housing
 from .gear_pairs import MeshStress as MeshStress

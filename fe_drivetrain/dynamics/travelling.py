@@ -250,7 +250,8 @@ def travelling(
         for number, stage in enumerate(machine.stages, start=1)
         if isinstance(stage, PlanetaryData)
     }
-    return travelling_of(at, ratios)
+    rims = flexible.rims.values() if flexible is not None else ()
+    return travelling_of(at, ratios, 1 + max((n for _, found in rims for n in found), default=0))
 
 
 @dataclass(frozen=True)
