@@ -257,7 +257,7 @@ class _Run:
                     t, u, v, now.spring, now.d[r:], z[r:],
                     [0.5 * v @ M @ v, strain, work, lost, clock],
                 )  # fmt: skip
-        state = State(u, v, a, begin.time + steps * dt)
+        state = State(u, v, np.asarray(a, dtype=np.float64), begin.time + steps * dt)
         return kept.history(e, self.laws, counts, state, seats)
 
     def newton(
