@@ -33,6 +33,7 @@ from .equations import steady as steady
 from .equations import summed as summed
 from .equations import varying as varying
 from .equations import wave_table as wave_table
+from .flexible import ElasticHousing as ElasticHousing
 from .flexible import Flexible as Flexible
 from .flexible import Housing as Housing
 from .gear_pairs import MeshStress as MeshStress
@@ -134,3 +135,8 @@ from .tables import Machine as Machine
 from .tables import library_machine as library_machine
 from .tables import parse_machine as parse_machine
 from .tables import read_machine as read_machine
+from .travelling import Travelled as Travelled
+from .travelling import Travelling as Travelling
+from .travelling import integrate_travelling as integrate_travelling
+from .travelling import travelling as travelling
+from .travelling import travelling_of as travelling_of
