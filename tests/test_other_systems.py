@@ -105,7 +105,7 @@ def test_what_needs_linux_is_missing_elsewhere(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(launching, "os", NOT_HERE)
     variant = launching.Variant("scikit_fem", "k")
     none = Path("none.npz")
-    found = launching.launch(variant, none, none, launching.Limits(1.0, 1), sys.executable)
+    found = launching.launch(variant, none, none, launching.Limits(1.0, 1.0, 1), sys.executable)
     assert found.status == "missing"
     monkeypatch.delattr(os, "fork")
     with pytest.raises(MissingToolError, match="fork"):
