@@ -60,10 +60,11 @@ def answer_of_counts(page: Page, found: Together, options: Options) -> str:
         words.append(f"{value_with_band(page.answers[-1])} in {name}")
     if not words:
         return ""
-    rule = " (± what whole cycles in place of half ones would add)"
+    open_ends = " (± what whole cycles in place of half ones would add)"
+    rule = open_ends if options.residue == "half" else ""
     return (
         f"These loads do the damage of a sine of {hertz:g} Hz with a range of "
-        f"{' and '.join(words)} at a slope of {slope:g}{rule if options.residue == 'half' else ''}: "
+        f"{' and '.join(words)} at a slope of {slope:g}{rule}: "
     )
 
 
