@@ -22,10 +22,10 @@ FLOORS = (
     {"bearing", "gear", "mesh", "scene", "torsion", "hub_loads"},
     {"life", "operator", "revolution"},
     {"interfaces"},
-    {"solve"},
+    {"foreign", "solve"},
     {"beam", "response"},
-    {"dynamics", "fidelity", "peers", "procedure", "report", "rings"},
-    {"coupled", "export", "suite", "uncertainty", "validation"},
+    {"dynamics", "fidelity", "peers", "report", "rings"},
+    {"coupled", "export", "procedure", "suite", "uncertainty", "validation"},
     {"commands"},
     {"cases"},
 )

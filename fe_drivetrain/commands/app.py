@@ -20,6 +20,7 @@ from fe_drivetrain.commands.history import history_command
 from fe_drivetrain.commands.life import life_command
 from fe_drivetrain.commands.loads import loads_command
 from fe_drivetrain.commands.new_scene import new_command
+from fe_drivetrain.commands.part import part_command
 from fe_drivetrain.commands.run import (
     HelpOfCases,
     OutFolder,
@@ -36,6 +37,7 @@ from fe_drivetrain.commands.studies import (
     uncertainty_command,
 )
 from fe_drivetrain.commands.terminal import prepare_streams, write
+from fe_drivetrain.commands.validate import validate_command
 
 if TYPE_CHECKING:
     from fe_drivetrain.suite.case import Case
@@ -50,6 +52,7 @@ app = typer.Typer(no_args_is_help=True, **_LOOK)
 """The commands of ``fe-drivetrain``."""
 
 app.command("new")(new_command)
+app.command("part")(part_command)
 app.command("check")(check_command)
 app.command("study")(study_command)
 app.command("loads")(loads_command)
@@ -62,6 +65,7 @@ app.command("export")(export_command)
 app.command("advise")(advise_command)
 app.command("compare")(compare_command)
 app.command("uncertainty")(uncertainty_command)
+app.command("validate")(validate_command)
 
 
 def _show_version(wanted: bool) -> None:

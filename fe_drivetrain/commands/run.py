@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperCommand
 
+from fe_drivetrain.commands.options import Scheduler
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.settings import CaseSettings, parse_settings
 from fe_drivetrain.commands.terminal import FAILED, KEPT, MISTAKE, PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.pool import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
@@ -86,11 +88,13 @@ def run_command(
             "--junit", metavar="FILE", help="Write the verdicts as JUnit XML, for CI servers."
         ),
     ] = None,
+    scheduler: Scheduler = None,
 ) -> None:
     """Run validation cases and write their reports.
 
-    Several cases run in parallel processes, as many as there are cores, except those that measure
-    time, which run one by one at the end. An index.html lists all of them.
+    Several cases run in parallel processes, as many as there are cores, or on a cluster, except
+    those that measure time, which run one by one at the end, on this machine. An index.html lists
+    all of them.
 
     The exit status is 0 if every check passes, 1 if one fails, 2 for a wrong option or setting,
     and 130 if stopped. A case that needs a program that is not installed is listed as skipped.
@@ -109,7 +113,7 @@ def run_command(
         found = [case for name in names for case in find_cases(name)]
         return list({case.name: case for case in found}.values())
 
-    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit, resume))
+    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit, resume, scheduler))
 
 
 class HelpOfCases(TyperCommand):
@@ -183,6 +187,7 @@ def run_and_print(
     quick: bool = False,
     junit: Path | None = None,
     resume: bool = False,
+    scheduler: str | None = None,
 ) -> int:
     """Run cases, several of them in parallel, and print the verdicts.
 
@@ -200,6 +205,8 @@ def run_and_print(
         File for the verdicts as JUnit XML.
     resume : bool
         Leave out cases whose results are there already; for several cases.
+    scheduler : str or None
+        Address of the cluster that does the work.
 
     Returns
     -------
@@ -229,10 +236,11 @@ def run_and_print(
             write_junit(junit, [c.name for c in cases], {}, {c.name: NOT_RUN for c in cases})
         results: dict[str, Results]
         problems: dict[str, Problem] = {}
-        if len(cases) == 1:
-            results = {cases[0].name: _run_one(cases[0], out, values, quick)}
-        else:
-            results, problems = _run_several(cases, out, values, quick, resume)
+        with scheduled_by(scheduler):
+            if len(cases) == 1:
+                results = {cases[0].name: _run_one(cases[0], out, values, quick)}
+            else:
+                results, problems = _run_several(cases, out, values, quick, resume)
         if junit is not None:
             write_junit(junit, [case.name for case in cases], results, problems)
         if any(problem.state != "skipped" for problem in problems.values()):

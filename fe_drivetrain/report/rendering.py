@@ -51,6 +51,7 @@ def templates() -> jinja2.Environment:
         "tolerance": tolerance_text,
         "safe_range": safe_range,
         "page_of": lambda case: Markup(f"{quote(case)}/report.html"),
+        "address": lambda path: Markup(quote(path)),  # of a scheme as javascript: a file's name
         "as_typed": escape,
         "plain": lambda text: escape(typeset(text.replace("`", ""))),  # in attributes
     }

@@ -210,14 +210,17 @@ def _reactions(
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         centre = model.points[f"{name}.seat"].position
-        if unit.bedplate is None:
+        standing = model.standing(name)
+        if not standing:
             base = mesh.face_nodes(f"{name}.housing.base")
             forces = multipliers[f"{name}.housing.base"].reshape(len(base), 3, -1)
             reactions[name] = -resultant(mesh.points[base], forces, centre)
         else:
-            point = model.points[f"{name}.base"]
-            carried = _carried_at(model, f"{name}.base", multipliers, U)
-            reactions[name] = wrench_transport(point.position - centre) @ carried
+            reactions[name] = np.zeros((6, U.shape[1]))
+            for key in standing:
+                carried = _carried_at(model, key, multipliers, U)
+                arm = model.points[key].position - centre
+                reactions[name] += wrench_transport(arm) @ carried
         for key, part, face in (
             (f"{name}.seat", name, f"shaft.seat.{name}"),
             (f"{name}.outer", f"{name}.housing", f"{name}.housing.bore"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import threading
 import traceback
 from collections.abc import Collection, Mapping, Sequence
@@ -10,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.common.files import HiddenFolder, sentence_about
+from fe_drivetrain.common.files import HiddenFolder, empty, sentence_about
+from fe_drivetrain.common.pool import pool
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.report.results import Problem
@@ -37,8 +39,9 @@ def run_cases(
 ) -> dict[str, Problem]:
     """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
 
-    Independent cases run in processes side by side, as many as the cores allow; those that are to
-    be `alone` come after them, one by one, each in a process that starts afresh. A case that fails
+    Independent cases run in processes side by side, as many as the cores allow, or on a cluster
+    (`scheduled_by`); those that are to be `alone` come after them on this machine, one by one, each
+    in a process that starts afresh. A case that fails
     does not keep the others from their work. Each result folder appears whole or not at all; when
     stopped, those of finished cases stay, and the page lists the others as not run.
 
@@ -117,14 +120,14 @@ def run_cases(
         write_index(out, others | problems | pending, known)
         count()
         beside = [case for case in cases if not case.alone]
-        with Processes(len(beside), show, each_for_itself=True) as processes:
+        with pool(len(beside), show, each_for_itself=True) as workers:
             jobs: dict[Future[Problem | None], Case] = {
-                processes.start(
+                workers.start(
                     _run, case, folders[case.name].path, taken[case.name], quick, out
                 ): case
                 for case in beside
             }
-            for job in processes.finished(jobs):
+            for job in workers.finished(jobs):
                 finish(jobs[job], _outcome(job))
         for case in cases:
             if case.alone:
@@ -163,6 +166,12 @@ def _run(
         report(f"{case.name}: {step}" if step else "", lane)
 
     try:
+        if not folder.is_dir():
+            raise InputError(
+                f"{platform.node()} does not see {folder}: give a folder with --out that "
+                "all workers share"
+            )
+        empty(folder)  # a worker may have died half-way
         run_into(case, folder, settings, quick, named, shared)
     except InputError as error:
         return Problem(str(error), "skipped" if isinstance(error, MissingToolError) else "failed")
