@@ -12,6 +12,7 @@ from .components import STRESSES as STRESSES
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
 from .interpreter import run_python as run_python
+from .memory import peak_memory as peak_memory
 from .processes import Processes as Processes
 from .progress import Progress as Progress
 from .progress import silent as silent
