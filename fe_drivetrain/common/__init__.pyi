@@ -11,6 +11,7 @@ from .components import MOTIONS as MOTIONS
 from .components import STRESSES as STRESSES
 from .errors import InputError as InputError
 from .errors import MissingToolError as MissingToolError
+from .interpreter import interpreters as interpreters
 from .interpreter import run_python as run_python
 from .processes import Processes as Processes
 from .progress import Progress as Progress
