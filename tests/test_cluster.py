@@ -19,10 +19,10 @@ from test_commands_life import write_history
 from tiny_case import Result
 
 from fe_drivetrain.commands.loads_digest import Options
-from fe_drivetrain.common import pool as pool_module
+from fe_drivetrain.common import jobs as jobs_module
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import mapped, pool, scheduled_by
+from fe_drivetrain.common.jobs import mapped, pool, scheduled_by
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.fidelity.adviser import Quantity
@@ -128,7 +128,7 @@ def test_a_stopped_study_goes_on_where_it_was(
     cluster: Cluster, histories: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At most so many files are handed in as may be at once, and those that are done stay done."""
-    monkeypatch.setattr(pool_module, "AT_ONCE", 4)
+    monkeypatch.setattr(jobs_module, "AT_ONCE", 4)
     items = [(file, OPTIONS, tmp_path, False) for file in histories]
     with scheduled_by(cluster.address):
         stopped = mapped(cluster_jobs.digest_with_death, items, 1)
