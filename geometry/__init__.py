@@ -5,35 +5,42 @@ from .bearing import Bearing
 from .body import BodySizes
 from .element_sizes import MeshSizes, size_name
 from .fits import WIDEST, Band, check_bands, check_parts, refuse_millimetres
+from .foreign_housing import AnyHousing, Bolts, ForeignHousing, Pick
 from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
-from .masses import Solid, unit_solids
+from .masses import Solid, bearing_solid, unit_solids
 from .part import LENGTH_TOLERANCE, Assumption, Part
 from .planet_carrier import PlanetCarrier
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
+from .step_files import write_step
 from .walls import within_walls
 
 __all__ = [
     "LENGTH_TOLERANCE",
     "NO_BANDS",
     "WIDEST",
+    "AnyHousing",
     "Assumption",
     "Band",
     "Bearing",
     "BodySizes",
+    "Bolts",
     "Flange",
+    "ForeignHousing",
     "GearboxHousing",
     "Housing",
     "LocalSizes",
     "MeshSizes",
     "Part",
+    "Pick",
     "PlanetCarrier",
     "Section",
     "Shaft",
     "Solid",
     "apply_local_sizes",
+    "bearing_solid",
     "build",
     "check_bands",
     "check_parts",
@@ -42,4 +49,5 @@ __all__ = [
     "size_name",
     "unit_solids",
     "within_walls",
+    "write_step",
 ]

@@ -23,6 +23,29 @@ class Solid(NamedTuple):
 
 
 @lru_cache(maxsize=64)
+def bearing_solid(bearing: Bearing, bore_diameter: float) -> Solid:
+    """The bearing alone.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    bore_diameter : float
+        Of it [m].
+    """
+    with gmsh_session():
+        tag = bearing.build(bore_diameter)
+        gmsh.model.occ.synchronize()
+        return _solid(tag)
+
+
+def _solid(tag: int) -> Solid:
+    occ = gmsh.model.occ
+    x, y, z = occ.getCenterOfMass(3, tag)
+    return Solid(occ.getMass(3, tag), (x, y, z), tuple(occ.getMatrixOfInertia(3, tag)))
+
+
+@lru_cache(maxsize=64)
 def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tuple[Solid, Solid]:
     """The bearing, and its housing.
 
@@ -37,8 +60,5 @@ def unit_solids(bearing: Bearing, housing: Housing, bore_diameter: float) -> tup
     with gmsh_session():
         tags = bearing.build(bore_diameter), housing.build(bearing).volume
         occ.synchronize()
-        first, second = (
-            Solid(occ.getMass(3, tag), (x, y, z), tuple(occ.getMatrixOfInertia(3, tag)))
-            for tag, (x, y, z) in ((tag, occ.getCenterOfMass(3, tag)) for tag in tags)
-        )
+        first, second = map(_solid, tags)
     return first, second

@@ -43,7 +43,7 @@ def bearing_s(arrangement: str = "o") -> Bearing:
 def housed_scene(size: Size = (1.0, None)) -> Scene:
     """The library's main bearing with tapered rollers, of the size of bearing S."""
     scene = library_scene("main_bearing_bonded")
-    block = scene.bearing_unit(NAME).housing
+    block = scene.bearing_unit(NAME).block
     unit = f"bearing_units.{NAME}"
     enlarged = {f"{unit}.housing.{key}": round(ENLARGED * getattr(block, key), 4) for key in _SIZES}
     changed = change_scene(

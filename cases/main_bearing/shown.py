@@ -219,16 +219,16 @@ def assume(page: Page, scene: Scene) -> None:
         "fixed": "the whole underside of the housing is fixed" + ("" if own else _AS),
         "bolted": "four washer footprints are fixed"
         + ("" if own else "; in the thesis the whole underside"),
-    }[unit.housing.base]
+    }[unit.block.base]
     page.assume("bedplate", "rigid", "", base)
     page.assume(
         "clearance, friction, damping", "none", "", "quasi-static, linear" + ("" if own else _AS)
     )
     for unit in scene.bearing_units:
         name = unit.bearing.name
-        for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.housing)):
+        for owner, part in ((name, unit.bearing), (f"{name}.housing", unit.block)):
             for what, value, unit_of_it, source in part.assumptions():
-                if unit.housing.base == "bolted" or not what.startswith(("bolt_", "washer_")):
+                if unit.block.base == "bolted" or not what.startswith(("bolt_", "washer_")):
                     page.assume(f"{owner}: {what}", value, unit_of_it, source)
     names = [unit.bearing.name for unit in scene.bearing_units]
     for name in ("shaft", *names, *(f"{name}.housing" for name in names)):

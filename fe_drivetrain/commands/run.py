@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from fe_drivetrain.commands.options import Scheduler
 from fe_drivetrain.commands.progress import show_steps
@@ -63,7 +64,9 @@ def run_command(
     cases: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="CASE", help="GROUP/NAME, NAME if it is unique, or GROUP for all its cases."
+            metavar="CASE",
+            help="GROUP/NAME, NAME if it is unique, or GROUP for all its cases. CASE --help shows "
+            "what --set changes of it.",
         ),
     ] = None,
     all_: Annotated[bool, typer.Option("--all", help="Run every case.")] = False,
@@ -111,6 +114,70 @@ def run_command(
         return list({case.name: case for case in found}.values())
 
     raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit, resume, scheduler))
+
+
+class HelpOfCases(TyperCommand):
+    """Help that ends with the source and the settings of the cases that were named."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Keep what was typed: ``--help`` ends the program before arguments are read.
+
+        Parameters
+        ----------
+        ctx : click.Context
+            Keeps it.
+        args : list of str
+            What was typed.
+
+        Returns
+        -------
+        list of str
+        """
+        ctx.meta["typed"] = list(args)
+        return super().parse_args(ctx, args)
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help, and what is said of the cases, if there are any.
+
+        Parameters
+        ----------
+        ctx : click.Context
+            With what was typed.
+        formatter : click.HelpFormatter
+            As of click.
+        """
+        super().format_help(ctx, formatter)
+        if words := [word for word in ctx.meta.get("typed", ()) if not word.startswith("-")]:
+            write(sys.stdout, help_of_cases(words))
+
+
+def help_of_cases(names: Sequence[str]) -> str:
+    """Title, source and settings of cases in plain text.
+
+    Parameters
+    ----------
+    names : sequence of str
+        As typed; an unknown one is said to be unknown.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.suite.case import find_cases
+    from fe_drivetrain.suite.settings import settings_in_words
+
+    lines = []
+    for name in names:
+        try:
+            found = find_cases(name)
+        except InputError as error:
+            lines += [f"{error}", ""]
+            continue
+        for case in found:
+            taken = settings_in_words(case) or "nothing"
+            lines += [case.name, f"  {case.title}", f"  Source: {case.source}"]
+            lines += [f"  --set: {taken}", ""]
+    return "\n".join(lines)
 
 
 def run_and_print(
@@ -163,7 +230,7 @@ def run_and_print(
             )
         if junit is not None:
             from fe_drivetrain.report.junit import write_junit
-            from fe_drivetrain.suite.suite import NOT_RUN
+            from fe_drivetrain.suite.result_folders import NOT_RUN
 
             # stays if the run is stopped
             write_junit(junit, [c.name for c in cases], {}, {c.name: NOT_RUN for c in cases})

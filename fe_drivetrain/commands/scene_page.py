@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
@@ -149,10 +151,12 @@ def _size(scene: Scene, part: str) -> str:
         )
     name, _, housing = part.partition(".")
     unit = scene.bearing_unit(name)
+    if housing and unit.foreign is not None:
+        return f"from {Path(unit.foreign.file).name}, {unit.foreign.held_by}"
     if housing:
         return (
-            f"axis {unit.housing.centre_height:g} m over its base, wall {unit.housing.wall:g} m, "
-            f"base {unit.housing.base}"
+            f"axis {unit.block.centre_height:g} m over its base, wall {unit.block.wall:g} m, "
+            f"base {unit.block.base}"
         )
     return f"{unit.bearing.width:g} m wide, raceway {unit.bearing.raceway_diameter:g} m"
 

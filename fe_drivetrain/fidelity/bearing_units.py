@@ -16,9 +16,9 @@ from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.made_by import source_hash
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts, tied
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
-from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.response.cached import solved_by, solved_content
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
@@ -200,12 +200,12 @@ def _solved_unit(
 ) -> _SolvedUnit:
     """A bearing and its housing without the shaft, see `unit_stiffness`."""
     unit = scene.bearing_unit(name)
-    bonded = unit.interface == "bonded"
     seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
     bearing = unit.bearing.model_copy(update={"bore_diameter": seat})
-    joined = frozenset({name} if bonded else ())
-    mesh = cached_mesh(None, [bearing], {name: unit.housing}, scene.mesh, joined)
+    alone = unit.model_copy(update={"bearing": bearing})
     with_ring = unit.ring_on_housing and ring
+    together = tied([alone] if with_ring else [], mesh_parts(None, [alone], scene.mesh))
+    mesh = together.mesh
     parts = [name, f"{name}.housing"] if with_ring else [f"{name}.housing"]
     coupling = _PRESCRIBED.get(unit.interface, coupling)
     if with_ring:
@@ -224,15 +224,15 @@ def _solved_unit(
         np.arange(len(mesh.points)),
         np.concatenate([solid.cells.ravel(), mesh.face_nodes(face)]),
     )
-    held = [
-        constraints.fixed(base, mesh.face_nodes(base), n_dofs),
-        constraints.fixed("parts left out", left_out, n_dofs),
-    ]
-    springs: list[tuple[constraints.ReferencePoint, Floats]] = []
+    held = [constraints.fixed("parts left out", left_out, n_dofs)]
+    springs = bolt_springs(unit, mesh, n_dofs)
+    if not springs:
+        held.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
+    held += together.conditions(n_dofs)
     if unit.rollers is not None:
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
         ground = free.T @ free
-        springs = [*roller_joint(unit, mesh, n_dofs).springs, (solid.points[0], ground)]
+        springs += [*roller_joint(unit, mesh, n_dofs).springs, (solid.points[0], ground)]
     displacements = point_displacements(solid, held, springs, method)
     stiffness = np.linalg.inv(solid.loads.T @ displacements)
     if unit.rollers is not None:
@@ -240,7 +240,7 @@ def _solved_unit(
         stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
     if unit.bedplate is not None:
         # the base moves as a rigid body, so this is exact
-        lever = wrench_transport(np.array([0.0, 0.0, unit.housing.centre_height])).T
+        lever = wrench_transport(centre - base_centre(unit, mesh)).T
         softness = lever @ np.diag(1.0 / as_numbers(unit.bedplate)) @ lever.T
         stiffness = np.linalg.solve(np.eye(6) + stiffness @ softness, stiffness)
     stiffness = 0.5 * (stiffness + stiffness.T)

@@ -17,6 +17,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.reading import value_changes
 from fe_drivetrain.fidelity.adviser import Quantity, band_on_springs, banded_assembly
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.fidelity.quantities import NOISE
@@ -209,26 +210,8 @@ def compare_designs(
 
 def scene_changes(before: Scene, after: Scene) -> list[tuple[str, Any, Any]]:
     """What two scenes state differently: dotted key, and both values (None where there is none)."""
-    a, b = (_flat(scene.model_dump(mode="json"), "") for scene in (before, after))
-    return [
-        (key, a.get(key), b.get(key))
-        for key in dict.fromkeys([*a, *b])
-        if key != "title" and a.get(key) != b.get(key)
-    ]
-
-
-def _flat(value: Any, key: str) -> dict[str, Any]:
-    """Values of nested mappings and lists by dotted key."""
-    if isinstance(value, Mapping):
-        parts = value.items()
-    elif isinstance(value, list):
-        parts = enumerate(value)  # type: ignore[assignment]
-    else:
-        return {key: value}
-    found: dict[str, Any] = {}
-    for name, part in parts:
-        found |= _flat(part, f"{key}.{name}" if key else str(name))
-    return found
+    found = value_changes(before.model_dump(mode="json"), after.model_dump(mode="json"))
+    return [change for change in found if change[0] != "title"]
 
 
 def _factors(scene: Scene, load: Mapping[str, float]) -> Floats:

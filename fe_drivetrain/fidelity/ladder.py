@@ -26,7 +26,7 @@ from fe_drivetrain.fidelity.shafts import (
     reference_points,
     ringed_shaft,
 )
-from fe_drivetrain.geometry import unit_solids
+from fe_drivetrain.foreign.assembly import solids_of_unit
 from fe_drivetrain.response.cached import cached_response
 from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene, scene_loads
 from fe_drivetrain.response.unit_loads import Response
@@ -290,7 +290,7 @@ def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozen
     for unit in scene.bearing_units:
         bearing = unit.bearing
         bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
-        ring, housing = unit_solids(bearing, unit.housing, bore)
+        ring, housing = solids_of_unit(unit, bore, scene.mesh)
         solids = {f"{bearing.name}.housing": housing}
         if bearing.name not in on_shaft:
             solids[bearing.name] = ring

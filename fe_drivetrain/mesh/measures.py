@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES, element_kind
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES, element_kind, jacobian
 
 _AREA_DEGREE = 8
+_MOMENT_DEGREE = 6  # the volume element of a curved cell is cubic, squares of positions quartic
 
 
 def lattice(order: int) -> Ints:
@@ -209,6 +211,34 @@ def volume(mesh: Mesh, part: str | None = None) -> float:
     cells = mesh.cells if part is None else mesh.cells[mesh.part_cells(part)]
     weights = TO_BERNSTEIN.mean(axis=0) / 6
     return float((jacobians(mesh.points, cells) @ weights).sum())
+
+
+def mass_moments(points: Floats, cells: Ints) -> tuple[float, Floats, Floats]:
+    """Volume, centre, and inertia about it of a solid of density one.
+
+    Parameters
+    ----------
+    points : Floats
+        (n, 3) [m].
+    cells : Ints
+        (ne, k) node numbers in VTK's order.
+
+    Returns
+    -------
+    tuple
+        Volume [m^3], centre (3,) [m], and inertia (3, 3) [m^5].
+    """
+    kind = element_kind(cells.shape[1])
+    X, W = get_quadrature(kind.element.refdom, _MOMENT_DEGREE)
+    values, gradients = kind.shape(X)
+    weights = np.abs(jacobian(points, cells, gradients)[1]) * W
+    at = np.einsum("qk,eki->eqi", values, points[cells])
+    total = float(weights.sum())
+    centre = np.einsum("eq,eqi->i", weights, at) / total
+    away = at - centre
+    second = np.einsum("eq,eqi,eqj->ij", weights, away, away)
+    inertia = np.trace(second) * np.eye(3) - second
+    return total, np.asarray(centre), np.asarray(inertia, dtype=np.float64)
 
 
 def area(mesh: Mesh, face: str) -> float:

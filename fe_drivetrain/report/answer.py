@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from fe_drivetrain.common.typeset import superscript
 from fe_drivetrain.report.number_text import (
     error_text,
     expected_text,
@@ -14,7 +15,6 @@ from fe_drivetrain.report.number_text import (
     with_unit,
 )
 from fe_drivetrain.report.results import Figure, Results, Verdict
-from fe_drivetrain.report.typeset import superscript
 
 _DIGITS = 3  # of a value without a band
 _MOST_DIGITS = 7  # of a value with one

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.made_by import arithmetic, source_hash, versions
+from fe_drivetrain.foreign.housing import file_digest
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
@@ -22,7 +23,17 @@ from fe_drivetrain.solve.solvers import Diagnostics
 
 Arrays = dict[str, NDArray[Any]]
 
-_ROOMS = ("common", "geometry", "scene", "mesh", "operator", "interfaces", "solve", "response")
+_ROOMS = (
+    "common",
+    "geometry",
+    "scene",
+    "mesh",
+    "operator",
+    "interfaces",
+    "foreign",
+    "solve",
+    "response",
+)
 _PACKAGES = ("numpy", "scipy", "numba", "pyamg", "scikit-sparse", "pypardiso", "mkl", "gmsh")
 
 
@@ -86,6 +97,9 @@ def solved_content(scene: Scene) -> dict[str, Any]:
         Plain data.
     """
     content = scene.model_dump(mode="json", exclude={"title", "uncertainty", "mesh"})
+    for unit, described in zip(scene.bearing_units, content["bearing_units"], strict=True):
+        if unit.foreign is not None:  # what is in the file counts, not where it is
+            described["housing"] |= {"step": None, "mesh": file_digest(unit.foreign.file)}
     for loaded in (content["gearbox"], *content["load_points"]):
         del loaded["weight"]
     return content

@@ -46,9 +46,9 @@ def reaction_influences(
     loads = np.zeros((model.n_dofs, chosen.shape[1]))
     moved: dict[str, Floats] = {}
     on_nose = {bearing.name for bearing in model.scene.nose_bearings}
-    stands_on = "gearbox" if name == "gearbox" else f"{name}.base"
-    stands_on = f"{name}.joint" if name in on_nose else stands_on
-    if stands_on in model.points:
+    standing = ["gearbox"] if name == "gearbox" else model.standing(name)
+    standing = [f"{name}.joint"] if name in on_nose else standing
+    for stands_on in standing:
         point = model.points[stands_on]
         centre = model.points["gearbox" if name == "gearbox" else f"{name}.seat"].position
         motion = wrench_transport(point.position - centre).T @ chosen
@@ -57,7 +57,7 @@ def reaction_influences(
                 loads += at.motion.T @ (k @ motion)
         if stands_on in model.held:
             moved[f"{stands_on} reaction"] = motion[list(model.held[stands_on])]
-    else:
+    if not standing:
         base = model.mesh.points[model.mesh.face_nodes(f"{name}.housing.base")]
         centre = model.points[f"{name}.seat"].position
         moved[f"{name}.housing.base"] = rigid_motions(base, centre) @ chosen

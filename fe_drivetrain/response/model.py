@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts, tied
 from fe_drivetrain.geometry import Band
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
@@ -62,7 +63,8 @@ class Model:
     points : Mapping[str, ReferencePoint]
         Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing, the load points by
         their names; where there are
-        such, "NAME.base" (on a bedplate that gives), "NAME.joint" or "NAME.roller K", whose
+        such, "NAME.base" (on a bedplate that gives) or "NAME.bolt K" (bolts as beams, to ground),
+        "NAME.joint" or "NAME.roller K", whose
         motion is that of the bearing against its housing, or of the shaft against its nose; and
         "nose.root", the nose's rear face.
     constraints : tuple[Constraint, ...]
@@ -89,6 +91,11 @@ class Model:
     held: Mapping[str, Sequence[int]]
     n_dofs: int
     warnings: tuple[str, ...] = ()
+
+    def standing(self, name: str) -> list[str]:
+        """Reference points that a bearing's housing stands on: a bedplate, or bolts; else none."""
+        given = (f"{name}.base", f"{name}.bolt ")
+        return [p for p in self.points if p == given[0] or p.startswith(given[1])]
 
     @property
     def loads(self) -> tuple[str, ...]:
@@ -134,21 +141,16 @@ class Model:
 def mesh_scene(scene: Scene) -> Mesh:
     """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
 
+    Housings from files have meshes of their own, and bonded bearings are tied to them.
+
     A mesh that was generated before comes from the cache, see `fe_drivetrain.common.cache`.
 
     Raises
     ------
     InputError
-        A mesh size is too large for a wall.
+        A mesh size is too large for a wall, or the file of a housing has a fault.
     """
-    mesh = cached_mesh(
-        scene.shaft,
-        [unit.bearing for unit in scene.bearing_units],
-        {unit.bearing.name: unit.housing for unit in scene.bearing_units},
-        scene.mesh,
-        frozenset(u.bearing.name for u in scene.bearing_units if u.interface == "bonded"),
-        bands=scene.seats,
-    )
+    mesh = mesh_parts(scene.shaft, scene.bearing_units, scene.mesh, scene.seats)
     if scene.nose is None:
         return mesh
     bands = {b.name: Band(*b.span) for b in scene.nose_bearings}
@@ -169,7 +171,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         the message names the part and its place or motion.
     """
     units = scene.bearing_units
-    apart = [u.bearing.name for u in units if u.interface != "bonded"]
+    apart = [u.bearing.name for u in units if u.interface != "bonded" or u.foreign is not None]
     refuse_unsound(mesh, needed_faces(scene), apart)
     n = len(mesh.points)
     extra: dict[str, int] = {}  # degrees of freedom beside the nodes' own
@@ -191,7 +193,9 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     first_dof = dict(zip(extra, ends[:-1].tolist(), strict=True))
     n_dofs = int(ends[-1])
 
-    conditions: list[Constraint] = []
+    together = tied(units, mesh)
+    mesh = together.mesh
+    conditions = together.conditions(n_dofs)
     points: dict[str, ReferencePoint] = {}
     springs: list[tuple[ReferencePoint, Floats]] = []
     held: dict[str, Sequence[int]] = {}
@@ -232,11 +236,13 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             first = first_dof.get(f"{name} joint", 0)
             conditions.append(_spherical_joint(unit, mesh, first, n_dofs))
         base = f"{name}.housing.base"
-        if unit.bedplate is None:
+        if bolts := bolt_springs(unit, mesh, n_dofs):
+            springs += bolts
+            points |= {point.name: point for point, _ in bolts}
+        elif unit.bedplate is None:
             conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
         else:
-            under = centre - [0.0, 0.0, unit.housing.centre_height]
-            points[f"{name}.base"] = couple(f"{name}.base", base, under)
+            points[f"{name}.base"] = couple(f"{name}.base", base, base_centre(unit, mesh))
             _stand(points[f"{name}.base"], unit.bedplate, conditions, springs, held)
     for bearing in scene.nose_bearings:
         name = bearing.name

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import dofs, eliminate
+from fe_drivetrain.plots.figures import load_bars
 from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import Diagnostics, solve
@@ -108,6 +110,26 @@ class Response:
         result += constant
         return np.asarray(result)
 
+    def plot(self, hub_loads: Floats, gearbox_weight: float = 0.0, gravity: float = 0.0) -> Any:
+        """What the drivetrain puts on its supports under one load, as a Plotly figure.
+
+        Parameters
+        ----------
+        hub_loads : Floats
+            (6,) and more, as of `history`.
+        gearbox_weight, gravity : float
+            As of `history`.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+            See `fe_drivetrain.plots.load_bars`.
+        """
+        loads = np.asarray(hub_loads, dtype=np.float64)
+        supports = [name for name in self.reactions if "." not in name]
+        found = {name: self.history(name, loads, gearbox_weight, gravity) for name in supports}
+        return load_bars(found, "On the supports")
+
 
 def driving(matrix: Floats, n: int) -> Floats:
     """The first n columns (..., n) of a response that loads at hub and load points belong to."""
@@ -188,14 +210,17 @@ def _reactions(
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         centre = model.points[f"{name}.seat"].position
-        if unit.bedplate is None:
+        standing = model.standing(name)
+        if not standing:
             base = mesh.face_nodes(f"{name}.housing.base")
             forces = multipliers[f"{name}.housing.base"].reshape(len(base), 3, -1)
             reactions[name] = -resultant(mesh.points[base], forces, centre)
         else:
-            point = model.points[f"{name}.base"]
-            carried = _carried_at(model, f"{name}.base", multipliers, U)
-            reactions[name] = wrench_transport(point.position - centre) @ carried
+            reactions[name] = np.zeros((6, U.shape[1]))
+            for key in standing:
+                carried = _carried_at(model, key, multipliers, U)
+                arm = model.points[key].position - centre
+                reactions[name] += wrench_transport(arm) @ carried
         for key, part, face in (
             (f"{name}.seat", name, f"shaft.seat.{name}"),
             (f"{name}.outer", f"{name}.housing", f"{name}.housing.bore"),

@@ -18,8 +18,8 @@ from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
+from fe_drivetrain.foreign.assembly import base_centre, mesh_parts
 from fe_drivetrain.interfaces import constraints
-from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.operator.incompressible import assemble_unlocked
@@ -87,7 +87,7 @@ def housing_races(scene: Scene, name: str, bearing: Bearing, method: str = "auto
     unit = scene.bearing_unit(name)
     if unit.bedplate is not None:
         # the base moves as a rigid body, so this is exact
-        under = np.array([unit.bearing.x, 0.0, -unit.housing.centre_height])
+        under = base_centre(unit, mesh)
         motions = F.T @ rigid_motions(mesh.points, under)
         C = C + motions @ np.diag(1.0 / as_numbers(unit.bedplate)) @ motions.T
     return Races(bearing, C)
@@ -164,7 +164,13 @@ def housing_solid(scene: Scene, name: str, bearing: Bearing) -> HousingSolid:
     unit = scene.bearing_unit(name)
     seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
     inner = unit.bearing.model_copy(update={"bore_diameter": seat})
-    mesh = cached_mesh(None, [inner], {name: unit.housing}, scene.mesh, frozenset())
+    if unit.foreign is not None and unit.foreign.held_by == "held by bolts as beams":
+        raise InputError(
+            f"{name}.housing stands on bolts as beams, but for rollers on its bore it must be "
+            "fixed: hold 'washers'"
+        )
+    alone = unit.model_copy(update={"bearing": inner, "interface": "rigid"})
+    mesh = mesh_parts(None, [alone], scene.mesh)
     contacts = contact_rows(mesh, f"{name}.housing.bore", unit.bearing.x, bearing)
     return HousingSolid(mesh, name, contacts)
 

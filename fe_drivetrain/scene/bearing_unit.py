@@ -13,9 +13,10 @@ from pydantic import (
     model_validator,
 )
 
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.strict_yaml import no_truth_value
-from fe_drivetrain.geometry import Bearing, Housing
+from fe_drivetrain.geometry import AnyHousing, Bearing, ForeignHousing, Housing
 
 #: How the bearing's outer face meets the housing's bore.
 Interface = Literal["bonded", "spring", "rollers", "sliding", "averaged", "rigid"]
@@ -105,7 +106,7 @@ class BearingUnit(Keys):
     """
 
     bearing: Bearing
-    housing: Housing
+    housing: AnyHousing
     interface: Interface
     stiffness: _Spring | None = None
     rollers: Rollers | None = None
@@ -121,6 +122,27 @@ class BearingUnit(Keys):
     def ring_on_housing(self) -> bool:
         """Whether the bearing's ring counts to the housing, where the shaft is solved apart."""
         return self.interface in ("bonded", "rollers")
+
+    @property
+    def block(self) -> Housing:
+        """Its housing, where that is a parametric block.
+
+        Raises
+        ------
+        InputError
+            It is from a file, which has no such dimensions.
+        """
+        if isinstance(self.housing, Housing):
+            return self.housing
+        raise InputError(
+            f"bearing {self.bearing.name!r} has a housing from a file, but this needs a parametric "
+            "one, with dimensions to change: describe it by these"
+        )
+
+    @property
+    def foreign(self) -> ForeignHousing | None:
+        """Its housing, where that is from a file."""
+        return self.housing if isinstance(self.housing, ForeignHousing) else None
 
     @field_validator("bedplate")
     @classmethod
@@ -140,11 +162,28 @@ class BearingUnit(Keys):
                     + (f"{key}: leave {key} out" if given else f"no {key}: add it")
                     + f", or make the interface {'' if given else 'another than '}{interface!r}"
                 )
+        if self.foreign is not None:
+            _check_foreign(self, self.foreign)
         if self.stiffness is not None:
             _check_spring(name, self.stiffness)
         if self.rollers is not None:
             _check_rows(self.bearing, self.rollers)
         return self
+
+
+def _check_foreign(unit: "BearingUnit", housing: ForeignHousing) -> None:
+    name = unit.bearing.name
+    if unit.interface == "sliding":
+        raise ValueError(
+            f"bearing {name!r} has interface 'sliding', which needs a housing meshed with it, but "
+            "one from a file: make the interface 'averaged' or 'rigid'"
+        )
+    if unit.bedplate is not None and housing.bolts is not None and housing.bolts.hold == "beams":
+        raise ValueError(
+            f"bearing {name!r} has a bedplate and bolts as beams, which stand on the ground: hold "
+            "'washers', or leave the bedplate out"
+        )
+    housing.check_bearing(unit.bearing)
 
 
 def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:

@@ -30,7 +30,7 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
     changes : mapping, optional
         Values by dotted key that replace those of the file, as in
         ``{"shaft.sections.0.inner_diameter": 0.2}``; a bearing unit is addressed by its
-        bearing's name.
+        bearing's name. Files that it names are looked for in the scene's folder.
 
     Returns
     -------
@@ -41,14 +41,19 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
     InputError
         The file cannot be read, is not such YAML, or does not describe a scene.
     """
-    return parse_scene(read_text(path, "scene"), changes, source=str(path))
+    data = _changed_mapping(read_text(path, "scene"), changes, str(path))
+    _beside(Path(path).parent, data.get("bearing_units"))
+    return _scene(data, str(path))
 
 
 def parse_scene(
     text: str, changes: Mapping[str, Any] | None = None, source: str = "scene"
 ) -> Scene:
     """A scene from YAML text; see `read_scene`."""
-    data = _changed_mapping(text, changes, source)
+    return _scene(_changed_mapping(text, changes, source), source)
+
+
+def _scene(data: dict[str, Any], source: str) -> Scene:
     for kind in COMPONENTS:
         if kind in data:
             raise InputError(
@@ -147,6 +152,17 @@ def _changed_mapping(text: str, changes: Mapping[str, Any] | None, source: str) 
     for key, value in (changes or {}).items():
         set_by_key(data, key, value)
     return data
+
+
+def _beside(folder: Path, units: Any) -> None:
+    """Take the names of files in a scene's file as from its own folder."""
+    for unit in units if isinstance(units, list) else []:
+        housing = unit.get("housing") if isinstance(unit, dict) else None
+        if not isinstance(housing, dict):
+            continue
+        for key in ("step", "mesh"):
+            if isinstance(housing.get(key), str):
+                housing[key] = str(folder / housing[key])
 
 
 def _name_bearings(units: Any) -> None:

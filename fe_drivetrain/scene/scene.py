@@ -11,6 +11,7 @@ from pydantic import (
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.geometry import (
     Band,
+    Housing,
     MeshSizes,
     Shaft,
     check_bands,
@@ -175,7 +176,7 @@ class Scene(Keys):
         check_parts(
             self.shaft,
             [unit.bearing for unit in self.bearing_units],
-            {unit.bearing.name: unit.housing for unit in self.bearing_units},
+            self.blocks,
         )
         if self.nose is not None:
             check_material(self.nose.body.material, self.materials, " of nose")
@@ -204,6 +205,13 @@ class Scene(Keys):
         name, _, housing = part.partition(".")
         unit = self.bearing_unit(name)
         return unit.housing.material if housing else unit.bearing.material
+
+    @property
+    def blocks(self) -> dict[str, Housing]:
+        """Parametric housings by the name of the bearing; those from files are none."""
+        return {
+            unit.bearing.name: unit.block for unit in self.bearing_units if unit.foreign is None
+        }
 
     @property
     def bands(self) -> dict[str, Band]:
@@ -255,7 +263,7 @@ def coarser_scene(scene: Scene, factor: float, elements_per_turn: int) -> Scene:
         scene.mesh.scaled(factor, elements_per_turn),
         scene.shaft,
         [unit.bearing for unit in units],
-        {unit.bearing.name: unit.housing for unit in units},
+        scene.blocks,
     )
     if scene.nose is not None:
         sizes = within_walls(sizes, scene.nose.body, [], {})

@@ -79,8 +79,8 @@ def _stretched(points: Floats, before: list[float], after: list[float]) -> Float
 
 def _reshaped(scene: Scene, changed: Scene, points: Floats) -> Floats:
     """Points of the housing with another wall or pedestal: the bore and the foot's outline stay."""
-    bearing, housing = scene.bearing_units[0].bearing, scene.bearing_units[0].housing
-    other = changed.bearing_units[0].housing
+    bearing, housing = scene.bearing_units[0].bearing, scene.bearing_units[0].block
+    other = changed.bearing_units[0].block
     bore = bearing.raceway_diameter / 2
     outer, new_outer = housing.outer_radius(bearing), other.outer_radius(bearing)
     half, new_half = housing.pedestal_width / 2, other.pedestal_width / 2

@@ -367,7 +367,7 @@ def mass(scene: Scene) -> float:
     unit = scene.bearing_units[0]
     bearing = unit.bearing
     bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
-    volume = unit_solids(bearing, unit.housing, bore)[1].volume
+    volume = unit_solids(bearing, unit.block, bore)[1].volume
     return float(volume * scene.material_of(f"{bearing.name}.housing").density)
 
 
@@ -377,7 +377,7 @@ def stress_at_foot(scene: Scene, moment: float = 1e6) -> float:
     sigma = 6 M / (b t^2) of the section b by t, the pedestal's width along y and the housing's
     along x; no notch.
     """
-    housing = scene.bearing_units[0].housing
+    housing = scene.bearing_units[0].block
     return float(6.0 * moment / (housing.pedestal_width * housing.width**2))
 
 

@@ -83,7 +83,7 @@ def radii(found: Tilted) -> dict[str, float]:
     return {
         "seat": scene.shaft.sections[0].outer_diameter / 2.0,
         "bore": bore,
-        "outside": bore + unit.housing.wall,
+        "outside": bore + unit.block.wall,
     }
 
 

@@ -23,7 +23,7 @@ from fe_drivetrain.fidelity.bearing_units import UnitBounds, unit_bounds
 from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_level
 from fe_drivetrain.fidelity.quantities import shaft_numbers, unit_numbers
 from fe_drivetrain.fidelity.shafts import meridian_shaft
-from fe_drivetrain.geometry import unit_solids
+from fe_drivetrain.foreign.assembly import solids_of_unit
 from fe_drivetrain.response.model import scene_loads
 from fe_drivetrain.scene.scene import Scene
 
@@ -165,7 +165,7 @@ def _parts(scene: Scene) -> dict[str, PartFile]:
     for unit in scene.bearing_units:
         bearing = unit.bearing
         bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
-        ring, housing = unit_solids(bearing, unit.housing, bore)
+        ring, housing = solids_of_unit(unit, bore, scene.mesh)
         for part, solid in ((bearing.name, ring), (f"{bearing.name}.housing", housing)):
             density = scene.material_of(part).density
             found[part] = PartFile(

@@ -171,8 +171,11 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
         sheet.note([unit.bearing.x, 0.0, height], name.replace("_", " "), (-60, 150))
         base = mesh.points[mesh.face_nodes(f"{name}.housing.base")]
         corner = base[np.argmin(base @ [1.0, 1.0, 0.0])]
-        if unit.housing.base == "bolted":
-            top = corner + unit.housing.foot_thickness * np.eye(3)[2]
+        if unit.foreign is not None:
+            stands = unit.foreign.held_by if unit.bedplate is None else "on a bedplate"
+            sheet.note(corner, stands, (-140, -14), GROUND)
+        elif unit.block.base == "bolted":
+            top = corner + unit.block.foot_thickness * np.eye(3)[2]
             bolts = "fixed at the bolts" if unit.bedplate is None else "bolted to a bedplate"
             sheet.note(top, bolts, (-170, -24), GROUND)
         else:

@@ -22,11 +22,14 @@ GROUND = "#5b4636"
 
 def add_fixed_base(plotter: Any, mesh: Mesh, unit: BearingUnit, thickness: float) -> None:
     """Show where a housing is held: a plate under its base, or washers on its foot."""
-    surface = curved_surface(mesh.faces[f"{unit.bearing.name}.housing.base"], mesh.points)
-    plate = surface.extrude((0.0, 0.0, -thickness), capping=True)
-    if unit.housing.base == "bolted":
-        plate = plate.translate((0.0, 0.0, unit.housing.foot_thickness + thickness))
-    plotter.add_mesh(plate, color=GROUND, ambient=0.3)
+    name = f"{unit.bearing.name}.housing"
+    heads = [face for face in mesh.faces if face.startswith(f"{name}.head ")]
+    for face in heads or [f"{name}.base"]:
+        surface = curved_surface(mesh.faces[face], mesh.points)
+        plate = surface.extrude((0.0, 0.0, thickness if heads else -thickness), capping=True)
+        if unit.foreign is None and unit.block.base == "bolted":
+            plate = plate.translate((0.0, 0.0, unit.block.foot_thickness + thickness))
+        plotter.add_mesh(plate, color=GROUND, ambient=0.3)
 
 
 def hub_arrows(hub: Floats, a: float) -> list[tuple[str, Floats, Floats]]:

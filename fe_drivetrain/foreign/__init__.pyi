@@ -1,0 +1,13 @@
+from .assembly import base_centre as base_centre
+from .assembly import bolt_springs as bolt_springs
+from .assembly import bolt_stiffness as bolt_stiffness
+from .assembly import mesh_parts as mesh_parts
+from .assembly import solids_of_unit as solids_of_unit
+from .assembly import tied as tied
+from .housing import PlacedHousing as PlacedHousing
+from .housing import placed_housing as placed_housing
+from .reading import LIMITS as LIMITS
+from .reading import Limits as Limits
+from .reading import read_in_process as read_in_process
+from .survey import Survey as Survey
+from .survey import surveyed as surveyed

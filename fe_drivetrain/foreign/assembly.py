@@ -1,0 +1,256 @@
+"""Meshes of scenes whose housings may be from files, and how those are joined and held."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import Cache
+from fe_drivetrain.foreign.housing import placed_housing
+from fe_drivetrain.geometry import (
+    NO_BANDS,
+    Band,
+    MeshSizes,
+    Shaft,
+    Solid,
+    bearing_solid,
+    unit_solids,
+)
+from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint, averaged_point
+from fe_drivetrain.interfaces.mortar import Multipliers, mortar_tie, settled
+from fe_drivetrain.mesh.cached import cached_mesh
+from fe_drivetrain.mesh.facets import MEANS, face_weights
+from fe_drivetrain.mesh.measures import mass_moments
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.mesh.side_by_side import beside
+from fe_drivetrain.scene.bearing_unit import BearingUnit
+from fe_drivetrain.scene.materials import MATERIALS, Material
+
+_BOLT = MATERIALS["steel"]
+_LARGE = 500  # nodes of a face: a standard tie of more fills the matrix
+
+
+def mesh_parts(
+    shaft: Shaft | None,
+    units: Sequence[BearingUnit],
+    sizes: MeshSizes,
+    bands: Mapping[str, Band] = NO_BANDS,
+    cache: Cache | None = None,
+) -> Mesh:
+    """Mesh a shaft with its bearing units; housings from files are put beside, in their places.
+
+    Parameters
+    ----------
+    shaft : Shaft or None
+        The shaft, or None for bearing units alone.
+    units : Sequence[BearingUnit]
+        The bearing units; their bearings have bores where there is no shaft.
+    sizes : MeshSizes
+        Element sizes.
+    bands : Mapping[str, Band]
+        As of `fe_drivetrain.geometry.build`.
+    cache : Cache or None
+        Where meshes may come from; the user's if not given.
+
+    Returns
+    -------
+    Mesh
+        Housings from files share no nodes with their bearings, see `tied`.
+    """
+    blocks = {unit.bearing.name: unit.block for unit in units if unit.foreign is None}
+    bonded = frozenset(u.bearing.name for u in units if u.interface == "bonded")
+    mesh = cached_mesh(
+        shaft,
+        [unit.bearing for unit in units],
+        blocks,
+        sizes,
+        bonded & set(blocks),
+        cache,
+        bands=bands,
+    )
+    for unit in units:
+        if unit.foreign is not None:
+            mesh = beside(mesh, placed_housing(unit.foreign, unit.bearing, sizes, cache).mesh)
+    return mesh
+
+
+class Tied(NamedTuple):
+    """A mesh and the ties in it.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Nodes of tied outer faces are where the tie sees the housing, so that every rigid motion
+        passes, see `fe_drivetrain.interfaces.mortar.settled`.
+    ties : tuple[Constraint, ...]
+        Of three degrees of freedom a node of the mesh.
+    """
+
+    mesh: Mesh
+    ties: tuple[Constraint, ...]
+
+    def conditions(self, n_dofs: int) -> list[Constraint]:
+        """The ties of a model that has more degrees of freedom.
+
+        Parameters
+        ----------
+        n_dofs : int
+            Degrees of freedom of the model, those of the nodes first.
+        """
+        found = []
+        for tie in self.ties:
+            rows = tie.rows.copy()
+            rows.resize(rows.shape[0], n_dofs)
+            found.append(replace(tie, rows=rows))
+        return found
+
+
+def tied(units: Sequence[BearingUnit], mesh: Mesh) -> Tied:
+    """Tie bonded bearings to housings from files; others share nodes with theirs.
+
+    Parameters
+    ----------
+    units : Sequence[BearingUnit]
+        The bearing units.
+    mesh : Mesh
+        As `mesh_parts` made it.
+    """
+    ties = []
+    for unit in units:
+        if unit.foreign is None or unit.interface != "bonded":
+            continue
+        name = unit.bearing.name
+        outer, seat = (mesh.faces[f"{name}.{key}"] for key in ("outer", "housing.seat"))
+        kind: Multipliers = "dual" if len(np.unique(outer)) > _LARGE else "standard"
+        ties.append(mortar_tie(f"{name} tie", mesh.points, outer, seat, mesh.points.size, kind))
+    if not ties:
+        return Tied(mesh, ())
+    return Tied(replace(mesh, points=settled(mesh.points, *ties)), tuple(ties))
+
+
+def bolt_springs(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> list[tuple[ReferencePoint, Floats]]:
+    """Bolts that hold a housing as beams: the mean motion under each head, and its stiffness.
+
+    Parameters
+    ----------
+    unit : BearingUnit
+        The bearing unit.
+    mesh : Mesh
+        With its housing.
+    n_dofs : int
+        Degrees of freedom of the model.
+
+    Returns
+    -------
+    list
+        "NAME.bolt K" with (6, 6) [N/m, N, N m/rad]; empty where nothing is held so.
+    """
+    housing, name = unit.foreign, unit.bearing.name
+    if housing is None or housing.bolts is None or housing.bolts.hold != "beams":
+        return []
+    assert housing.bolts.diameter is not None
+    diameter = housing.bolts.diameter * housing.scale
+    found = []
+    heads = [face for face in mesh.faces if face.startswith(f"{name}.housing.head ")]
+    for number in sorted(int(face.rpartition(" ")[2]) for face in heads):
+        face = f"{name}.housing.head {number}"
+        nodes = mesh.face_nodes(face)
+        weights = face_weights(mesh.points, mesh.faces[face], len(mesh.points), MEANS)[nodes]
+        head, foot = (
+            np.array(_middle(mesh, f"{name}.housing.{end} {number}")) for end in ("head", "foot")
+        )
+        point = averaged_point(f"{name}.bolt {number}", nodes, weights, mesh.points, head, n_dofs)
+        found.append((point, bolt_stiffness(diameter, head, foot)))
+    return found
+
+
+def _middle(mesh: Mesh, face: str) -> tuple[float, float, float]:
+    nodes = mesh.face_nodes(face)
+    weights = face_weights(mesh.points, mesh.faces[face], len(mesh.points), MEANS)[nodes]
+    x, y, z = (weights @ mesh.points[nodes] / weights.sum()).tolist()
+    return x, y, z
+
+
+def bolt_stiffness(
+    diameter: float, head: Floats, foot: Floats, material: Material = _BOLT
+) -> Floats:
+    """Stiffness of a bolt at its head, its foot fixed: a round Timoshenko beam.
+
+    Parameters
+    ----------
+    diameter : float
+        Of its shank [m].
+    head, foot : Floats
+        (3,) its ends [m].
+    material : Material
+        Of the bolt.
+
+    Returns
+    -------
+    Floats
+        (6, 6) at the head, in the global frame [N/m, N, N m/rad]. Its compliance is that of a
+        cantilever (Cowper 1966 for the shear coefficient of a full circle).
+    """
+    axis = np.asarray(head - foot, dtype=np.float64)
+    length = float(np.linalg.norm(axis))
+    axis /= length
+    E, nu = material.youngs_modulus, material.poisson_ratio
+    G = E / (2.0 * (1.0 + nu))
+    A, inertia = math.pi * diameter**2 / 4.0, math.pi * diameter**4 / 64.0
+    shear = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu)
+    along = np.outer(axis, axis)
+    across = np.eye(3) - along
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    compliance = np.zeros((6, 6))
+    bending = length**3 / (3.0 * E * inertia) + length / (shear * G * A)
+    compliance[:3, :3] = length / (E * A) * along + bending * across
+    compliance[3:, 3:] = length / (2.0 * G * inertia) * along + length / (E * inertia) * across
+    # a force F across turns the head by L^2 / (2 E I) (axis x F)
+    compliance[3:, :3] = length**2 / (2.0 * E * inertia) * cross
+    compliance[:3, 3:] = compliance[3:, :3].T
+    stiffness = np.linalg.inv(compliance)
+    return np.asarray(0.5 * (stiffness + stiffness.T), dtype=np.float64)
+
+
+def base_centre(unit: BearingUnit, mesh: Mesh) -> Floats:
+    """Where a housing stands (3,) [m]: under the bearing, in the mean height of its held faces.
+
+    Parameters
+    ----------
+    unit : BearingUnit
+        The bearing unit.
+    mesh : Mesh
+        With its housing.
+    """
+    if unit.foreign is None:
+        return np.array([unit.bearing.x, 0.0, -unit.block.centre_height])
+    return np.array(_middle(mesh, f"{unit.bearing.name}.housing.base"))
+
+
+def solids_of_unit(
+    unit: BearingUnit, bore_diameter: float, sizes: MeshSizes
+) -> tuple[Solid, Solid]:
+    """Volume, centre and inertia of a bearing and of its housing, see `unit_solids`.
+
+    Parameters
+    ----------
+    unit : BearingUnit
+        The bearing unit.
+    bore_diameter : float
+        Of the bearing [m].
+    sizes : MeshSizes
+        Of the scene; a housing from a file is measured on its mesh.
+    """
+    if unit.foreign is None:
+        return unit_solids(unit.bearing, unit.block, bore_diameter)
+    mesh = placed_housing(unit.foreign, unit.bearing, sizes).mesh
+    volume, centre, inertia = mass_moments(mesh.points, mesh.cells)
+    x, y, z = centre.tolist()
+    housing = Solid(volume, (x, y, z), tuple(inertia.ravel().tolist()))
+    return bearing_solid(unit.bearing, bore_diameter), housing

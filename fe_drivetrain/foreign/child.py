@@ -1,0 +1,146 @@
+"""What the limited process does: it reads one file and writes arrays, or one sentence.
+
+Started by `reading.read_in_process` as ``python -m fe_drivetrain.foreign.child REQUEST RESULT``.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+def main(request_file: str, result_file: str) -> int:
+    """Do what is asked for; the exit status is 0, or 3 with a sentence in the result's place."""
+    request = json.loads(Path(request_file).read_text())
+    _limit(request["limits"])
+    from fe_drivetrain.common.errors import InputError
+
+    try:
+        arrays = _ACTIONS[request["action"]](request)
+        np.savez(result_file, **arrays)
+        return 0
+    except InputError as error:
+        sentence = str(error)
+    except MemoryError:
+        sentence = "MEMORY"
+    Path(result_file).with_suffix(".txt").write_text(sentence)
+    return 3
+
+
+def _limit(limits: dict[str, int]) -> None:
+    try:
+        import resource
+    except ImportError:  # there are no such limits on Windows
+        return
+    for kind, value in (
+        (resource.RLIMIT_AS, limits["bytes"]),
+        (resource.RLIMIT_CPU, limits["seconds"]),
+        (resource.RLIMIT_FSIZE, limits["file"]),
+        (resource.RLIMIT_CORE, 0),
+    ):
+        resource.setrlimit(kind, (value, value))
+
+
+def _text(data: Any) -> np.ndarray[Any, Any]:
+    return np.array(json.dumps(data))
+
+
+def _look_at_step(request: dict[str, Any]) -> dict[str, Any]:
+    """A survey, and a coarse surface for a picture."""
+    import gmsh
+
+    from fe_drivetrain.foreign import step_solid
+    from fe_drivetrain.geometry.session import gmsh_session
+
+    with gmsh_session():
+        survey = step_solid.opened(request["file"], request["smallest_detail"])
+        survey["seats"] = step_solid.seat_cylinders(survey)
+        points, triangles, owner = np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros(0, int)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", survey["size"] / 25)
+        gmsh.option.setNumber("Mesh.MeshSizeMin", survey["size"] / 500)
+        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 16)
+        try:
+            gmsh.model.mesh.generate(2)
+            points, triangles, owner = _surface()
+        except Exception as error:
+            why = step_solid.reason(error)
+            survey["unmeshed"] = f"{why}{step_solid.where(why)}"
+    return {"survey": _text(survey), "points": points, "triangles": triangles, "owner": owner}
+
+
+def _surface() -> tuple[Any, Any, Any]:
+    import gmsh
+
+    tags, xyz, _ = gmsh.model.mesh.getNodes()
+    number = np.full(int(tags.max()) + 1, -1)
+    number[tags] = np.arange(len(tags))
+    blocks, owner = [], []
+    for _, face in gmsh.model.getEntities(2):
+        nodes = gmsh.model.mesh.getElementsByType(2, face)[1].reshape(-1, 3)
+        blocks.append(number[nodes])
+        owner.append(np.full(len(nodes), face))
+    return xyz.reshape(-1, 3), np.concatenate(blocks), np.concatenate(owner)
+
+
+def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
+    """A mesh of curved tetrahedra in mm, its faces, and the survey."""
+    import gmsh
+
+    from fe_drivetrain.common.errors import InputError
+    from fe_drivetrain.foreign import step_mesh, step_solid
+    from fe_drivetrain.geometry.session import gmsh_session
+
+    with gmsh_session():
+        survey = step_solid.opened(request["file"], request["smallest_detail"])
+        seats = step_solid.seat_cylinders(survey)
+        tags = step_solid.picked(survey, request["seat"], "seat")
+        seat = next((s for s in seats if set(s["tags"]) & set(tags)), None)
+        if seat is None:
+            raise InputError(
+                f"{survey['name']}: the seat must be a bore, a cylinder or a sphere: pick another "
+                "face"
+            )
+        seat["holes"] = (
+            step_mesh.bolt_holes(survey, request, _held(survey, request))
+            if request.get("bolts")
+            else []
+        )
+        step_mesh.cut(survey, request)
+        step_mesh.mesh(survey, request["size"], request["per_turn"])
+        tags, xyz, _ = gmsh.model.mesh.getNodes()
+        number = np.full(int(tags.max()) + 1, -1)
+        number[tags] = np.arange(len(tags))
+        arrays: dict[str, Any] = {"points": xyz.reshape(-1, 3)}
+        for dim, group in gmsh.model.getPhysicalGroups():
+            kind, width = (9, 6) if dim == 2 else (11, 10)
+            nodes = [
+                gmsh.model.mesh.getElementsByType(kind, entity)[1].reshape(-1, width)
+                for entity in gmsh.model.getEntitiesForPhysicalGroup(dim, group)
+            ]
+            name = gmsh.model.getPhysicalName(dim, group)
+            arrays["cells" if dim == 3 else name] = number[np.concatenate(nodes)]
+        survey.pop("faces")
+    arrays["survey"] = _text(survey | {"seat": seat})
+    return arrays
+
+
+def _held(survey: dict[str, Any], request: dict[str, Any]) -> list[int]:
+    from fe_drivetrain.foreign import step_solid
+
+    return [t for pick in request["held"] for t in step_solid.picked(survey, pick, "held face")]
+
+
+def _read_mesh(request: dict[str, Any]) -> dict[str, Any]:
+    from fe_drivetrain.foreign.mesh_file import read
+
+    return read(request["file"])
+
+
+_ACTIONS = {"look": _look_at_step, "mesh step": _mesh_step, "read mesh": _read_mesh}
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,136 @@
+"""Files of other programs, read in a process of limited memory, time and output.
+
+Such a file may be damaged, huge, or made to harm: libraries that read it may then crash, run for
+hours or take all memory. Here, that ends in one sentence.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.threads import thread_limits
+
+Arrays = dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What reading one file may take.
+
+    Attributes
+    ----------
+    file : int
+        Most bytes of the file.
+    memory : int
+        Address space of the process [bytes].
+    seconds : int
+        Of its processor time; the wall time may be twice as long.
+    result : int
+        Most bytes of what it hands back.
+    """
+
+    file: int = 300_000_000
+    memory: int = 6_000_000_000
+    seconds: int = 900
+    result: int = 1_000_000_000
+
+
+LIMITS = Limits()
+
+
+def read_in_process(
+    action: str, path: str | Path, request: Mapping[str, Any], limits: Limits = LIMITS
+) -> Arrays:
+    """Have a file read by a process of its own.
+
+    Parameters
+    ----------
+    action : str
+        "look", "mesh step" or "read mesh", see `child`.
+    path : str or Path
+        The file.
+    request : Mapping[str, Any]
+        What else the action needs, as plain data.
+    limits : Limits
+        What it may take.
+
+    Returns
+    -------
+    dict
+        Arrays by name.
+
+    Raises
+    ------
+    InputError
+        There is no such file, it is too large, it takes more than the limits, or it has a fault.
+    """
+    file = Path(path)
+    _check_file(file, limits)
+    with tempfile.TemporaryDirectory(prefix="fe-drivetrain-") as folder:
+        asked, result = Path(folder) / "request.json", Path(folder) / "result.npz"
+        bounds = {"bytes": limits.memory, "seconds": limits.seconds, "file": limits.result}
+        content = {**request, "action": action, "file": str(file.resolve()), "limits": bounds}
+        asked.write_text(json.dumps(content))
+        environment = {**os.environ, **thread_limits(1), "PYTHONSAFEPATH": "1"}
+        command = [sys.executable, "-m", "fe_drivetrain.foreign.child", str(asked), str(result)]
+        with (Path(folder) / "printed").open("w+b") as printed:
+            try:
+                status = subprocess.run(
+                    command,
+                    cwd=folder,
+                    env=environment,
+                    stdin=subprocess.DEVNULL,
+                    stdout=printed,
+                    stderr=printed,
+                    timeout=2 * limits.seconds,
+                    check=False,
+                ).returncode
+            except subprocess.TimeoutExpired:
+                status = -int(getattr(signal, "SIGXCPU", 24))
+        if status == 0:
+            with np.load(result, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+        sentence = result.with_suffix(".txt")
+        if status == 3 and sentence.exists() and (text := sentence.read_text()) != "MEMORY":
+            raise InputError(text)
+    raise InputError(_ended(file, status, limits))
+
+
+def _check_file(file: Path, limits: Limits) -> None:
+    if not file.is_file():
+        there = "it is no file" if file.exists() else "there is no such file"
+        raise InputError(f"cannot read {file}: {there}: give a STEP or mesh file")
+    size = file.stat().st_size
+    if not 0 < size <= limits.file:
+        raise InputError(
+            f"{file.name} has {size} bytes but must have 1 to {limits.file}: save the one part "
+            "alone, without details that carry nothing"
+        )
+
+
+def _ended(file: Path, status: int, limits: Limits) -> str:
+    if status in (-getattr(signal, "SIGXCPU", 24), -getattr(signal, "SIGKILL", 9)):
+        what = f"takes more than {limits.seconds} s of processor time"
+    elif status == 3:
+        what = f"takes more than {limits.memory / 1e9:g} GB of memory"
+    elif status in (-getattr(signal, "SIGXFSZ", 25),):
+        what = f"makes more than {limits.result / 1e9:g} GB of data"
+    else:
+        what = (
+            f"makes its reader fail, most likely for want of memory ({limits.memory / 1e9:g} GB) "
+            "or because it is damaged"
+        )
+    return f"{file.name} {what}: write it again, whole, with fewer and larger faces or elements"

@@ -1,0 +1,304 @@
+"""The solid of a STEP file divided where a bearing and bolts touch it, and meshed, in mm.
+
+This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import gmsh
+import numpy as np
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.step_solid import (
+    SAME,
+    VOLUME_TOLERANCE,
+    distance,
+    picked,
+    reason,
+    seat_cylinders,
+    where,
+)
+
+LARGEST_MESH = 400_000
+"""Most elements of a part."""
+
+
+def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]:
+    """Divide the faces of the solid at the sides of the bearing and round the bolts.
+
+    Parameters
+    ----------
+    survey : dict
+        Of `opened`.
+    request : dict
+        "seat", "held" and "bolts" as in the scene, "low" and "high", distances of the bearing's
+        sides from the seat's middle along "along", the direction of x [mm].
+
+    Returns
+    -------
+    dict
+        Tags of the faces "bore", "seat" and "base", and of "head 1", "head 2", ... .
+    """
+    occ, name = gmsh.model.occ, survey["name"]
+    ((_, volume),) = gmsh.model.getEntities(3)
+    seat_tags = picked(survey, request["seat"], "seat")
+    (seat, *others) = [s for s in seat_cylinders(survey) if set(s["tags"]) & set(seat_tags)] or [{}]
+    if not seat or others:
+        raise InputError(
+            f"{name}: the seat must be one bore, a cylinder or a sphere, but {len(others) + 1} "
+            "are picked: give its axis and a point on that"
+            if seat
+            else f"{name}: the seat must be a bore, a cylinder or a sphere: pick another face"
+        )
+    base_tags = list(
+        dict.fromkeys(t for pick in request["held"] for t in picked(survey, pick, "held face"))
+    )
+    if set(base_tags) & set(seat["tags"]):
+        raise InputError(f"{name}: a face of the seat is held, too: hold another face")
+    holes = bolt_holes(survey, request, base_tags) if request.get("bolts") else []
+
+    along, centre, radius = np.array(request["along"]), np.array(seat["centre"]), seat["radius"]
+    if request["centre"] is not None:  # of the bearing
+        centre = np.array(request["centre"])
+    _check_seat(name, seat, request, along, centre)
+    low, high = request["low"], request["high"]
+    start = centre + low * along
+    reach = 1.1 * radius if seat["kind"] == "Sphere" else radius
+    slab = occ.addCylinder(*start, *((high - low) * along), reach)
+    if seat["kind"] == "Sphere":
+        ((_, slab),), _ = occ.intersect([(3, occ.addSphere(*seat["centre"], radius))], [(3, slab)])
+    rings, groups = [], []
+    for hole in holes:
+        for which in ("foot", "head") if request["bolts"]["hold"] == "beams" else ("foot",):
+            ring = _annulus(hole[which], hole["axis"], request["bolts"])
+            rings.append(ring)
+            groups.append(f"{which} {hole['number']}")
+    objects = [(2, t) for t in seat["tags"]] + [(2, t) for t in base_tags]
+    heads = [hole["head face"] for hole in holes if request["bolts"]["hold"] == "beams"]
+    objects += [(2, t) for t in dict.fromkeys(heads)]
+    mass = occ.getMass(3, volume)
+    _, pieces = occ.fragment([(3, volume)], [(3, slab), *((2, r) for r in rings), *objects])
+    occ.synchronize()
+    bodies = [t for d, t in pieces[0] if d == 3]
+    if len(bodies) != 1 or abs(occ.getMass(3, bodies[0]) / mass - 1) > VOLUME_TOLERANCE:
+        raise InputError(
+            f"{name}: the solid does not stay whole where the bearing's sides cut its seat: the "
+            f"bearing overlaps it there, or the seat of radius {radius:.6g} mm is not round"
+        )
+    body = bodies[0]
+    surface = {t for _, t in gmsh.model.getBoundary([(3, body)], combined=False, oriented=False)}
+    n = len(seat["tags"])
+    at = 2 + len(rings)
+    faces_of = {face["tag"]: face for face in survey["faces"]}
+
+    def became(tag: int, piece: Any) -> set[int]:
+        # what stays whole is in no history: it has its area and its middle still
+        if piece:
+            return {t for d, t in piece if d == 2} & surface
+        old = faces_of[tag]
+        return {
+            t
+            for t in surface
+            if abs(occ.getMass(2, t) / old["area"] - 1) < 1e-6
+            and math.dist(occ.getCenterOfMass(2, t), old["middle"]) < SAME * survey["size"]
+        }
+
+    after = pieces[at:]
+    on_seat = set().union(*map(became, seat["tags"], after[:n]))
+    on_base = set().union(*map(became, base_tags, after[n : n + len(base_tags)]))
+    on_ring = [{t for d, t in piece if d == 2} & surface for piece in pieces[2:at]]
+    faces: dict[str, list[int]] = {"seat": sorted(on_seat)}
+    bore = []
+    for t in on_seat:
+        x = (np.array(occ.getCenterOfMass(2, t)) - centre) @ along
+        if low < x < high:
+            bore.append(t)
+    faces["bore"] = sorted(bore)
+    if request.get("bolts"):
+        feet = [r for r, g in zip(on_ring, groups, strict=True) if g.startswith("foot")]
+        on_base &= set().union(*feet)
+        for under, group in zip(on_ring, groups, strict=True):
+            if request["bolts"]["hold"] == "beams":
+                faces[group] = sorted(under)
+    faces["base"] = sorted(on_base)
+    for key, tags in faces.items():
+        if not tags:
+            raise InputError(
+                f"{name}: nothing is left of the {key} where it is cut at the bearing's sides and "
+                "round the bolts: check the washers' diameter and the placement"
+            )
+    width, length = high - low, _length(faces["bore"], along)
+    if length < width * (1 - 1e-4):
+        raise InputError(
+            f"{name}: its seat covers {length:.6g} mm of the bearing's width of {width:.6g} mm, "
+            "but must cover all of it: move the part, or make the bearing narrower"
+        )
+    for d, t in gmsh.model.getEntities(3):
+        if t != body:
+            gmsh.model.removeEntities([(d, t)])
+    gmsh.model.addPhysicalGroup(3, [body], name="body")
+    for key, tags in faces.items():
+        gmsh.model.addPhysicalGroup(2, tags, name=f"body.{key}")
+    return faces
+
+
+def _check_seat(
+    name: str, seat: dict[str, Any], request: dict[str, Any], along: Any, centre: Any
+) -> None:
+    """Refuse a seat that is not that of the bearing: kind, radius, direction or place."""
+    kind, radius, axis = request["kind"], request["radius"], np.array(seat["axis"])
+    if seat["kind"] != kind:
+        raise InputError(
+            f"{name}: the seat is a {seat['kind'].lower()}, but the bearing needs a "
+            f"{kind.lower()}: give the bearing the kind 'ring' for a cylinder, 'spherical' for a "
+            "sphere, or pick another face"
+        )
+    if abs(seat["radius"] - radius) > request["tolerance"] * radius:
+        raise InputError(
+            f"{name}: the seat has a radius of {seat['radius']:.7g} mm, but the bearing's raceway "
+            f"{radius:.7g} mm: make the bearing's raceway_diameter twice the seat's radius, pick "
+            "another seat, or correct the unit"
+        )
+    off = centre - np.array(seat["centre"])
+    if kind == "Cylinder":
+        angle = math.degrees(math.asin(min(1.0, float(np.linalg.norm(np.cross(axis, along))))))
+        if angle > 0.01:
+            raise InputError(
+                f"{name}: the seat's axis is {angle:.3g} degrees from the scene's x axis, but must "
+                "be along it: correct 'rotate'"
+            )
+        off = off - (off @ axis) * axis
+    if (apart := float(np.linalg.norm(off))) > 10 * request["tolerance"] * radius:
+        raise InputError(
+            f"{name}: the seat's axis is {apart:.4g} mm from the bearing's centre, but must go "
+            "through it: correct 'translate', or leave it out"
+        )
+
+
+def _length(tags: Sequence[int], along: Any) -> float:
+    """Of faces along a direction, from points on their edges."""
+    values: list[float] = []
+    for _, edge in gmsh.model.getBoundary([(2, t) for t in tags], combined=False, oriented=False):
+        low, high = (float(b[0]) for b in gmsh.model.getParametrizationBounds(1, edge))
+        at = np.linspace(low, high, 9)
+        values += (np.reshape(gmsh.model.getValue(1, edge, at.tolist()), (-1, 3)) @ along).tolist()
+    return max(values) - min(values) if values else 0.0
+
+
+def bolt_holes(
+    survey: dict[str, Any], request: dict[str, Any], base: Sequence[int]
+) -> list[dict[str, Any]]:
+    """Holes of the bolts' radius that end on a held face: where they begin, and end."""
+    bolts, faces = request["bolts"], {face["tag"]: face for face in survey["faces"]}
+    planes = [faces[t] for t in base if faces[t]["kind"] == "Plane"]
+    tolerance = 1e-5 * survey["size"]
+    found: list[dict[str, Any]] = []
+    for seat in seat_cylinders(survey):
+        if (
+            seat["kind"] != "Cylinder"
+            or abs(seat["radius"] - bolts["hole_radius"]) > 1e-3 * seat["radius"]
+        ):
+            continue
+        axis, centre = np.array(seat["axis"]), np.array(seat["centre"])
+        for plane in planes:
+            normal = np.array(plane["normal"])
+            if np.linalg.norm(np.cross(normal, axis)) > 1e-4:
+                continue
+            up = -normal  # into the solid
+            foot = centre - up * seat["length"] / 2
+            if abs((foot - plane["middle"]) @ normal) > tolerance:
+                continue
+            head = centre + up * seat["length"] / 2
+            tops = [
+                f["tag"]
+                for f in survey["faces"]
+                if f["kind"] == "Plane"
+                and np.linalg.norm(np.cross(f["normal"], axis)) < 1e-4
+                and abs((head - np.array(f["middle"])) @ axis) < tolerance
+                and distance(f["tag"], head.tolist()) < 1.01 * seat["radius"]
+            ]
+            if bolts["hold"] == "beams" and not tops:
+                raise InputError(
+                    f"{survey['name']}: the hole at {_xyz(foot)} mm does not end on a plane face, "
+                    "on which a bolt's head could press: hold 'washers'"
+                )
+            found.append(
+                {
+                    "number": len(found) + 1,
+                    "foot": foot.tolist(),
+                    "head": head.tolist(),
+                    "axis": up.tolist(),
+                    "length": seat["length"],
+                    "head face": tops[0] if tops else 0,
+                }
+            )
+            break
+    if not found:
+        raise InputError(
+            f"{survey['name']}: no hole of radius {bolts['hole_radius']:g} mm ends on a held face: "
+            "check hole_radius, or hold the face that the bolts go through"
+        )
+    return found
+
+
+def _xyz(place: Any) -> str:
+    return "({:.4g}, {:.4g}, {:.4g})".format(*place)
+
+
+def _annulus(place: Sequence[float], axis: Sequence[float], bolts: dict[str, Any]) -> int:
+    occ = gmsh.model.occ
+    outer, inner = bolts["washer_diameter"] / 2, bolts["hole_radius"]
+    ring, _ = occ.cut(
+        [(2, occ.addDisk(*place, outer, outer, zAxis=list(axis)))],
+        [(2, occ.addDisk(*place, inner, inner, zAxis=list(axis)))],
+    )
+    ((_, tag),) = ring
+    return int(tag)
+
+
+def mesh(survey: dict[str, Any], size: float, per_turn: int) -> None:
+    """Mesh the one solid with curved second-order tetrahedra of a size [mm]."""
+    name = survey["name"]
+    elements = 6 * math.sqrt(2) * survey["after"]["volume"] / size**3
+    if elements > LARGEST_MESH:
+        raise InputError(
+            f"{name}: elements of {size:g} mm make about {elements:.1g}, but must make at most "
+            f"{LARGEST_MESH:.0g}: choose {size * (elements / LARGEST_MESH) ** (1 / 3):.2g} mm or "
+            "more for the housing"
+        )
+    for option, value in (
+        ("MeshSizeFromPoints", 0),
+        ("MeshSizeFromCurvature", per_turn),
+        ("MeshSizeExtendFromBoundary", 1),
+        ("MeshSizeMax", size),
+        ("MeshSizeMin", size / 50),
+    ):
+        gmsh.option.setNumber(f"Mesh.{option}", value)
+    try:
+        for dim in (1, 2, 3):
+            gmsh.model.mesh.generate(dim)
+            if dim == 2 and (n := _count(2)) > LARGEST_MESH:
+                raise InputError(
+                    f"{name}: {n} triangles are on its faces, but at most {LARGEST_MESH:.0g} may "
+                    "be: leave out small fillets, threads and lettering"
+                )
+        gmsh.model.mesh.setOrder(2)
+    except InputError:
+        raise
+    except Exception as error:
+        why = reason(error)
+        raise InputError(
+            f"gmsh cannot mesh {name} ({why}{where(why)}): repair or leave out that detail, "
+            "or choose smaller elements"
+        ) from None
+    if _count(3) == 0:
+        raise InputError(f"gmsh has made no elements in {name}{where('')}: repair its faces")
+
+
+def _count(dim: int) -> int:
+    _, tags, _ = gmsh.model.mesh.getElements(dim)
+    return sum(len(t) for t in tags)

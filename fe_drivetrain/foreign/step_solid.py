@@ -1,0 +1,333 @@
+"""A STEP file's solid in the open gmsh model, in mm: healed, described, picked, cut and meshed.
+
+This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import gmsh
+import numpy as np
+
+from fe_drivetrain.common.errors import InputError
+
+VOLUME_TOLERANCE = 1e-4
+"""Relative change of a volume by healing that is refused."""
+
+_MOST_FACES = 20_000
+_ALIGNED = 1e-6  # sine of the angle between directions that are the same
+SAME = 1e-6  # of a solid's size: places that are the same
+_SURFACES = {  # as STEP and gmsh call them
+    "PLANE": "Plane",
+    "CYLINDRICAL_SURFACE": "Cylinder",
+    "CONICAL_SURFACE": "Cone",
+    "SPHERICAL_SURFACE": "Sphere",
+    "TOROIDAL_SURFACE": "Torus",
+}
+
+
+def opened(path: str, smallest_detail: float = 0.0) -> dict[str, Any]:
+    """Import and heal a STEP file of one solid; what is known of it, for `Survey`."""
+    name, occ = Path(path).name, gmsh.model.occ
+    for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):
+        gmsh.option.setNumber(f"Geometry.OCC{option}", 0)
+    gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
+    gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
+    try:
+        occ.importShapes(path)
+    except Exception as error:
+        raise InputError(
+            f"{name} cannot be read as STEP ({reason(error)}): export it again, whole, as AP214 "
+            "or AP242"
+        ) from None
+    occ.synchronize()
+    before = _counted()
+    if before["solids"] != 1:
+        raise InputError(
+            f"{name} has {before['solids']} solids but must have one: save the one part, as a "
+            "solid, in a file of its own"
+        )
+    if before["faces"] > _MOST_FACES:
+        raise InputError(
+            f"{name} has {before['faces']} faces but must have at most {_MOST_FACES}: leave out "
+            "threads, lettering and other small details"
+        )
+    colours = {t: _colour(t) for _, t in gmsh.model.getEntities(2)}
+    labels = _labels(path)
+    try:
+        occ.healShapes([], smallest_detail or 1e-8, True, smallest_detail > 0, smallest_detail > 0)
+    except Exception as error:
+        raise InputError(
+            f"{name} cannot be healed ({reason(error)}{where(reason(error))}): repair that "
+            "face in the CAD program, or leave it out"
+        ) from None
+    occ.synchronize()
+    after = _counted()
+    change = abs(after["volume"] - before["volume"]) / max(abs(before["volume"]), 1e-300)
+    if after["solids"] != 1 or not change <= VOLUME_TOLERANCE or not after["volume"] > 0:
+        raise InputError(
+            f"{name} has {before['solids']} solid of {before['volume']:.9g} mm^3 before and "
+            f"{after['solids']} of {after['volume']:.9g} mm^3 after healing, but must have one of "
+            f"the same volume, to {VOLUME_TOLERANCE:g}: repair its faces in the CAD program"
+        )
+    faces = [_face(t) for _, t in gmsh.model.getEntities(2)]
+    kept = after["faces"] == before["faces"]
+    for number, face in enumerate(faces):
+        face["colour"] = colours.get(face["tag"], "") if kept else ""
+        same = (
+            kept
+            and len(labels) == len(faces)
+            and all(
+                _SURFACES.get(kind, f["kind"]) == f["kind"]
+                for (_, kind), f in zip(labels, faces, strict=True)
+            )
+        )
+        face["label"] = labels[number][0] if same else ""
+    return {
+        "name": name,
+        "before": before,
+        "after": after,
+        "box": _box(),
+        "faces": faces,
+        "size": math.dist(_box()[:3], _box()[3:]),
+    }
+
+
+def reason(error: Exception) -> str:
+    """What gmsh says of its failure, in one line."""
+    found = str(gmsh.logger.getLastError() or error or "no reason given")
+    return " ".join(found.split())[:200].rstrip(".")
+
+
+def _counted() -> dict[str, Any]:
+    solids = gmsh.model.getEntities(3)
+    return {
+        "solids": len(solids),
+        "faces": len(gmsh.model.getEntities(2)),
+        "edges": len(gmsh.model.getEntities(1)),
+        "volume": math.fsum(gmsh.model.occ.getMass(3, t) for _, t in solids),
+        "area": math.fsum(gmsh.model.occ.getMass(2, t) for _, t in gmsh.model.getEntities(2)),
+    }
+
+
+def _box() -> list[float]:
+    return [float(x) for x in gmsh.model.getBoundingBox(-1, -1)]
+
+
+def _colour(face: int) -> str:
+    r, g, b, a = gmsh.model.getColor(2, face)
+    return f"#{r:02x}{g:02x}{b:02x}" if a else ""
+
+
+def _labels(path: str) -> list[tuple[str, str]]:
+    """Names of faces and kinds of their surfaces, in the order of the solid's one shell.
+
+    gmsh does not read names of faces. It numbers them as they stand in the shell, and `opened`
+    compares kinds of surfaces before it believes so.
+    """
+    text = Path(path).read_text("latin-1")
+    shells = re.findall(r"CLOSED_SHELL\s*\(\s*'[^']*'\s*,\s*\(([^()]*)\)", text)
+    if len(shells) != 1:
+        return []
+    names = dict(
+        (number, (name, surface))
+        for number, name, surface in re.findall(
+            r"#(\d+)\s*=\s*ADVANCED_FACE\s*\(\s*'([^']*)'\s*,\s*\([^()]*\)\s*,\s*#(\d+)", text
+        )
+    )
+    kinds = dict(re.findall(r"#(\d+)\s*=\s*([A-Z_]+_SURFACE|PLANE)\s*\(", text))
+    found = re.findall(r"#(\d+)", shells[0])
+    if not all(number in names for number in found):
+        return []
+    return [(names[n][0].strip(), kinds.get(names[n][1], "")) for n in found]
+
+
+def _face(tag: int) -> dict[str, Any]:
+    kind, occ = gmsh.model.getType(2, tag), gmsh.model.occ
+    face: dict[str, Any] = {
+        "tag": tag,
+        "kind": kind,
+        "area": float(occ.getMass(2, tag)),
+        "middle": [float(x) for x in occ.getCenterOfMass(2, tag)],
+    }
+    _, reals = gmsh.model.getEntityProperties(2, tag)
+    if kind == "Plane":
+        (u0, v0), (u1, v1) = gmsh.model.getParametrizationBounds(2, tag)
+        face["normal"] = [
+            float(x) for x in gmsh.model.getNormal(tag, [(u0 + u1) / 2, (v0 + v1) / 2])
+        ]
+    elif kind == "Cylinder":
+        place, axis = np.array(reals[:3]), np.array(reals[3:6])
+        (_, v0), (_, v1) = gmsh.model.getParametrizationBounds(2, tag)
+        ends = sorted((float(v0), float(v1)))
+        face |= {
+            "axis": axis.tolist(),
+            "radius": float(reals[6]),
+            "centre": (place + axis * (ends[0] + ends[1]) / 2).tolist(),
+            "length": ends[1] - ends[0],
+            "hole": _is_hole(tag, place, axis),
+        }
+    elif kind == "Sphere":
+        face |= {"centre": [float(x) for x in reals[:3]], "radius": float(reals[-1])}
+        face["hole"] = _is_hole(tag, np.array(face["centre"]), np.zeros(3))
+    return face
+
+
+def _is_hole(tag: int, place: Any, axis: Any) -> bool:
+    """Whether the outward normal points to the axis, or the centre."""
+    (u0, v0), (u1, v1) = gmsh.model.getParametrizationBounds(2, tag)
+    at = [(u0 + u1) / 2, (v0 + v1) / 2]
+    out = np.array(gmsh.model.getValue(2, tag, at)) - place
+    out -= (out @ axis) * axis
+    return bool(np.array(gmsh.model.getNormal(tag, at)) @ out < 0)
+
+
+def picked(survey: dict[str, Any], pick: dict[str, Any], what: str) -> list[int]:
+    """Tags of the faces of a pick.
+
+    Raises
+    ------
+    InputError
+        There are none, or it is ambiguous.
+    """
+    faces, size = survey["faces"], survey["size"]
+    found = [face for face in faces if _meant(face, pick, size)]
+    if set(pick) == {"point"}:
+        near = {face["tag"]: distance(face["tag"], pick["point"]) for face in faces}
+        least = min(near.values())
+        found = [face for face in faces if near[face["tag"]] <= least + SAME * size]
+        found = found[:1]
+    if not found:
+        raise InputError(
+            f"{survey['name']}: there is no face for the {what}: {_nearest(faces, pick)}"
+        )
+    return [face["tag"] for face in found]
+
+
+def distance(tag: int, point: Sequence[float]) -> float:
+    """Of a point from a face; its own middle counts where the projection is outside of it."""
+    closest, at = gmsh.model.getClosestPoint(2, tag, list(point))
+    if gmsh.model.isInside(2, tag, list(at), parametric=True):
+        return math.dist(closest, point)
+    edges = gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False)
+    return min(
+        (math.dist(gmsh.model.getClosestPoint(1, t, list(point))[0], point) for _, t in edges),
+        default=math.inf,
+    )
+
+
+def _meant(face: dict[str, Any], pick: dict[str, Any], size: float) -> bool:
+    keys = set(pick)
+    if "label" in keys or "colour" in keys:
+        (key,) = keys
+        return bool(face[key].lower() == pick[key].lower())
+    if keys == {"point", "normal"}:
+        if face["kind"] != "Plane":
+            return False
+        normal = np.array(pick["normal"]) / np.linalg.norm(pick["normal"])
+        own = np.array(face["normal"])
+        away = (np.array(face["middle"]) - pick["point"]) @ normal
+        return bool(np.linalg.norm(np.cross(own, normal)) < 1e-4 and abs(away) < 1e-5 * size)
+    if "radius" in keys:
+        kind = "Sphere" if "centre" in keys else "Cylinder"
+        if face["kind"] != kind and not (keys == {"radius"} and face["kind"] == "Sphere"):
+            return False
+        if not face["hole"] or abs(face["radius"] - pick["radius"]) > 1e-4 * pick["radius"]:
+            return False
+        if "centre" in keys:
+            return bool(math.dist(face["centre"], pick["centre"]) < 1e-4 * pick["radius"])
+        axis = np.array(face.get("axis", (0, 0, 0)))
+        if "axis" in keys:
+            way = np.array(pick["axis"]) / np.linalg.norm(pick["axis"])
+            if np.linalg.norm(np.cross(axis, way)) > 1e-4:
+                return False
+        if "point" in keys:
+            off = np.array(pick["point"]) - face["centre"]
+            return bool(np.linalg.norm(off - (off @ axis) * axis) < 1e-3 * pick["radius"])
+        return True
+    return False
+
+
+def _nearest(faces: Sequence[dict[str, Any]], pick: dict[str, Any]) -> str:
+    """What there is instead, in words."""
+    given = " and ".join(f"{key} {value}" for key, value in pick.items())
+    if "radius" in pick:
+        radii = sorted({round(f["radius"], 4) for f in faces if f.get("hole")})
+        there = ", ".join(f"{r:g}" for r in radii[:20]) or "none"
+        return f"no bore has {given}; radii of bores are {there} mm: use one of these"
+    if "label" in pick or "colour" in pick:
+        (key,) = pick
+        there = ", ".join(sorted({f[key] for f in faces if f[key]})[:20]) or "none"
+        return f"no face has {given}; there are {there}: use one of these, or pick by a point"
+    return f"no face lies at {given}: see the list that fe-drivetrain part prints"
+
+
+def seat_cylinders(survey: dict[str, Any]) -> list[dict[str, Any]]:
+    """Bores, faces on one surface taken together, the widest first."""
+    found: list[dict[str, Any]] = []
+    size = survey["size"]
+    holes = [face for face in survey["faces"] if face.get("hole")]
+    # along one line, in order
+    for face in sorted(holes, key=lambda f: [round(x / size, 7) for x in f["centre"]]):
+        axis, centre = np.array(face.get("axis", (0.0,) * 3)), np.array(face["centre"])
+        half = face.get("length", 2 * face["radius"]) / 2
+        for seat in found:
+            off = centre - seat["place"]
+            along = off @ seat["axis"]
+            same = (
+                seat["kind"] == face["kind"]
+                and abs(seat["radius"] - face["radius"]) < SAME * size
+                and np.linalg.norm(np.cross(axis, seat["axis"])) < _ALIGNED
+                and np.linalg.norm(off - along * seat["axis"]) < SAME * size
+            )
+            ends = (min(seat["ends"][0], along - half), max(seat["ends"][1], along + half))
+            # bores of the same line with a gap between them are two seats
+            if (
+                same
+                and ends[1] - ends[0] <= seat["ends"][1] - seat["ends"][0] + 2 * half + SAME * size
+            ):
+                seat["ends"], seat["tags"] = ends, [*seat["tags"], face["tag"]]
+                seat["label"] = seat["label"] or face["label"]
+                seat["colour"] = seat["colour"] or face["colour"]
+                break
+        else:
+            keys = ("kind", "radius", "label", "colour")
+            found.append(
+                {key: face[key] for key in keys}
+                | {"axis": axis, "place": centre, "ends": (-half, half), "tags": [face["tag"]]}
+            )
+    return [
+        {
+            "kind": seat["kind"],
+            "radius": seat["radius"],
+            "label": seat["label"],
+            "colour": seat["colour"],
+            "axis": seat["axis"].tolist(),
+            "length": seat["ends"][1] - seat["ends"][0],
+            "centre": (seat["place"] + seat["axis"] * sum(seat["ends"]) / 2).tolist(),
+            "tags": seat["tags"],
+        }
+        for seat in sorted(found, key=lambda s: -s["radius"])
+    ]
+
+
+def where(message: str) -> str:
+    """Places of surfaces that a message of gmsh names, and of those that it could not mesh."""
+    tags = [int(n) for n in re.findall(r"[Ss]urface (\d+)", message)]
+    with suppress(Exception):
+        tags += [tag for dim, tag in gmsh.model.mesh.getLastEntityError() if dim == 2]
+    places = []
+    for tag in dict.fromkeys(tags):
+        try:
+            x, y, z = gmsh.model.occ.getCenterOfMass(2, tag)
+            kind = gmsh.model.getType(2, tag).lower()
+        except Exception:
+            continue
+        places.append(f"face {tag}, a {kind}, round ({x:.4g}, {y:.4g}, {z:.4g}) mm")
+    return f"; {', '.join(places[:3])}" if places else ""

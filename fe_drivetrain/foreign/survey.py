@@ -1,0 +1,240 @@
+"""What is in a STEP or mesh file: what a user looks at first, to pick a seat and held faces."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.reading import read_in_process
+from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, STEP_ENDINGS
+from fe_drivetrain.mesh.measures import mass_moments, scaled_jacobians
+from fe_drivetrain.mesh.mesh import Mesh, boundary
+
+_MOST_ROWS = 24
+_TURNS = {0: "", 1: "rotate: [0, 0, -90]", 2: "rotate: [0, 90, 0]"}  # of an axis to x
+
+
+class Mark(NamedTuple):
+    """A place to point at in a picture.
+
+    Attributes
+    ----------
+    name : str
+        As the text has it.
+    place : tuple[float, float, float]
+        Where it is, in the file's unit; of a bore its middle.
+    reach : tuple[float, float, float]
+        From the middle of a bore to one of its ends.
+    normal : tuple[float, float, float]
+        Outward, of a plane; zeros of a bore.
+    """
+
+    name: str
+    place: tuple[float, float, float]
+    reach: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    normal: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+class Survey(NamedTuple):
+    """What is in a file.
+
+    Attributes
+    ----------
+    text : str
+        In words and numbers, for the terminal.
+    points : Floats
+        (n, 3) of its surface, in the file's unit.
+    triangles : Ints
+        (k, 3) of its surface.
+    marks : tuple[Mark, ...]
+        Seats and planes by the names that the text gives them.
+    """
+
+    text: str
+    points: Floats
+    triangles: Ints
+    marks: tuple[Mark, ...]
+
+
+def surveyed(path: str | Path) -> Survey:
+    """Read a file, and describe what a scene may pick of it.
+
+    Parameters
+    ----------
+    path : str or Path
+        Ending in .step, .stp, .msh, .vtu or .inp.
+
+    Returns
+    -------
+    Survey
+
+    Raises
+    ------
+    InputError
+        It has another ending, or cannot be read.
+    """
+    ending = Path(path).suffix.lower()
+    if ending in STEP_ENDINGS:
+        return _of_step(Path(path))
+    if ending in MESH_ENDINGS:
+        return _of_mesh(Path(path))
+    raise InputError(
+        f"{path} must end in {', '.join((*STEP_ENDINGS, *MESH_ENDINGS))}: give a STEP or mesh file"
+    )
+
+
+def _of_step(path: Path) -> Survey:
+    found = read_in_process("look", path, {"smallest_detail": 0.0})
+    data = json.loads(str(found["survey"]))
+    before, after = data["before"], data["after"]
+    low, high = np.reshape(data["box"], (2, 3))
+    if len(found["triangles"]):
+        low, high = found["points"].min(axis=0), found["points"].max(axis=0)
+    lines = [
+        f"{path.name}: {after['solids']} solid, {after['faces']} faces, {after['edges']} edges, "
+        f"{after['volume'] / 1e6:.6g} dm^3, {after['area'] / 1e6:.4g} m^2",
+        f"box: {_xyz(low)} to {_xyz(high)} mm",
+        f"before healing: {before['solids']} solid, {before['faces']} faces, "
+        f"{before['volume'] / 1e6:.6g} dm^3",
+    ]
+    if "unmeshed" in data:
+        lines.append(f"gmsh cannot mesh it: {data['unmeshed']}")
+    lines += ["", "Bores, the widest first; one of them is the seat [mm]:"]
+    marks: list[Mark] = []
+    rows: list[tuple[str, ...]] = []
+    for number, seat in enumerate(data["seats"][:_MOST_ROWS], 1):
+        x, y, z = (seat["length"] / 2 * np.array(seat["axis"])).tolist()
+        marks.append(Mark(f"S{number}", tuple(seat["centre"]), (x, y, z)))
+        round_ = seat["kind"] == "Cylinder"
+        rows.append(
+            (
+                f"S{number}",
+                seat["kind"].lower(),
+                f"radius {seat['radius']:.7g}",
+                f"length {seat['length']:.6g}" if round_ else "",
+                f"centre {_xyz(seat['centre'])}",
+                f"axis {_xyz(seat['axis'])}" if round_ else "",
+                *_tags(seat),
+            )
+        )
+    lines += _table(rows, len(data["seats"]))
+    planes = sorted(_planes(data["faces"]), key=lambda p: -p["area"])
+    lines += ["", "Planes, the largest first; the part is held by one or more of them [mm]:"]
+    rows = []
+    for number, plane in enumerate(planes[:_MOST_ROWS], 1):
+        marks.append(Mark(f"P{number}", tuple(plane["middle"]), normal=tuple(plane["normal"])))
+        rows.append(
+            (
+                f"P{number}",
+                f"{plane['area'] / 100:.4g} cm^2",
+                f"point {_xyz(plane['middle'])}",
+                f"normal {_xyz(plane['normal'])}",
+                *_tags(plane),
+            )
+        )
+    lines += _table(rows, len(planes))
+    if data["seats"] and planes:
+        lines += _proposal(path, data["seats"], planes)
+    return Survey("\n".join(lines) + "\n", found["points"], found["triangles"], tuple(marks))
+
+
+def _planes(faces: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Plane faces, those of one plane taken together."""
+    found: dict[tuple[float, ...], dict[str, Any]] = {}
+    for face in faces:
+        if face["kind"] != "Plane":
+            continue
+        normal, middle = np.array(face["normal"]), np.array(face["middle"])
+        key = (*np.round(normal, 5).tolist(), round(float(normal @ middle), 3))
+        one = found.setdefault(tuple(x + 0.0 for x in key), {**face, "area": 0.0})
+        if face["area"] > one["area"]:
+            one["middle"] = face["middle"]
+        one["area"] += face["area"]
+        one["label"] = one["label"] or face["label"]
+        one["colour"] = one["colour"] or face["colour"]
+    return list(found.values())
+
+
+def _proposal(
+    path: Path, seats: Sequence[Mapping[str, Any]], planes: Sequence[Mapping[str, Any]]
+) -> list[str]:
+    """Lines for a scene, with the widest bore and the largest plane."""
+    seat, plane = seats[0], planes[0]
+    alone = sum(abs(s["radius"] - seat["radius"]) < 1e-3 * seat["radius"] for s in seats) == 1
+    pick = f"radius: {seat['radius']:.7g}"
+    turn = ""
+    if seat["kind"] == "Cylinder":
+        turn = _TURNS[int(np.argmax(np.abs(seat["axis"])))]
+        if not alone:
+            pick += f", axis: {_list(seat['axis'])}, point: {_list(seat['centre'])}"
+    elif not alone:
+        pick += f", centre: {_list(seat['centre'])}"
+    kind = "ring" if seat["kind"] == "Cylinder" else "spherical"
+    return [
+        "",
+        f"In a scene, beside a bearing of kind {kind} and raceway_diameter "
+        f"{2e-3 * seat['radius']:.7g} (check what is proposed):",
+        "    housing:",
+        f"      step: {path.name}",
+        *([f"      {turn}   # so that the seat's axis is x"] if turn else []),
+        f"      seat: {{{pick}}}   # S1",
+        f"      held: [{{point: {_list(plane['middle'])}, normal: {_list(plane['normal'])}}}] # P1",
+    ]
+
+
+def _of_mesh(path: Path) -> Survey:
+    found = read_in_process("read mesh", path, {})
+    points, cells = found["points"], found["cells"]
+    volume, _, _ = mass_moments(points, cells)
+    used = points[np.unique(cells)]
+    body = Mesh(points, cells, np.zeros(len(cells), dtype=np.int64), ("body",), {}, {})
+    outside = boundary(body)
+    low, high = used.min(axis=0), used.max(axis=0)
+    kind = "of 4 nodes, which get straight edges" if found["linear"] else "of 10 nodes"
+    worst = float(scaled_jacobians(points, cells).min())
+    lines = [
+        f"{path.name}: {len(cells)} tetrahedra {kind}, {len(used)} nodes",
+        f"box: {_xyz(low)} to {_xyz(high)}, volume {volume:.6g}, in the file's unit",
+        f"worst scaled Jacobian: {worst:.3g}" + (": elements fold over" if worst <= 0 else ""),
+    ]
+    for what, prefix in (("solids", "solid "), ("faces", "face "), ("sets of nodes", "nodes ")):
+        names = sorted(key.removeprefix(prefix) for key in found if key.startswith(prefix))
+        more = f" and {len(names) - _MOST_ROWS} more" if len(names) > _MOST_ROWS else ""
+        lines.append(f"{what} by label: {', '.join(names[:_MOST_ROWS]) or 'none'}{more}")
+    return Survey("\n".join(lines) + "\n", points, outside[:, :3], ())
+
+
+def _tags(face: Mapping[str, Any]) -> tuple[str, str]:
+    return (
+        f"label {face['label']}" if face["label"] else "",
+        f"colour {face['colour']}" if face["colour"] else "",
+    )
+
+
+def _table(rows: Sequence[Sequence[str]], count: int) -> list[str]:
+    if not rows:
+        return ["  none"]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  " + "  ".join(f"{c:<{w}}" for c, w in zip(row, widths, strict=True) if w).rstrip()
+        for row in rows
+    ]
+    return [*lines, *([f"  and {count - len(rows)} more"] if count > len(rows) else [])]
+
+
+def _xyz(values: Any) -> str:
+    return "(" + ", ".join(f"{_rounded(v):.6g}" for v in values) + ")"
+
+
+def _list(values: Any) -> str:
+    return "[" + ", ".join(f"{_rounded(v):.7g}" for v in values) + "]"
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), 5) + 0.0

@@ -1,0 +1,229 @@
+"""A housing whose shape comes from a file, a STEP solid or a mesh; its faces are picked."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from fe_drivetrain.common.errors import InputError
+
+from .bearing import Bearing
+from .housing import Housing
+from .part import LARGEST, Part
+
+Vector = tuple[float, float, float]
+
+UNITS = {"mm": 1e-3, "m": 1.0, "in": 0.0254}
+"""Metres in what a file's lengths may be in."""
+
+STEP_ENDINGS = (".step", ".stp")
+MESH_ENDINGS = (".msh", ".vtu", ".inp")
+
+
+class Pick(Part):
+    """Which faces of a file's solid are meant, in one of five ways, as the file has them.
+
+    A label (a face's name in a STEP file, a physical group or a set of a mesh); a colour; a point
+    on or nearest to the face; a plane by a point and its normal; a cylinder by radius, and where
+    several have it by the direction of its axis and a point on that; a sphere by radius and centre.
+    Points and radii are in the file's own frame and unit, as ``fe-drivetrain part`` prints them.
+    """
+
+    label: str | None = Field(default=None, min_length=1, max_length=200)
+    colour: str | None = Field(default=None, pattern="^#[0-9a-fA-F]{6}$")
+    point: Vector | None = None
+    normal: Vector | None = None
+    radius: float | None = Field(default=None, gt=0)
+    axis: Vector | None = None
+    centre: Vector | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        given = {key for key in type(self).model_fields if getattr(self, key) is not None}
+        if given not in _WAYS:
+            raise InputError(
+                f"a pick of a face has the keys {', '.join(sorted(given)) or 'none'} but must have "
+                "label; or colour; or point; or point and normal (a plane); or radius, with axis "
+                "and point where needed (a cylinder); or radius and centre (a sphere): give one "
+                "of these"
+            )
+        for key in ("axis", "normal"):
+            way = getattr(self, key)
+            if way is not None and not math.hypot(*way) > 0:
+                raise InputError(f"a pick of a face has {key} [0, 0, 0]: give it a direction")
+        return self
+
+    def words(self) -> str:
+        """The pick in words, for messages."""
+        return " and ".join(
+            f"{key} {list(value) if isinstance(value, tuple) else value}"
+            for key in type(self).model_fields
+            if (value := getattr(self, key)) is not None
+        )
+
+
+_WAYS: tuple[set[str], ...] = (
+    {"label"},
+    {"colour"},
+    {"point"},
+    {"point", "normal"},
+    {"radius"},
+    {"radius", "axis"},
+    {"radius", "point"},
+    {"radius", "axis", "point"},
+    {"radius", "centre"},
+)
+
+
+class Bolts(Part):
+    """Bolts through the foot, and how they hold it.
+
+    As washers, the annulus round each hole on the held faces is fixed, as under bolts whose
+    preload keeps the joint closed. As beams, each bolt alone carries, from the annulus round the
+    hole's other end down to the held face, where the ground holds it: a joint that is open.
+    """
+
+    hole_radius: float = Field(gt=0, description="radius of the holes, in the file's unit")
+    washer_diameter: float = Field(
+        gt=0, description="outside diameter of the annulus, in that unit"
+    )
+    hold: Literal["washers", "beams"] = "washers"
+    diameter: float | None = Field(
+        default=None, gt=0, description="of the bolts, in the file's unit (hold 'beams' only)"
+    )
+    preload: float | None = Field(default=None, gt=0, le=1e8, description="of each bolt [N]")
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if self.washer_diameter <= 2 * self.hole_radius:
+            raise InputError(
+                f"bolts: washer_diameter is {self.washer_diameter:g} but must be greater than the "
+                f"hole's diameter, {2 * self.hole_radius:g}: enlarge it"
+            )
+        if (self.diameter is None) == (self.hold == "beams"):
+            given = "no diameter: add it" if self.diameter is None else "a diameter: leave it out"
+            raise InputError(f"bolts: hold is {self.hold!r} and there is {given}")
+        if self.diameter is not None and self.diameter > 2 * self.hole_radius:
+            raise InputError(
+                f"bolts: diameter is {self.diameter:g} but must be at most that of the hole, "
+                f"{2 * self.hole_radius:g}: reduce it"
+            )
+        return self
+
+
+class ForeignHousing(Part):
+    """A housing from a STEP file or a mesh file: material, placement, seat and held faces.
+
+    It is turned first, about the fixed axes x, y and z one after the other, then moved. Without
+    `translate` it is moved so that the middle of its seat is the centre of its bearing.
+    """
+
+    step: str | None = Field(default=None, min_length=1, max_length=1000)
+    mesh: str | None = Field(default=None, min_length=1, max_length=1000)
+    unit: Literal["mm", "m", "in"] | None = Field(
+        default=None, description="of the file's lengths; mm for STEP where left out"
+    )
+    part: str | None = Field(
+        default=None, min_length=1, description="label of the solid, where a mesh has several"
+    )
+    material: str = Field(default="ductile_iron", description="name of the material")
+    rotate: Vector = (0.0, 0.0, 0.0)
+    translate: Vector | None = None
+    seat: Pick
+    held: tuple[Pick, ...] = Field(min_length=1, max_length=100)
+    bolts: Bolts | None = None
+    smallest_detail: float = Field(
+        default=0.0, ge=0, description="edges and faces below it are removed, in the file's unit"
+    )
+
+    @model_validator(mode="after")
+    def _one_file(self) -> Self:
+        if (self.step is None) == (self.mesh is None):
+            raise InputError(
+                "a housing from a file has "
+                + ("neither step nor mesh" if self.step is None else "both step and mesh")
+                + " but must have one of the two: name one file"
+            )
+        allowed = MESH_ENDINGS if self.step is None else STEP_ENDINGS
+        if not self.file.lower().endswith(allowed):
+            raise InputError(
+                f"the housing's file {self.file} must end in {' or '.join(allowed)}: give "
+                + ("a mesh under 'mesh'" if self.step is None else "a STEP file under 'step'")
+            )
+        if self.step is None and self.unit is None:
+            raise InputError(
+                f"the housing's mesh {self.file} has no unit: give unit: mm, m or in, the unit of "
+                "its coordinates"
+            )
+        if self.step is None and self.smallest_detail > 0:
+            raise InputError(
+                f"the housing's mesh {self.file} has a smallest_detail of "
+                f"{self.smallest_detail:g}, but nothing is removed from a mesh: leave it out"
+            )
+        for key in ("rotate", "translate"):
+            value = getattr(self, key)
+            if value is not None and max(map(abs, value)) > LARGEST:
+                raise InputError(f"the housing's {key} is {list(value)}: at most {LARGEST:g} each")
+        return self
+
+    @property
+    def file(self) -> str:
+        """Its file."""
+        return self.step or self.mesh or ""
+
+    @property
+    def scale(self) -> float:
+        """Metres in the file's unit."""
+        return UNITS[self.unit or "mm"]
+
+    @property
+    def rotation(self) -> NDArray[np.float64]:
+        """(3, 3) from the file's directions to those of the scene."""
+        from scipy.spatial.transform import Rotation  # slow to import
+
+        turned = Rotation.from_euler("xyz", self.rotate, degrees=True).as_matrix()
+        return np.asarray(turned, dtype=np.float64)
+
+    @property
+    def held_by(self) -> str:
+        """How it is held, in words."""
+        if self.bolts is None:
+            return "held faces fixed"
+        return "fixed at the washers" if self.bolts.hold == "washers" else "held by bolts as beams"
+
+    def check_bearing(self, bearing: Bearing) -> None:
+        """Refuse a seat that cannot be that of the bearing, as far as it is known without the file.
+
+        Raises
+        ------
+        InputError
+        """
+        radius = bearing.raceway_diameter / 2
+        given = None if self.seat.radius is None else self.seat.radius * self.scale
+        if given is not None and abs(given - radius) > SEAT_TOLERANCE * radius:
+            raise InputError(
+                f"{bearing.name}.housing: its seat has a radius of {given:g} m but must have "
+                f"{radius:g} m, half the bearing's raceway_diameter: change one of them, or the "
+                "unit of the file"
+            )
+
+
+SEAT_TOLERANCE = 1e-4
+"""Of the radius of a seat: it may differ so much from the bearing's raceway."""
+
+
+def _kind(value: Any) -> str:
+    if isinstance(value, ForeignHousing):
+        return "file"
+    from_file = isinstance(value, dict) and ("step" in value or "mesh" in value)
+    return "file" if from_file else "block"
+
+
+AnyHousing = Annotated[
+    Annotated[Housing, Tag("block")] | Annotated[ForeignHousing, Tag("file")], Discriminator(_kind)
+]
+"""A parametric block, or a housing from a file."""
