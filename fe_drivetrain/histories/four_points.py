@@ -12,7 +12,7 @@ def close_inner_cycles(points: Floats, cycles: Floats, stack: Floats) -> tuple[i
     """Take turning points one after the other, and write the cycles that they close.
 
     Of the last four points that are left, the inner two are a cycle where their range is no larger
-    than those of both sides (Clormann and Seeger 1986, Stahlbau 55). No point before or after these
+    than those of both sides (credited to Clormann and Seeger 1986, not read). No point around these
     four can change that, so that the order does not matter in which parts of a history are taken.
 
     Parameters
