@@ -262,3 +262,17 @@ def test_no_file_is_lost_or_counted_twice_when_a_worker_is_killed(
     for one, other in zip(found, here, strict=True):
         assert one.keys() == other.keys()
         assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+
+
+def test_the_end_of_the_scheduler_is_said_at_once(cluster: Cluster, tmp_path: Path) -> None:
+    """The last test: nothing is left of the cluster."""
+
+    def end() -> None:
+        until((tmp_path / "begun").exists)
+        cluster.end()
+
+    thread = threading.Thread(target=end, daemon=True)
+    thread.start()
+    with pytest.raises(InputError, match="has ended"), scheduled_by(cluster.address):
+        list(mapped(cluster_jobs.wait, [(tmp_path / "begun",)], 1))
+    thread.join(WAIT)
