@@ -18,7 +18,7 @@ from fe_drivetrain.commands.life_digest import (
 from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.life.at_site import site_lives
 from fe_drivetrain.life.reference_life import reference_load

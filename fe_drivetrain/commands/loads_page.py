@@ -28,7 +28,7 @@ from fe_drivetrain.commands.loads_together import WIND_BIN, Together, windows_ta
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.histories.cycles import Cycles
 from fe_drivetrain.histories.sites import Site

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -119,12 +118,6 @@ def variants_of(tool: str) -> list[Variant]:
 def how_to_install(tool: str) -> str:
     """A command."""
     return str(_module(tool).INSTALL)
-
-
-def interpreters() -> list[str]:
-    """This Python, and the system's own, where packages of the distribution are."""
-    system = shutil.which("python3", path=os.defpath)
-    return [sys.executable, *([system] if system else [])]
 
 
 def launch(
