@@ -12,6 +12,7 @@ from .local_sizes import LocalSizes, apply_local_sizes
 from .masses import Solid, bearing_solid, unit_solids
 from .part import LENGTH_TOLERANCE, Assumption, Part
 from .planet_carrier import PlanetCarrier
+from .sample_parts import write_sample
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
 from .step_files import write_step
@@ -49,5 +50,6 @@ __all__ = [
     "size_name",
     "unit_solids",
     "within_walls",
+    "write_sample",
     "write_step",
 ]

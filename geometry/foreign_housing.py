@@ -95,7 +95,6 @@ class Bolts(Part):
     diameter: float | None = Field(
         default=None, gt=0, description="of the bolts, in the file's unit (hold 'beams' only)"
     )
-    preload: float | None = Field(default=None, gt=0, le=1e8, description="of each bolt [N]")
 
     @model_validator(mode="after")
     def _fits(self) -> Self:

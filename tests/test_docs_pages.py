@@ -13,6 +13,9 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
+from fe_drivetrain.export.files import read
+from fe_drivetrain.mesh.measures import volume
+
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("**/*.md"))]
@@ -87,6 +90,15 @@ def test_an_own_drivetrain_is_changed_without_editing(run_page: Runner, tmp_path
     bores = [names[scene].shaft.sections[0].inner_diameter for scene in ("scene", "bored")]
     assert bores == [0.0, 0.1]
     assert (tmp_path / "bored.csv").is_file()
+
+
+def test_a_housing_from_step_stands_in_a_scene(run_page: Runner, tmp_path: Path) -> None:
+    names = run_page("how-to/own-housing-from-step.md")
+    unit = read(tmp_path / "unit.json", "json")
+    assert np.linalg.eigvalsh(unit.stiffness).min() > 0
+    again = names["mesh_scene"](names["again"])
+    own = names["mesh_scene"](names["scene"])
+    assert volume(again) == pytest.approx(volume(own), rel=1e-12)
 
 
 def test_reactions_moved_to_the_hub_are_the_hub_loads(run_page: Runner) -> None:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.foreign.housing import placed_housing
 from fe_drivetrain.geometry import (
@@ -22,7 +22,7 @@ from fe_drivetrain.geometry import (
     unit_solids,
 )
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint, averaged_point
-from fe_drivetrain.interfaces.mortar import Multipliers, mortar_tie, settled
+from fe_drivetrain.interfaces.mortar import mortar_tie, settled
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.measures import mass_moments
@@ -31,8 +31,8 @@ from fe_drivetrain.mesh.side_by_side import beside
 from fe_drivetrain.scene.bearing_unit import BearingUnit
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
+_BESIDE = 1e-6  # of the width: facets further out are beside the bearing
 _BOLT = MATERIALS["steel"]
-_LARGE = 500  # nodes of a face: a standard tie of more fills the matrix
 
 
 def mesh_parts(
@@ -125,12 +125,24 @@ def tied(units: Sequence[BearingUnit], mesh: Mesh) -> Tied:
         if unit.foreign is None or unit.interface != "bonded":
             continue
         name = unit.bearing.name
-        outer, seat = (mesh.faces[f"{name}.{key}"] for key in ("outer", "housing.seat"))
-        kind: Multipliers = "dual" if len(np.unique(outer)) > _LARGE else "standard"
-        ties.append(mortar_tie(f"{name} tie", mesh.points, outer, seat, mesh.points.size, kind))
+        slave, master = _finer_first(unit, mesh)
+        # standard multipliers would couple each node of the face with each
+        ties.append(mortar_tie(f"{name} tie", mesh.points, slave, master, mesh.points.size, "dual"))
     if not ties:
         return Tied(mesh, ())
     return Tied(replace(mesh, points=settled(mesh.points, *ties)), tuple(ties))
+
+
+def _finer_first(unit: BearingUnit, mesh: Mesh) -> tuple[Ints, Ints]:
+    """The slave and the master face of a tie: the finer is the slave, the master covers it."""
+    name, bearing = unit.bearing.name, unit.bearing
+    outer, bore, seat = (
+        mesh.faces[f"{name}.{key}"] for key in ("outer", "housing.bore", "housing.seat")
+    )
+    beyond = np.abs(mesh.points[np.unique(bore), 0] - bearing.x).max() - bearing.width / 2
+    if len(np.unique(bore)) > len(np.unique(outer)) and beyond < _BESIDE * bearing.width:
+        return bore, outer
+    return outer, seat
 
 
 def bolt_springs(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> list[tuple[ReferencePoint, Floats]]:
