@@ -5,7 +5,7 @@ from .bearing import Bearing
 from .body import BodySizes
 from .element_sizes import MeshSizes, size_name
 from .fits import WIDEST, Band, check_bands, check_parts, refuse_millimetres
-from .foreign_housing import AnyHousing, Bolts, ForeignHousing, Pick
+from .foreign_housing import AnyHousing, Bolts, CondensedHousing, ForeignHousing, Pick
 from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
@@ -28,6 +28,7 @@ __all__ = [
     "Bearing",
     "BodySizes",
     "Bolts",
+    "CondensedHousing",
     "Flange",
     "ForeignHousing",
     "GearboxHousing",

@@ -165,4 +165,3 @@ def _one(found: list[tuple[int, int]]) -> int:
     if len(found) != 1:
         raise RuntimeError(f"a part falls into {len(found)} pieces")
     return int(found[0][1])
-

@@ -74,6 +74,6 @@ def write_step(path: str | os.PathLike[str], volumes: Sequence[int], unit: str =
     if unit == "m":
         text, count = _MILLIMETRE.subn(r"\1SI_UNIT($,.METRE.)", text)
         if count < 1:
-            raise RuntimeError(f"gmsh wrote no unit of length")
+            raise RuntimeError("gmsh wrote no unit of length")
     with atomic_path(target) as unfinished:
         unfinished.write_text(text, "utf-8")

@@ -15,6 +15,7 @@ from fe_drivetrain.foreign.housing import placed_housing
 from fe_drivetrain.geometry import (
     NO_BANDS,
     Band,
+    Housing,
     MeshSizes,
     Shaft,
     Solid,
@@ -62,7 +63,7 @@ def mesh_parts(
     Mesh
         Housings from files share no nodes with their bearings, see `tied`.
     """
-    blocks = {unit.bearing.name: unit.block for unit in units if unit.foreign is None}
+    blocks = {u.bearing.name: u.housing for u in units if isinstance(u.housing, Housing)}
     bonded = frozenset(u.bearing.name for u in units if u.interface == "bonded")
     mesh = cached_mesh(
         shaft,
@@ -259,6 +260,9 @@ def solids_of_unit(
     sizes : MeshSizes
         Of the scene; a housing from a file is measured on its mesh.
     """
+    if unit.condensed is not None:
+        nothing = Solid(0.0, (unit.bearing.x, 0.0, 0.0), (0.0,) * 9)
+        return bearing_solid(unit.bearing, bore_diameter), nothing
     if unit.foreign is None:
         return unit_solids(unit.bearing, unit.block, bore_diameter)
     mesh = placed_housing(unit.foreign, unit.bearing, sizes).mesh
