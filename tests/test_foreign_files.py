@@ -242,3 +242,19 @@ def test_a_mesh_inside_out_is_refused(tmp_path):
     )
     with pytest.raises(InputError, match="1 of its 1 elements are inside out"):
         placed_housing(housing, Bearing(kind="ring"), MeshSizes())
+
+
+def test_a_damaged_housing_ends_a_command_with_status_2_and_one_sentence(samples, tmp_path, invoke):
+    folder, _ = samples
+    whole = (folder / "ribbed_pillow_block.step").read_text()
+    (tmp_path / "half.step").write_text(whole[: len(whole) // 2])
+    (tmp_path / "mine.yaml").write_text(
+        "title: t\nshaft: {front: -1.0, sections: [{length: 2.2, outer_diameter: 0.4}]}\n"
+        "bearing_units:\n  - bearing: {name: main_bearing, kind: ring}\n    interface: bonded\n"
+        "    housing: {step: half.step, seat: {radius: 300}, held: [{point: [0, 0, -420]}]}\n"
+        "gearbox: {stiffness: [4.0e6, 8.0e7, 8.0e7, rigid, 0, 0]}\n"
+    )
+    for words in (("check", "mine.yaml"), ("part", "half.step")):
+        status, _, error = invoke(*words)
+        assert status == 2
+        assert "half.step cannot be read as STEP" in error

@@ -70,7 +70,9 @@ def run(run: Run, page: Page) -> None:
     with run.step("STEP"):
         foreign = with_housing(scene, FROM_STEP | {"step": str(run.folder / "block.step")})
         step = unit_bounds(foreign, NAME)
-        placed = placed_housing(foreign.bearing_units[0].foreign, bearing, scene.mesh)
+        housing = foreign.bearing_units[0].foreign
+        assert housing is not None
+        placed = placed_housing(housing, bearing, scene.mesh)
     rows.append(row("block.step", "bonded: tied", bounds.stiff, step.stiff))
     exact = unit_solids(bearing, unit.block, 0.4)[1].volume
     page.equals(

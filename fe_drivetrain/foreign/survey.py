@@ -106,7 +106,8 @@ def _of_step(path: Path) -> Survey:
     if "unmeshed" in data:
         lines.append(f"gmsh cannot mesh it: {data['unmeshed']}")
     lines += ["", "Bores, the widest first; one of them is the seat [mm]:"]
-    marks, rows = [], []
+    marks: list[Mark] = []
+    rows: list[Sequence[str]] = []
     for number, seat in enumerate(data["seats"][:_MOST_ROWS], 1):
         x, y, z = (seat["length"] / 2 * np.array(seat["axis"])).tolist()
         marks.append(Mark(f"S{number}", tuple(seat["centre"]), (x, y, z)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -45,7 +46,9 @@ def picture_of_part(
     import pyvista
 
     view = View.fitting(points[np.unique(triangles)], _FROM, top=80, bottom=80)
-    surface = pyvista.PolyData.from_regular_faces(np.array(points), np.array(triangles))
+    nodes: Any = np.array(points)
+    faces: Any = np.array(triangles)
+    surface = pyvista.PolyData.from_regular_faces(nodes, faces)
     with drawing(path, view) as sheet:
         sheet.solid(surface, sharp_edges(surface), _COLOUR)
         middle = view.project(points.mean(axis=0))
