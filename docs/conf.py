@@ -1,5 +1,7 @@
 """How Sphinx builds this folder: ``.ci/docs``, or ``make docs``."""
 
+import logging
+import os
 import re
 import sys
 from importlib.metadata import version as installed
@@ -16,12 +18,22 @@ written_pages.write_all(HERE / "generated")
 
 project = "fe-drivetrain"
 release = version = installed("fe-drivetrain")
-extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc"]
+extensions = ["myst_nb", "numpydoc", "sphinx.ext.autodoc", "sphinx_design"]
 root_doc = "index"
+exclude_patterns = ["generated/ipython", "generated/static"]
 
 # Headings are link targets as on a repository page.
 myst_heading_anchors = 3
-myst_enable_extensions = ["deflist"]
+myst_enable_extensions = ["colon_fence", "deflist"]
+
+# Notebooks stand without results: these are what the program finds now.
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+logging.getLogger("traitlets").setLevel(logging.WARNING)
+# Figures come without Plotly itself, which the site has once.
+os.environ |= {"IPYTHONDIR": written_pages.ipython_folder(HERE / "generated" / "ipython")}
 
 # Types stand in the signature; the docstrings say units, shapes and sources.
 autodoc_typehints_format = "short"
@@ -45,6 +57,7 @@ html_title = "fe-drivetrain"
 html_show_copyright = False
 html_copy_source = False
 html_show_sourcelink = False
+html_static_path = [written_pages.static_folder(HERE / "generated" / "static")]
 
 
 def as_plain_text(
@@ -76,8 +89,9 @@ def to_docstrings(app: Sphinx, docname: str, source: list[str]) -> None:
         )
 
 
-def setup(app: Sphinx) -> None:
+def setup(app: Sphinx) -> dict[str, bool]:
     """Connect what Sphinx calls, before numpydoc reads a docstring."""
     app.connect("autodoc-process-docstring", as_plain_text, priority=100)
     app.connect("autodoc-process-signature", by_their_names)
     app.connect("source-read", to_docstrings)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

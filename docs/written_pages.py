@@ -1,6 +1,7 @@
 """Pages that are written from the code each time the documentation is built.
 
-The validation index comes from what the cases declare, the API from the public names of the rooms.
+The validation index comes from what the cases declare, the API from the public names of the rooms,
+the gallery from the library of scenes and its pictures (``docs/stills.py``).
 """
 
 from __future__ import annotations
@@ -9,15 +10,18 @@ import importlib
 import inspect
 import pkgutil
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 from pathlib import Path
 from types import ModuleType
 
+from plotly.offline import get_plotlyjs
 from sphinx.errors import PycodeError
 from sphinx.pycode import ModuleAnalyzer
+from stills import library
 
 import fe_drivetrain
+from fe_drivetrain.scene import Component, Scene
 from fe_drivetrain.suite import Case, all_cases, settings_in_words
 
 #: Folders of modules without a list of names of their own, whose modules users import.
@@ -31,7 +35,8 @@ def write_all(folder: Path) -> None:
     pages["api.rst"] = api_index(rooms)
     for room in rooms:
         pages[f"api/{room}.rst"] = api_of(room)
-    for old in folder.rglob("*.*"):
+    pages["gallery.md"] = gallery(library())
+    for old in (*folder.glob("*.*"), *folder.glob("api/*.*")):
         if old.is_file() and old.relative_to(folder).as_posix() not in pages:
             old.unlink()
     for name, text in pages.items():
@@ -73,6 +78,76 @@ def plain(text: str) -> str:
     pieces = re.split(r"(`+[^`]*`+)", " ".join(text.split()))
     pieces[::2] = [re.sub(r"([\\*_\[\]<>|#$~])", r"\\\1", piece) for piece in pieces[::2]]
     return "".join(pieces)
+
+
+# --- Gallery ---
+
+
+def gallery(scenes: Mapping[str, Scene | Component]) -> str:
+    """A card for each scene and component of the library."""
+    cases = all_cases()
+    lines = [
+        "# Gallery",
+        "",
+        "The scenes that come with the package, as each page shows its own: cut open, with loads "
+        "and supports; components as a torque deforms them. Where each comes from is in "
+        "[the library](../library.md); each drivetrain has a case of its name, which runs all "
+        "levels. `fe-drivetrain advise`, `export` and `check` take a scene by its name, Python by "
+        "`library_scene`.",
+        "",
+        "::::{grid} 1 2 2 3",
+        ":gutter: 3",
+        "",
+    ]
+    for name, scene in scenes.items():
+        case = cases.get(f"fidelity/{name}")
+        lines += [
+            f":::{{grid-item-card}} {plain(scene.title)}",
+            f":img-top: ../gallery/{name}.webp",
+            "",
+            f"`{name}`",
+            *(["", f"`fe-drivetrain run {case.name}`"] if case else []),
+            ":::",
+            "",
+        ]
+    return "\n".join([*lines, "::::", ""])
+
+
+# --- Notebooks ---
+
+PLOTLY = "plotly.min.js"
+"""The program that draws figures, beside the pages."""
+
+STARTUP = f"""
+import plotly.io
+from plotly.io.base_renderers import MimetypeRenderer
+
+class OnTheSite(MimetypeRenderer):
+    def to_mimebundle(self, figure):
+        program = "../_static/{PLOTLY}"
+        return {{"text/html": plotly.io.to_html(figure, include_plotlyjs=program, full_html=False)}}
+
+plotly.io.renderers["site"] = OnTheSite()
+plotly.io.renderers.default = "site"
+"""
+
+
+def ipython_folder(folder: Path) -> str:
+    """A profile in which figures come without the 5 MB that draw them."""
+    startup = folder / "profile_default" / "startup"
+    startup.mkdir(parents=True, exist_ok=True)
+    (startup / "figures.py").write_text(STARTUP, encoding="utf-8")
+    # it warns that a process of the same machine might listen
+    quiet = "get_config().IPKernelApp.log_level = 40\n"
+    (startup.parent / "ipython_kernel_config.py").write_text(quiet, encoding="utf-8")
+    return str(folder)
+
+
+def static_folder(folder: Path) -> str:
+    """What the site has beside its pages."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / PLOTLY).write_text(get_plotlyjs(), encoding="utf-8")
+    return str(folder)
 
 
 # --- API ---

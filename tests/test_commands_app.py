@@ -56,4 +56,6 @@ def test_a_script_of_a_case_has_the_same_options(
     assert command.startswith("python ")
     assert command.endswith(" --out x --set k=1")
     assert invoke("--set", "k", main=lambda: main_of_case(case))[0] == 2
-    assert "A tiny case" in invoke("--help", main=lambda: main_of_case(case))[1]
+    helped = invoke("--help", main=lambda: main_of_case(case))[1]
+    assert "A tiny case" in helped
+    assert "--set changes: k" in helped

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
-from fe_drivetrain.commands import life_page
+from fe_drivetrain.commands import life_digest
 from fe_drivetrain.commands.life import parse_lubricant
 from fe_drivetrain.commands.life_bearings import Choices, bearings_of, rollers_in_words
 from fe_drivetrain.common.components import FORCES
@@ -102,7 +102,7 @@ def test_a_stopped_run_goes_on(
     invoke: Callable[..., Result], histories: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     done: list[str] = []
-    real = life_page.digest
+    real = life_digest.digest
 
     def counted(file: Path, *more: object) -> object:
         done.append(file.name)
@@ -110,7 +110,7 @@ def test_a_stopped_run_goes_on(
             raise KeyboardInterrupt
         return real(file, *more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(life_page, "digest", counted)
+    monkeypatch.setattr(life_digest, "digest", counted)
     out = histories.parent / "out"
     words = ("life", SCENE, "--loads", str(histories), "--out", str(out))
     status, _, error = invoke(*words)

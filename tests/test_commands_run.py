@@ -36,6 +36,16 @@ def test_list_shows_what_can_be_set_of_each_case(invoke: Callable[..., Result]) 
     assert lines.count(taken) == 3
 
 
+def test_help_of_a_case_shows_its_source_and_settings(invoke: Callable[..., Result]) -> None:
+    status, out, _ = invoke("run", "tiny", "--help")
+    assert status == 0
+    assert "Usage" in out
+    assert "--set: a, k; any value of its scene by its dotted key" in out
+    assert "Source: " in out
+    assert "did you mean" in invoke("run", "tine", "--help")[1]
+    assert "--set: " not in invoke("run", "--help")[1]
+
+
 def test_a_passing_case_exits_0_and_says_where_to_read(
     invoke: Callable[..., Result], tmp_path: Path
 ) -> None:

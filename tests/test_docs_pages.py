@@ -125,6 +125,56 @@ def test_lives_of_the_page_are_in_order(run_page: Runner) -> None:
     assert years["L10r"] < years["L10"]
 
 
+def test_torque_of_each_shaft_keeps_the_power(run_page: Runner) -> None:
+    names = run_page("how-to/shafts-of-a-gearbox.md")
+    table, torques = names["table"], names["torques"]
+    powers = [torques[s.name] * speed for s, speed in zip(table.shafts, table.speeds, strict=True)]
+    assert powers == pytest.approx([387e3] * 4)
+    assert names["shares"] == pytest.approx(1.0, abs=0.03)
+    assert names["lumped"].frequencies[1] == pytest.approx(names["whole"].frequencies[1], rel=1e-3)
+    series = sum(1 / (s.stiffness * n**2) for s, n in zip(table.shafts, table.speeds, strict=True))
+    assert names["spring"] == pytest.approx(1 / series, rel=1e-9)
+
+
+def test_a_mean_load_counts_by_goodmans_line(run_page: Runner) -> None:
+    names = run_page("how-to/mean-loads.md")
+    assert names["corrected"] / names["as_counted"] == pytest.approx(20 / 15, rel=1e-3)
+    hours = names["site"].hours(names["midpoint_edges"](names["winds"]))
+    cycles = hours.sum() * 3600  # of a sine of 1 Hz, whose range goes with the wind
+    ranges = 1e6 * np.array(names["winds"]) / 14.0
+    assert cycles == pytest.approx((names["factors"] * 600.0).sum())
+    size = (np.sum(hours * 3600 * ranges**10) / 1e7) ** 0.1
+    assert names["lifetime"] == pytest.approx(size, rel=2e-3)
+
+
+def test_planets_share_by_the_torque_and_teeth_vary_by_the_contact_ratio(run_page: Runner) -> None:
+    names = run_page("how-to/planets-and-teeth.md")
+    assert names["kinds"].count("planet") == 3
+    assert names["kinds"].count("rotational") == 6
+    assert names["sharing"][1e3] == pytest.approx(2.0, abs=1e-3)
+    assert 1.0 < names["sharing"][1e5] < 1.2
+    assert names["stiffness"][0] == pytest.approx(names["stiffness"][-1])
+
+
+def test_clearance_raises_the_most_loaded_roller(run_page: Runner) -> None:
+    names = run_page("how-to/bearing-clearance.md")
+    peaks, zones = list(names["peaks"].values()), list(names["zones"].values())
+    assert peaks[0] == pytest.approx(4.08 * 200e3 / 32, rel=0.005)
+    assert peaks == sorted(peaks)
+    assert zones == sorted(zones, reverse=True)
+    assert names["tangent"][2, 2] > names["secant"][2, 2]
+    assert abs((names["secant"] @ names["u"][0])[2]) == pytest.approx(200e3, rel=5e-3)
+
+
+def test_plots_show_what_was_computed(run_page: Runner, tmp_path: Path) -> None:
+    names = run_page("how-to/plots.md")
+    assert len(names["over_time"].data) == len(names["on_bearing"].data) == 6
+    forces = [trace.y for trace in names["beside"].data if trace.x[0] == "Fx"]
+    assert np.sum(forces, axis=0) == pytest.approx([200.0, 0.0, -400.0], abs=1e-6)  # kN
+    assert names["ladder"].data[-1].name == "tolerance"
+    assert (tmp_path / "ring.html").stat().st_size > 1e5
+
+
 def test_modes_bring_frequencies_down_to_those_of_the_shaft(run_page: Runner) -> None:
     errors = run_page("how-to/craig-bampton-modes.md")["errors"]
     for fewer, more in ((0, 4), (4, 8), (8, 16)):  # by Rayleigh: from above, never up again

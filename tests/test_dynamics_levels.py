@@ -26,7 +26,13 @@ from fe_drivetrain.dynamics.tables import (
     library_machine,
     parse_machine,
 )
-from fe_drivetrain.torsion.gear_table import PlanetaryStage, gear_masses, stage_masses
+from fe_drivetrain.torsion.gear_table import (
+    Drivetrain,
+    PlanetaryStage,
+    gear_masses,
+    gear_speeds,
+    stage_masses,
+)
 from fe_drivetrain.torsion.system import natural_modes
 from fe_drivetrain.validation import published_drivetrains as published
 
@@ -75,6 +81,76 @@ def test_the_torsional_level_is_the_standing_table_of_d_with_its_teeth() -> None
     expected = natural_modes(gear_masses(with_teeth, "fixed")).frequencies
     found = natural_modes(torsional(with_light_planets(GRC))).frequencies
     assert np.allclose(found, expected, rtol=1e-12)
+
+
+def test_profile_shifted_planets_of_the_5_mw_gearbox_have_their_own_teeth() -> None:
+    # 19, 17 and 56 teeth: 17 is not half of 56 - 19
+    data = with_light_planets(FIVE_MW).model_dump(exclude_none=True)
+    for shaft, given in zip(data["shafts"], FIVE_MW.shafts, strict=True):
+        del shaft["outer"]
+        shaft["torsion"] = 8.0e10 * given.section.torsion / given.length
+        shaft["kind"] = "coupling"
+    machine = Machine.model_validate(data)
+    stages = []
+    for stage in machine.stages:
+        if isinstance(stage, PlanetaryData):
+            assert stage.teeth is not None
+            ring, planet, sun = stage.teeth
+            base = (stage.centre_distance - stage.sun_radius) * np.cos(
+                stage.meshes[0].pressure_angle
+            )
+            stages.append(
+                {
+                    "kind": "planetary",
+                    "teeth": [ring, sun],
+                    "planet_teeth": planet,
+                    "carrier": stage.carrier.inertia,
+                    "planet": stage.planet.inertia,
+                    "sun": stage.sun.inertia,
+                    "ring_planet": stage.ring_planet * base**2,
+                    "sun_planet": stage.sun_planet * base**2,
+                }
+            )
+        else:
+            mesh = stage.meshing
+            base = stage.gear_radius * np.cos(mesh.pressure_angle) * np.cos(mesh.base_helix)
+            stages.append(
+                {
+                    "kind": "parallel",
+                    "teeth": list(stage.teeth or ()),
+                    "gear": stage.gear.inertia,
+                    "pinion": stage.pinion.inertia,
+                    "mesh": stage.stiffness * base**2,
+                }
+            )
+    table = Drivetrain.model_validate(
+        {
+            "title": "5 MW",
+            "rotor": machine.rotor.inertia,
+            "shafts": [{"name": s.name, "stiffness": s.torsion} for s in machine.shafts],
+            "stages": stages,
+            "generator": {"inertia": machine.generator.inertia},
+        }
+    )
+    masses = gear_masses(table, "free")
+    found = natural_modes(torsional(machine)).frequencies
+    assert np.allclose(natural_modes(masses).frequencies[1:], found[1:], rtol=1e-12)
+    speeds = gear_speeds(table)
+    turning = np.array([speeds[part] for part in masses.names])
+    assert np.abs(masses.B @ turning).max() < 1e-12 * np.abs(turning).max()
+    assert speeds["stage 1 planet 1"] == pytest.approx(-(56 - 17) / 17, rel=1e-14)
+    del stages[0]["planet_teeth"]
+    table = Drivetrain.model_validate(table.model_dump(exclude_none=True) | {"stages": stages})
+    halved = natural_modes(gear_masses(table, "free")).frequencies
+    assert np.abs(halved[1:] / found[1:] - 1).max() > 0.01
+
+
+def test_teeth_of_planets_that_do_not_fit_are_refused() -> None:
+    row = {"carrier": 1.0, "planet": 1.0, "sun": 1.0, "ring_planet": 1.0, "sun_planet": 1.0}
+    with pytest.raises(InputError, match=r"fewer than the ring, 56; .* they have about 18"):
+        PlanetaryStage.model_validate(row | {"teeth": [56, 19], "planet_teeth": 60})
+    with pytest.raises(InputError, match="ring and sun have a ratio alone"):
+        PlanetaryStage.model_validate(row | {"ratio": 5.0, "planet_teeth": 39})
 
 
 def test_the_torsional_level_of_park() -> None:

@@ -17,6 +17,7 @@ from fe_drivetrain.histories.levels import (
 from fe_drivetrain.histories.polar import direction
 from fe_drivetrain.histories.spectra import alias, campbell, multiples, spectrum
 from fe_drivetrain.histories.windows import capture_matrix, window_statistics
+from fe_drivetrain.validation.published_campaigns import IDENTIFICATION, MONITORING
 
 
 def test_time_and_turns_at_level_add_up(rng: np.random.Generator) -> None:
@@ -86,27 +87,11 @@ def test_windows_hold_every_sample_once(rng: np.random.Generator) -> None:
 
 def test_the_capture_matrix_of_a_published_campaign() -> None:
     """PROTEST 2010 (ECN-E--10-100), Table 4.10: 440 windows, mean turbulence 9.73 % of the bins."""
-    rows = [
-        [0, 0, 5, 7, 7, 22, 2],
-        [0, 16, 10, 16, 12, 14, 3],
-        [0, 15, 17, 11, 18, 16, 3],
-        [1, 6, 13, 25, 21, 14, 0],
-        [1, 7, 14, 22, 27, 13, 1],
-        [1, 5, 16, 9, 13, 8, 0],
-        [0, 4, 6, 4, 2, 2, 0],
-        [0, 1, 5, 0, 1, 0, 0],
-        [0, 0, 1, 2, 0, 0, 0],
-        [0, 0, 1, 0, 0, 0, 0],
-    ]
-    wind, share = [], []
-    for r, row in enumerate(rows):
-        for c, count in enumerate(row):
-            wind += count * [4.0 + c]
-            share += count * [0.04 + 0.02 * r]
-    wind, share = [*wind, 30.0], [*share, 0.1]  # and one beyond
-    deviation = np.multiply(wind, share)
-    found = capture_matrix(wind, deviation, np.arange(3.5, 11.0), np.arange(0.03, 0.24, 0.02))
-    assert found.counts.tolist() == rows
+    wind, deviation = (
+        np.append(of, beyond) for of, beyond in zip(MONITORING.each, (30.0, 3.0), strict=True)
+    )
+    found = capture_matrix(wind, deviation, *MONITORING.edges)
+    assert found.counts.tolist() == [list(row) for row in MONITORING.counts]
     assert found.counts.sum(axis=0).tolist() == [3, 54, 88, 96, 101, 89, 9]
     assert found.outside == 1
     assert found.mean_turbulence == pytest.approx(0.0973, abs=5e-5)
@@ -115,22 +100,8 @@ def test_the_capture_matrix_of_a_published_campaign() -> None:
 
 def test_the_matrix_of_files_used_for_inertia_has_another_mean_than_printed() -> None:
     """PROTEST 2010, Fig. 4-14: 66 windows; 3.20 % is printed, the bins have 7.30 %."""
-    rows = [
-        [0, 2, 7, 4, 15, 1],
-        [0, 1, 4, 3, 3, 0],
-        [0, 2, 0, 2, 2, 0],
-        [1, 2, 1, 2, 0, 0],
-        [1, 2, 2, 2, 0, 0],
-        [2, 1, 0, 0, 0, 0],
-        [1, 1, 1, 0, 0, 0],
-        [1, 0, 0, 0, 0, 0],
-    ]
-    counts = np.array(rows)
-    wind = np.repeat(np.tile(np.arange(5.0, 11.0), 8), counts.ravel())
-    share = np.repeat(np.repeat(np.arange(0.04, 0.19, 0.02), 6), counts.ravel())
-    edges = np.arange(4.5, 11.0), np.arange(0.03, 0.2, 0.02)
-    found = capture_matrix(wind, wind * share, *edges)
-    assert found.counts.tolist() == rows
+    found = capture_matrix(*IDENTIFICATION.each, *IDENTIFICATION.edges)
+    assert found.counts.tolist() == [list(row) for row in IDENTIFICATION.counts]
     assert found.counts.sum(axis=0).tolist() == [6, 11, 15, 13, 20, 1]
     assert found.mean_turbulence == pytest.approx(0.0730, abs=5e-5)
 

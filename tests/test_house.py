@@ -18,14 +18,14 @@ LIBRARY = sorted(GRAPH.keys() - {"geometry", "cases"})
 #: From the ground floor up: a room imports from lower floors only.
 FLOORS = (
     {"common"},
-    {"geometry", "compare", "histories"},
+    {"geometry", "compare", "histories", "plots"},
     {"bearing", "gear", "mesh", "scene", "torsion", "hub_loads"},
     {"life", "operator", "revolution"},
     {"interfaces"},
     {"foreign", "solve"},
     {"beam", "response"},
-    {"dynamics", "fidelity", "peers", "procedure", "report", "rings"},
-    {"coupled", "export", "suite", "uncertainty", "validation"},
+    {"dynamics", "fidelity", "peers", "report", "rings"},
+    {"coupled", "export", "procedure", "suite", "uncertainty", "validation"},
     {"commands"},
     {"cases"},
 )

@@ -13,10 +13,10 @@ from conftest import COARSE
 
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.threads import CORES_VARIABLE
+from fe_drivetrain.common.typeset import typeset
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
 from fe_drivetrain.hub_loads.csv_table import read_csv
 from fe_drivetrain.report.results import read_results
-from fe_drivetrain.report.typeset import typeset
 from fe_drivetrain.suite.case import all_cases, find_cases
 from fe_drivetrain.suite.suite import run_cases
 

@@ -19,8 +19,9 @@ from numpy.testing import assert_allclose
 from PIL import Image as Pixels
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.plots.style import PALETTE
 from fe_drivetrain.report.bundle import plotly_file
-from fe_drivetrain.report.charts import PALETTE, density_chart, heat_map
+from fe_drivetrain.report.charts import density_chart, heat_map
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.number_text import error_text, formatted, safe_range, tolerance_text
 from fe_drivetrain.report.page import write_page

@@ -24,6 +24,7 @@ from fe_drivetrain.report.junit import write_junit
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.result_folders import run_case
 from fe_drivetrain.suite.resuming import finished_cases
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.suite import run_cases
@@ -143,6 +144,29 @@ def test_earlier_results_stay_where_a_case_cannot_run(tmp_path: Path) -> None:
     assert set(run_cases([a_case("a/one", refuse)], tmp_path)) == {"a/one"}
     assert (tmp_path / "a/one/results.json").read_bytes() == before
     assert "0 of 1 case passes" in (tmp_path / "index.html").read_text()
+
+
+def test_a_case_run_by_itself_is_listed_with_those_that_ran_before(tmp_path: Path) -> None:
+    first, second = a_case("g/first", count), a_case("g/second", refuse)
+    run_cases([first, second], tmp_path)
+    run_case(replace(first, run=miss), tmp_path / "g/first")
+    page = (tmp_path / "index.html").read_text()
+    assert re.findall(r'data-state="(.*?)" data-group', page) == ["fail", "failed"]
+    assert "length is -1 &lt;m&gt;" in page  # of the run before: there are no results still
+    assert 'href="../../index.html"' in (tmp_path / "g/first/report.html").read_text()
+    with pytest.raises(InputError):
+        run_case(second, tmp_path / "g/second")
+    assert "not run: the run has not" in (tmp_path / "index.html").read_text()
+    run_case(replace(second, run=miss), tmp_path / "g/second")
+    assert not (tmp_path / "problems.json").exists()
+    run_cases([replace(first, run=fault)], tmp_path)
+    page = (tmp_path / "index.html").read_text()
+    assert re.findall(r'data-state="(.*?)" data-group', page) == ["fail", "failed"]
+
+
+def test_a_case_that_runs_elsewhere_is_on_no_list(tmp_path: Path) -> None:
+    run_case(a_case("g/first", miss), tmp_path / "mine")
+    assert not list(tmp_path.glob("**/index.html"))
 
 
 def test_measuring_cases_run_alone_in_processes_of_their_own(
@@ -312,6 +336,7 @@ def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
         "checks.html",
         "history.sqlite",
         "index.html",
+        "problems.json",
     ]
     page = (tmp_path / "reports/index.html").read_text()
     assert '<p class="outcome fail">1 of 2 cases pass, 1 not run</p>' in page

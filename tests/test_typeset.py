@@ -1,6 +1,6 @@
 import pytest
 
-from fe_drivetrain.report.typeset import typeset
+from fe_drivetrain.common.typeset import typeset
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.performance import cost_fit
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
@@ -36,6 +37,9 @@ TIME_LIMIT = 6.0
 
 #: Choices within this of the best are as good: run to run, times differ by that much.
 ALLOWED = 1.5
+
+#: Systems of the grid on which constants of the cost model are fitted; the others only test them.
+FITTED = 8
 
 #: Energy error below which a direct solution in double precision is no reference any more.
 FLOOR = 1e-8
@@ -182,7 +186,7 @@ def measured(run: Run) -> tuple[list[Problem], list[dict[str, Timing]]]:
         grid += [partial(shaft_problem, 14.0, 0.3)]
         grid += [partial(bearing_problem, "bonded", scale) for scale in (2.5, 1.0)]
         grid += [partial(bearing_problem, "spherical", 1.0)]
-        # These two had no part in fitting the constants of `cost_model`.
+        # These two have no part in fitting the constants of `cost_model`.
         grid += [partial(shaft_problem, 6.0, 0.1), partial(bearing_problem, "bonded", 1.6)]
     problems, timings = [], []
     for number, make in enumerate(grid, start=1):
@@ -262,6 +266,11 @@ def check_choices(page: Page, problems: list[Problem], timings: list[dict[str, T
         [key for key in rows[0] if key not in ("n", "in all [s]")],
     )
     page.table("What auto chose", choices)
+    page.table(
+        "Constants of the cost model: those in use, and those that this run's times ask for (least "
+        "squares of relative errors). Ratios between solvers are what counts",
+        constants(problems, timings),
+    )
     page.data("worst_choice", worst)
     page.data(
         "grid",
@@ -276,6 +285,18 @@ def check_choices(page: Page, problems: list[Problem], timings: list[dict[str, T
             for problem, timing in zip(problems, timings, strict=True)
         ],
     )
+
+
+def constants(problems: list[Problem], timings: list[dict[str, Timing]]) -> list[Record]:
+    """Constants of `cost_model` for every solver, in use and fitted."""
+    known = list(zip(problems, timings, strict=True))[:FITTED]
+    rows = []
+    for method in installed():
+        timed_here = [(p.system, t[method]) for p, t in known if method in t]
+        if timed_here:
+            systems, times = zip(*timed_here, strict=True)
+            rows += cost_fit.rows_of(method, systems, times, (1, MANY))
+    return rows
 
 
 def time_chart(rows: list[Record]) -> Chart:

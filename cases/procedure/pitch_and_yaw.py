@@ -53,7 +53,6 @@ def run(run: Run, page: Page) -> None:
     with run.step("yawing"):
         yawing(page)
         tower(page)
-    errata(page)
     quarter = int(np.ceil(TEETH / 4))
     page.answer(
         f"In turbulent wind above rated {np.count_nonzero(counts):d} of {TEETH} teeth of a blade's "
@@ -380,54 +379,4 @@ def tower(page: Page) -> None:
         "the "
         "reason; a calibration, or the stress concentration that the report has at its upper "
         "bridge, can."
-    )
-
-
-def errata(page: Page) -> None:
-    """What is printed, what holds, and how much it changes."""
-    printed = 0.003 * (4.4 * MOMENT + AXIAL * DIAMETER + 2.2 * RADIAL + DIAMETER * 1.73)
-    right = float(friction_torque(MOMENT, AXIAL, RADIAL, DIAMETER))
-    page.section("Printed and put right")
-    page.table(
-        "What the report prints, what holds, and what that changes here",
-        [
-            {
-                "where": "Eq 5.1",
-                "printed": "M_Z - sign M_f + J_B a = i M_A + i^2 J_A a",
-                "right": "M_Z + sign M_f + J_B a = i M_A - i^2 J_A a, or J_B a negative",
-                "change": f"inertia {PITCH.printed_inertia:.0f} in place of {PITCH.inertia:.0f} kg "
-                "m^2",
-            },
-            {
-                "where": "Fig. 5-6, inertia",
-                "printed": "speed times inertia (in the text that is at hand)",
-                "right": "acceleration times inertia",
-                "change": "a term in N m s in place of N m",
-            },
-            {
-                "where": "Fig. 5-6, friction",
-                "printed": "2.2 F_r + D 1.73",
-                "right": "2.2 F_r D 1.73",
-                "change": f"{printed / 1e3:.2f} in place of {right / 1e3:.2f} kN m; units do not "
-                "agree",
-            },
-            {
-                "where": "section 6.4",
-                "printed": "shear 9 % low for want of wind on the tower",
-                "right": "q L / 2 too high with wind",
-                "change": "sign",
-            },
-            {
-                "where": "section 7.2.2.1",
-                "printed": "gyroscopic torque around the tower's axis",
-                "right": "across the tower's axis",
-                "change": "none about the axis",
-            },
-            {
-                "where": "section 7.2.2.2",
-                "printed": "see 7.1.2.1",
-                "right": "7.2.2.1, transients of the yaw system",
-                "change": "a reference",
-            },
-        ],
     )

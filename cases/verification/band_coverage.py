@@ -111,6 +111,12 @@ def judged(run: Run, seed: int, with_solid: bool) -> list[Record]:
     return rows
 
 
+def kept(run: Run, seed: int, with_solid: bool) -> list[Record]:
+    """As `judged`, or what an earlier run found."""
+    content = {"case": "band_coverage", "seed": seed, "with solid": with_solid}
+    return run.kept(content, partial(judged, run, seed, with_solid))
+
+
 @case(
     "Coverage of the uncertainty bands of a shaft's stiffness",
     source="meridians of higher order, finer and graded further; Babuska and Suri 1987, RAIRO "
@@ -122,10 +128,11 @@ def run(run: Run, page: Page) -> None:
     """Random shafts at level 2, and some of them at level 3, each with its band."""
     rows: list[Record] = []
     seeds, solids = chosen(run)
-    for number, seed in enumerate(seeds, 1):
-        run.report(f"shafts ({number} of {len(seeds)})")
-        content = {"case": "band_coverage", "seed": seed, "with solid": seed in solids}
-        rows += run.kept(content, partial(judged, run, seed, seed in solids))
+    with run.side_by_side(1 if run.quick else len(seeds)) as jobs:
+        started = [jobs.start(kept, seed, seed in solids) for seed in seeds]
+        for number, job in enumerate(started, 1):
+            run.report(f"shafts ({number} of {len(seeds)})")
+            rows += job.result()
     levels = grouped(rows, "level")
     found: list[Record] = [
         {

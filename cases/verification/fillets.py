@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import cases
-from fe_drivetrain.report import PALETTE, trace
+from fe_drivetrain.plots import PALETTE
+from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.fillet_factors import (
     PETERSON,

@@ -61,5 +61,12 @@ from .rating import ratings as ratings
 from .rolling import Equilibrium as Equilibrium
 from .rolling import equilibrium as equilibrium
 from .rolling import three_degrees as three_degrees
+from .stored_energy import energy_of as energy_of
+from .subsurface import Exposure as Exposure
+from .subsurface import HardenedCase as HardenedCase
+from .subsurface import exposure as exposure
+from .subsurface import largest_shear as largest_shear
+from .subsurface import stresses_below_ellipse as stresses_below_ellipse
+from .subsurface import stresses_below_line as stresses_below_line
 from .tables import ReducedTable as ReducedTable
 from .tables import reduced_table as reduced_table

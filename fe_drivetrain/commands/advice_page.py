@@ -11,6 +11,7 @@ from fe_drivetrain.fidelity.ablation import Effect, effects
 from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.report.charts import chart, rounded, trace
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
+from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
@@ -203,6 +204,7 @@ def advised(
     InputError
         See `fe_drivetrain.fidelity.adviser.advise`.
     """
+    page.scene = scene_text(scene)
     with run.step("model levels"):
         advice = advise(scene, quantity, tolerance, to_the_top, run.report)
     chosen = None if advice.chosen is None else advice.results[advice.chosen]
@@ -231,6 +233,7 @@ def advised(
             source=f"level {advice.top.model.level}, {advice.top.model.title}, and its own error "
             "band",
         )
+    page.data("quantity", quantity.name)
     page.data(
         "levels",
         [

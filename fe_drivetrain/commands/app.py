@@ -22,6 +22,7 @@ from fe_drivetrain.commands.loads import loads_command
 from fe_drivetrain.commands.new_scene import new_command
 from fe_drivetrain.commands.part import part_command
 from fe_drivetrain.commands.run import (
+    HelpOfCases,
     OutFolder,
     Quick,
     list_command,
@@ -36,6 +37,7 @@ from fe_drivetrain.commands.studies import (
     uncertainty_command,
 )
 from fe_drivetrain.commands.terminal import prepare_streams, write
+from fe_drivetrain.commands.validate import validate_command
 
 if TYPE_CHECKING:
     from fe_drivetrain.suite.case import Case
@@ -56,13 +58,14 @@ app.command("study")(study_command)
 app.command("loads")(loads_command)
 app.command("life")(life_command)
 app.command("list")(list_command)
-app.command("run")(run_command)
+app.command("run", cls=HelpOfCases)(run_command)
 app.command("history")(history_command)
 app.command("compare-runs")(compare_runs_command)
 app.command("export")(export_command)
 app.command("advise")(advise_command)
 app.command("compare")(compare_command)
 app.command("uncertainty")(uncertainty_command)
+app.command("validate")(validate_command)
 
 
 def _show_version(wanted: bool) -> None:
@@ -109,9 +112,12 @@ def main_of_case(case: Case) -> None:
         The case to run. Its function takes a `fe_drivetrain.suite.Run` and fills a
         `fe_drivetrain.suite.Page`.
     """
-    script = typer.Typer(**_LOOK)
+    from fe_drivetrain.suite.settings import settings_in_words
 
-    @script.command(help=f"{case.title}\n\nSource: {case.source}")
+    script = typer.Typer(**_LOOK)
+    taken = settings_in_words(case) or "nothing"
+
+    @script.command(help=f"{case.title}\n\nSource: {case.source}\n\n--set changes: {taken}")
     def run_script(out: OutFolder = None, set_: CaseSettings = None, quick: Quick = False) -> None:
         typed = replace(case, command=shlex.join(["python", *sys.argv]))
         raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))

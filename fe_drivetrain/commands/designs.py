@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.commands.options import Scheduler
 from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import (
     Loads,
@@ -59,6 +60,7 @@ def compare_command(
     ] = None,
     tolerance: Tolerance = "5%",
     load: Loads = None,
+    scheduler: Scheduler = None,
     out: OutFolder = None,
     set_: SceneSettings = None,
 ) -> None:
@@ -97,6 +99,7 @@ def compare_command(
             title,
             out,
             lambda run, page: compared(run, page, designs, asked, share, given, varied),
+            scheduler=scheduler,
         )
 
     raise typer.Exit(guarded(work))

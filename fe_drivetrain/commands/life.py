@@ -9,13 +9,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.commands.options import Channels, Mapping, Resume, RotorSpeed, SceneName, Skip
+from fe_drivetrain.commands.options import (
+    Channels,
+    Mapping,
+    Resume,
+    RotorSpeed,
+    SceneName,
+    Scheduler,
+    Skip,
+)
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.scenes import named_scene
 from fe_drivetrain.commands.settings import SceneSettings, parse_settings
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.pool import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
@@ -143,6 +152,7 @@ def life_command(
         typer.Option("--weight/--no-weight", help="Whether gearbox and shaft have their weight."),
     ] = True,
     resume: Resume = False,
+    scheduler: Scheduler = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="DIR", help="Result folder. Default: reports/life/SCENE."),
@@ -197,7 +207,7 @@ def life_command(
             ),
             command=as_typed(),
         )
-        with show_steps() as report:
+        with show_steps() as report, scheduled_by(scheduler):
             report("bearings")
             bearings = bearings_of(found, choices)
             target = out or Path("reports") / "life" / name

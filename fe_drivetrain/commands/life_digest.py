@@ -14,6 +14,7 @@ from fe_drivetrain.bearing.geometry import RollerRow, pitch_ratio
 from fe_drivetrain.commands.life_bearings import OneBearing
 from fe_drivetrain.commands.study_loads import entering
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.hub_loads.channel_map import ChannelMap
@@ -190,6 +191,45 @@ def digest(
         report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
     return sums.digest(wind, float(np.abs(speed).mean()), float(n))
+
+
+def kept_digest(
+    report: Progress,
+    file: Path,
+    one: OneBearing,
+    rules: LifeRules,
+    reading: Reading,
+    scene: Scene,
+    choices: object,
+    resume: bool,
+) -> LifeDigest:
+    """As `digest`, or what an earlier run kept where that is asked for.
+
+    Parameters
+    ----------
+    report : Progress
+        As of `digest`.
+    file : Path
+        With the history.
+    one : OneBearing
+        The bearing.
+    rules : LifeRules
+        Of the life.
+    reading : Reading
+        Of the file.
+    scene : Scene
+        As of `digest`.
+    choices : object
+        Of the model.
+    resume : bool
+        Take what is kept.
+    """
+    cache, key = user_cache(), content(file, one, rules, reading, scene, choices)
+    kept = cache.load("life-digests", key) if resume else None
+    if kept is None:
+        kept = as_arrays(digest(file, one, rules, reading, scene, report))
+        cache.keep("life-digests", key, kept)
+    return from_arrays(kept)
 
 
 class _Sums:

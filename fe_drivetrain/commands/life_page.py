@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -12,15 +13,12 @@ from fe_drivetrain.commands.life_charts import row_names
 from fe_drivetrain.commands.life_digest import (
     LifeDigest,
     Reading,
-    as_arrays,
-    content,
-    digest,
-    from_arrays,
+    kept_digest,
 )
 from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.pool import mapped
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.life.at_site import site_lives
 from fe_drivetrain.life.reference_life import reference_load
@@ -32,6 +30,8 @@ from fe_drivetrain.suite.run import Run
 
 WIND_BIN = 1.0
 """Files whose mean winds are nearer stand for one wind [m/s]."""
+
+_MANY = 8  # files, each of every bearing, for which it pays to start processes
 
 UNVERIFIED = (
     "No constant here was read in ISO 281, ISO 76 or ISO/TS 16281. Those of capacities, reference "
@@ -84,20 +84,16 @@ def lived(
         A file cannot be read, or a site is asked for and files have no wind speed.
     """
     page.seed = None
-    cache = user_cache()
     found: list[BearingLife] = []
     with run.step("load steps"):
+        items = [
+            (file, one, rules, reading, scene, choices, resume)
+            for one in bearings
+            for file in files
+        ]
+        made = mapped(kept_digest, items, len(items) if len(items) >= _MANY else 1, run.report)
         for one in bearings:
-            digests = []
-            for file in files:
-                key = content(file, one, rules, reading, scene, choices)
-                kept = cache.load("life-digests", key) if resume else None
-                if kept is None:
-                    new = digest(file, one, rules, reading, scene, run.report)
-                    kept = as_arrays(new)
-                    cache.keep("life-digests", key, kept)
-                digests.append(from_arrays(kept))
-            found.append(_of_bearing(one, digests, files, site))
+            found.append(_of_bearing(one, list(islice(made, len(files))), files, site))
     _answer(page, found, rules, site)
     page.note(UNVERIFIED)
     _lives(page, found)

@@ -9,11 +9,20 @@ from typing import Annotated
 
 import typer
 
-from fe_drivetrain.commands.options import Channels, Mapping, Resume, RotorSpeed, Skip, Slopes
+from fe_drivetrain.commands.options import (
+    Channels,
+    Mapping,
+    Resume,
+    RotorSpeed,
+    Scheduler,
+    Skip,
+    Slopes,
+)
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.pool import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 _KEPT = "files that are done are kept: run again with --resume"
@@ -152,6 +161,7 @@ def loads_command(
         bool, typer.Option("--parquet", help="Write each table as Parquet, too (needs pyarrow).")
     ] = False,
     resume: Resume = False,
+    scheduler: Scheduler = None,
 ) -> None:
     """Show what is in load histories: statistics, spectra, cycles, time at level, load loops.
 
@@ -224,7 +234,7 @@ def loads_command(
             ),
             command=as_typed(),
         )
-        with show_steps() as report:
+        with show_steps() as report, scheduled_by(scheduler):
             results = run_case(case, out.resolve(), report=report)
         write(sys.stdout, results_text(results, out / "report.html"))
         return PASSED if results.passed else FAILED

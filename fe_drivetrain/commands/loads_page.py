@@ -28,7 +28,7 @@ from fe_drivetrain.commands.loads_together import WIND_BIN, Together, windows_ta
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.pool import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.histories.cycles import Cycles
 from fe_drivetrain.histories.sites import Site
@@ -51,7 +51,6 @@ ORIGIN = (
 _SHOWN = 20
 _MOST_BINS = 60
 _MANY = 8  # files for which it pays to start processes
-_AT_ONCE = 64  # files whose digests, a few hundred kilobytes each, are in memory together
 _SCALE = {"N": (1e3, "kN"), "N m": (1e3, "kN\u00a0m"), "rad/s": (1.0, "rad/s"), "m/s": (1.0, "m/s")}
 UNIT_OF = dict(zip(CHANNELS, UNITS, strict=True))
 
@@ -198,15 +197,11 @@ def _digests(
     reactions: SceneReactions | None = None,
 ) -> Iterator[tuple[Path, Digest]]:
     """File by file, several at a time where there are cores; each kept as soon as it is done."""
-    for start in range(0, len(files), _AT_ONCE):
-        batch = files[start : start + _AT_ONCE]
-        with Processes(len(batch) if len(batch) >= _MANY else 1, run.report) as processes:
-            jobs = [
-                processes.start(kept_digest, file, options, resume, reactions) for file in batch
-            ]
-            for number, (file, job) in enumerate(zip(batch, jobs, strict=True), start + 1):
-                run.report(f"{step} ({number} of {len(files)})")
-                yield file, job.result()
+    items = ((file, options, resume, reactions) for file in files)
+    made = mapped(kept_digest, items, len(files) if len(files) >= _MANY else 1, run.report)
+    for number, file in enumerate(files, 1):
+        run.report(f"{step} ({number} of {len(files)})")
+        yield file, next(made)
 
 
 def kept_digest(

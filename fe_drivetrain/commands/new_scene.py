@@ -11,7 +11,8 @@ import typer
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 
-_SUFFIXES = (".yaml", ".yml")
+SUFFIXES = (".yaml", ".yml")
+"""Of files that a user edits."""
 
 
 def new_command(
@@ -47,13 +48,13 @@ def new_command(
             return PASSED
         if file is None:
             raise InputError("Missing FILE: name the scene file to write, as in my.yaml, or --list")
-        if file.suffix.lower() not in _SUFFIXES:
-            raise InputError(f"{file} must end in {' or '.join(_SUFFIXES)}: name it as in my.yaml")
+        if file.suffix.lower() not in SUFFIXES:
+            raise InputError(f"{file} must end in {' or '.join(SUFFIXES)}: name it as in my.yaml")
         texts = {
             file: starting_scene(arrangement),
             file.with_name(SCHEMA_FILE): scene_schema(),
         }
-        _write_all(texts, overwrite)
+        write_all(texts, overwrite)
         write(
             sys.stdout,
             f"{file}: {ARRANGEMENTS[arrangement].title}\n"
@@ -64,8 +65,21 @@ def new_command(
     raise typer.Exit(guarded(work, "existing files are unchanged"))
 
 
-def _write_all(texts: dict[Path, str], overwrite: bool) -> None:
-    """Write files; those of the same content stay, others only go with leave to overwrite."""
+def write_all(texts: dict[Path, str], overwrite: bool) -> None:
+    """Write files; those of the same content stay, others only go with leave to overwrite.
+
+    Parameters
+    ----------
+    texts : dict
+        Content by path.
+    overwrite : bool
+        The leave.
+
+    Raises
+    ------
+    InputError
+        A file is there, or its folder is not.
+    """
     from fe_drivetrain.common.files import atomic_path
 
     changed = {

@@ -63,3 +63,12 @@ Resume = Annotated[
         "not changed since, are not read again.",
     ),
 ]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Do the work on an existing Dask cluster, as in tcp://127.0.0.1:8786 "
+        "(docs/clusters.md). Default: processes of this machine.",
+    ),
+]

@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
+from fe_drivetrain.commands.options import Scheduler
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.settings import CaseSettings, parse_settings
 from fe_drivetrain.commands.terminal import FAILED, KEPT, MISTAKE, PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.pool import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
@@ -61,7 +64,9 @@ def run_command(
     cases: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="CASE", help="GROUP/NAME, NAME if it is unique, or GROUP for all its cases."
+            metavar="CASE",
+            help="GROUP/NAME, NAME if it is unique, or GROUP for all its cases. CASE --help shows "
+            "what --set changes of it.",
         ),
     ] = None,
     all_: Annotated[bool, typer.Option("--all", help="Run every case.")] = False,
@@ -83,11 +88,13 @@ def run_command(
             "--junit", metavar="FILE", help="Write the verdicts as JUnit XML, for CI servers."
         ),
     ] = None,
+    scheduler: Scheduler = None,
 ) -> None:
     """Run validation cases and write their reports.
 
-    Several cases run in parallel processes, as many as there are cores, except those that measure
-    time, which run one by one at the end. An index.html lists all of them.
+    Several cases run in parallel processes, as many as there are cores, or on a cluster, except
+    those that measure time, which run one by one at the end, on this machine. An index.html lists
+    all of them.
 
     The exit status is 0 if every check passes, 1 if one fails, 2 for a wrong option or setting,
     and 130 if stopped. A case that needs a program that is not installed is listed as skipped.
@@ -106,7 +113,71 @@ def run_command(
         found = [case for name in names for case in find_cases(name)]
         return list({case.name: case for case in found}.values())
 
-    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit, resume))
+    raise typer.Exit(run_and_print(find, out, set_ or (), quick, junit, resume, scheduler))
+
+
+class HelpOfCases(TyperCommand):
+    """Help that ends with the source and the settings of the cases that were named."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Keep what was typed: ``--help`` ends the program before arguments are read.
+
+        Parameters
+        ----------
+        ctx : click.Context
+            Keeps it.
+        args : list of str
+            What was typed.
+
+        Returns
+        -------
+        list of str
+        """
+        ctx.meta["typed"] = list(args)
+        return super().parse_args(ctx, args)
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help, and what is said of the cases, if there are any.
+
+        Parameters
+        ----------
+        ctx : click.Context
+            With what was typed.
+        formatter : click.HelpFormatter
+            As of click.
+        """
+        super().format_help(ctx, formatter)
+        if words := [word for word in ctx.meta.get("typed", ()) if not word.startswith("-")]:
+            write(sys.stdout, help_of_cases(words))
+
+
+def help_of_cases(names: Sequence[str]) -> str:
+    """Title, source and settings of cases in plain text.
+
+    Parameters
+    ----------
+    names : sequence of str
+        As typed; an unknown one is said to be unknown.
+
+    Returns
+    -------
+    str
+    """
+    from fe_drivetrain.suite.case import find_cases
+    from fe_drivetrain.suite.settings import settings_in_words
+
+    lines = []
+    for name in names:
+        try:
+            found = find_cases(name)
+        except InputError as error:
+            lines += [f"{error}", ""]
+            continue
+        for case in found:
+            taken = settings_in_words(case) or "nothing"
+            lines += [case.name, f"  {case.title}", f"  Source: {case.source}"]
+            lines += [f"  --set: {taken}", ""]
+    return "\n".join(lines)
 
 
 def run_and_print(
@@ -116,6 +187,7 @@ def run_and_print(
     quick: bool = False,
     junit: Path | None = None,
     resume: bool = False,
+    scheduler: str | None = None,
 ) -> int:
     """Run cases, several of them in parallel, and print the verdicts.
 
@@ -133,6 +205,8 @@ def run_and_print(
         File for the verdicts as JUnit XML.
     resume : bool
         Leave out cases whose results are there already; for several cases.
+    scheduler : str or None
+        Address of the cluster that does the work.
 
     Returns
     -------
@@ -156,16 +230,17 @@ def run_and_print(
             )
         if junit is not None:
             from fe_drivetrain.report.junit import write_junit
-            from fe_drivetrain.suite.suite import NOT_RUN
+            from fe_drivetrain.suite.result_folders import NOT_RUN
 
             # stays if the run is stopped
             write_junit(junit, [c.name for c in cases], {}, {c.name: NOT_RUN for c in cases})
         results: dict[str, Results]
         problems: dict[str, Problem] = {}
-        if len(cases) == 1:
-            results = {cases[0].name: _run_one(cases[0], out, values, quick)}
-        else:
-            results, problems = _run_several(cases, out, values, quick, resume)
+        with scheduled_by(scheduler):
+            if len(cases) == 1:
+                results = {cases[0].name: _run_one(cases[0], out, values, quick)}
+            else:
+                results, problems = _run_several(cases, out, values, quick, resume)
         if junit is not None:
             write_junit(junit, [case.name for case in cases], results, problems)
         if any(problem.state != "skipped" for problem in problems.values()):

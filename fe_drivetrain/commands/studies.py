@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fe_drivetrain.commands.options import Mapping, SceneName, Skip, Slopes
+from fe_drivetrain.commands.options import Mapping, SceneName, Scheduler, Skip, Slopes
 from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import Quick, results_text, tables_text
 from fe_drivetrain.commands.scenes import named_scene
@@ -23,6 +23,7 @@ from fe_drivetrain.commands.settings import (
 )
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.pool import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
@@ -225,6 +226,7 @@ def uncertainty_command(
             "values.",
         ),
     ] = False,
+    scheduler: Scheduler = None,
     out: OutFolder = None,
     set_: SceneSettings = None,
 ) -> None:
@@ -263,6 +265,7 @@ def uncertainty_command(
                 seed,
                 sobol_samples,
             ),
+            scheduler=scheduler,
         )
 
     raise typer.Exit(guarded(work))
@@ -275,6 +278,7 @@ def run_on_scene(
     out: Path | None,
     study: Callable[[Run, Page], None],
     quick: bool = False,
+    scheduler: str | None = None,
 ) -> int:
     """Run a study as a case of its own and print its outcome.
 
@@ -292,13 +296,16 @@ def run_on_scene(
         Fills the page.
     quick : bool
         Whether it is a quick run.
+    scheduler : str or None
+        Address of the cluster that does the work.
 
     Returns
     -------
     int
         The exit status.
     """
-    results, page = _results_of_scene(command, scene, title, out, study, quick)
+    with scheduled_by(scheduler):
+        results, page = _results_of_scene(command, scene, title, out, study, quick)
     write(sys.stdout, results_text(results, page))
     return PASSED if results.passed else FAILED
 

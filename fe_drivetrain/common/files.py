@@ -144,6 +144,15 @@ class HiddenFolder:
         self._lock = None
 
 
+def empty(folder: Path) -> None:
+    """Remove all that is in a folder."""
+    for entry in folder.iterdir():
+        if entry.is_dir() and not entry.is_symlink():
+            shutil.rmtree(entry)
+        else:
+            entry.unlink()
+
+
 def remove_abandoned(folder: Path, pattern: str) -> None:
     """Remove files and folders of such names that no writer holds.
 

@@ -70,7 +70,7 @@ class Processes:
         self._environment = {**os.environ, **thread_limits(available // max(1, self.count))}
         self._report = report
         self._each_for_itself = each_for_itself
-        self._futures: list[Future[Any]] = []
+        self._futures: set[Future[Any]] = set()  # those that failed, or are not done
         self._workers: list[Worker] = []
         self._idle: queue.LifoQueue[Worker] = queue.LifoQueue()
         self._lock = threading.Lock()  # of what starts or ends a process
@@ -117,7 +117,8 @@ class Processes:
             raise ValueError(f"{function.__qualname__} must stand in a module, not in a script")
         else:
             future = self._threads.submit(self._do, function, arguments)
-        self._futures.append(future)
+        self._futures.add(future)
+        future.add_done_callback(self._forget)
         return future
 
     def finished(self, jobs: Collection[Future[_T]]) -> Iterator[Future[_T]]:
@@ -134,7 +135,7 @@ class Processes:
         trace: TracebackType | None,
     ) -> None:
         try:
-            for future in self._futures if error is None else ():
+            for future in list(self._futures) if error is None else ():
                 with self._without_failures():
                     future.result()
         finally:
@@ -144,6 +145,11 @@ class Processes:
                 printed = "".join(worker.printed() for worker in self._workers)
                 self._stack.close()
                 sys.stderr.write(printed)  # warnings, say, as this process would have printed them
+
+    def _forget(self, future: Future[Any]) -> None:
+        """Keep no result that the caller may have done with."""
+        if not future.cancelled() and future.exception() is None:
+            self._futures.discard(future)
 
     def _without_failures(self) -> AbstractContextManager[None]:
         return suppress(Exception) if self._each_for_itself else nullcontext()

@@ -173,6 +173,37 @@ def value_by_key(data: Any, key: str) -> Any:
     return data
 
 
+def value_changes(before: Any, after: Any) -> list[tuple[str, Any, Any]]:
+    """What nested mappings and lists state differently.
+
+    Parameters
+    ----------
+    before, after : dict or list
+        Of plain data.
+
+    Returns
+    -------
+    list of tuple
+        Dotted key, and both values (None where there is none).
+    """
+    a, b = _flat(before, ""), _flat(after, "")
+    return [(k, a.get(k), b.get(k)) for k in dict.fromkeys([*a, *b]) if a.get(k) != b.get(k)]
+
+
+def _flat(value: Any, key: str) -> dict[str, Any]:
+    """Values of nested mappings and lists by dotted key."""
+    if isinstance(value, Mapping):
+        parts = list(value.items())
+    elif isinstance(value, list):
+        parts = list(enumerate(value))
+    else:
+        return {key: value}
+    found: dict[str, Any] = {}
+    for name, part in parts:
+        found |= _flat(part, f"{key}.{name}" if key else str(name))
+    return found
+
+
 def _numbered(target: Any, part: str) -> int | None:
     """Position in a list by its number; None of what is no list, or has no such entry."""
     if not isinstance(target, list) or not part.isdecimal():

@@ -35,9 +35,11 @@ from .equations import varying as varying
 from .equations import wave_table as wave_table
 from .flexible import Flexible as Flexible
 from .flexible import Housing as Housing
+from .gear_pairs import MeshStress as MeshStress
 from .gear_pairs import contact_ratios as contact_ratios
 from .gear_pairs import machine_pairs as machine_pairs
 from .gear_pairs import mesh_courses as mesh_courses
+from .gear_pairs import mesh_stresses as mesh_stresses
 from .gear_pairs import with_iso_stiffness as with_iso_stiffness
 from .integration import AVERAGE as AVERAGE
 from .integration import LINEAR as LINEAR
@@ -57,6 +59,9 @@ from .levels import torsional as torsional
 from .machines import constant_power as constant_power
 from .machines import grid_spring as grid_spring
 from .machines import slip_line as slip_line
+from .mesh_errors import MeshError as MeshError
+from .mesh_errors import error_of_slices as error_of_slices
+from .mesh_errors import harmonic_error as harmonic_error
 from .meshing import Meshing as Meshing
 from .meshing import contact_wave as contact_wave
 from .meshing import machine_meshing as machine_meshing
@@ -79,10 +84,12 @@ from .planetary import equal_angles as equal_angles
 from .planetary import excited_motion as excited_motion
 from .planetary import springs_of as springs_of
 from .response import Crossing as Crossing
+from .response import MeshResponse as MeshResponse
 from .response import absolute_sun_orders as absolute_sun_orders
 from .response import crossings as crossings
 from .response import frequency_response as frequency_response
 from .response import mesh_orders as mesh_orders
+from .response import mesh_response as mesh_response
 from .response import modal_response as modal_response
 from .response import speed_diagram as speed_diagram
 from .roller_seats import OnRollers as OnRollers
@@ -91,6 +98,9 @@ from .roller_seats import machine_seat as machine_seat
 from .roller_seats import planet_seats as planet_seats
 from .roller_seats import seat as seat
 from .roller_seats import static_on_rollers as static_on_rollers
+from .roller_seats import without_bearings as without_bearings
+from .roller_steps import RollerMotion as RollerMotion
+from .roller_steps import integrate_on_rollers as integrate_on_rollers
 from .springs import Mesh as Mesh
 from .springs import Place as Place
 from .springs import Spring as Spring

@@ -2,15 +2,17 @@
 
     M q'' + C q' + K q + sum_i (dV_i/dq + d_i h_i) = f(t),  V_i = k_i kappa_i(psi_i) Phi_i(delta_i)
 
-Each spring has a row h with the elongation delta = h . q - offset. Phi is delta^2 / 2 of a linear
-spring; with a dead zone it is zero between the flanks, and beyond a flank a power of the distance
-from it. The stiffness may vary with a phase psi = phase + frequency t + turns . q, in periods:
-by time alone (a gear mesh at constant speed), or by an angle (the row ``turns``). A stiffness that
-varies with an angle drives that angle, too, by -dV/dpsi turns: without this force energy is not
-conserved (Oh, Grosh and Barber 2005).
+Each spring has a row h with the elongation delta = h . q - offset - e. Phi is delta^2 / 2 of a
+linear spring; with a dead zone it is zero between the flanks, and beyond a flank a power of the
+distance from it. The stiffness may vary with a phase psi = phase + frequency t + turns . q, in
+periods: by time alone (a gear mesh at constant speed), or by an angle (the row ``turns``). A
+stiffness that varies with an angle drives that angle, too, by -dV/dpsi turns: without this force
+energy is not conserved (Oh, Grosh and Barber 2005). So does e, which varies with the same phase:
+the transmission error of a mesh without load, a displacement along its line of action.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,6 +54,13 @@ class SpringLaws:
         (m,) of machines that draw constant power [W] at the speed ``speed + h . q'``; 0 of others.
     waves : Floats
         (w, p, 4) stiffness over its mean in a period: polynomials of p even intervals.
+    error : Ints
+        (m,) number of the error e that moves the free place of the spring, or `CONSTANT`.
+    error_phase, error_turns : Floats
+        (m,) periods of the error at psi = 0, and for each period of psi: 1 of one that repeats with
+        the mesh, 1/z of the run-out of a gear with z teeth.
+    errors : Floats
+        (e, p, 4) errors in their periods, as waves [m].
     """
 
     rows: Floats
@@ -68,6 +77,10 @@ class SpringLaws:
     power: Floats
     speed: Floats
     waves: Floats
+    error: Ints
+    error_phase: Floats
+    error_turns: Floats
+    errors: Floats
 
     @property
     def special(self) -> Bools:
@@ -76,6 +89,7 @@ class SpringLaws:
             (self.lower != self.upper)
             | (self.exponent != 1.0)
             | (self.wave != CONSTANT)
+            | (self.error != CONSTANT)
             | (self.power != 0.0)
         )
 
@@ -96,6 +110,10 @@ def spring_laws(
     power: ArrayLike = 0.0,
     speed: ArrayLike = 0.0,
     waves: ArrayLike | None = None,
+    error: ArrayLike = CONSTANT,
+    error_phase: ArrayLike = 0.0,
+    error_turns: ArrayLike = 1.0,
+    errors: ArrayLike | None = None,
 ) -> SpringLaws:
     """Springs of rows, what is not given being that of linear ones.
 
@@ -109,6 +127,10 @@ def spring_laws(
         As in `SpringLaws`, or one for all.
     waves : array_like, optional
         (w, p, 4), by `wave_table` or `fourier_wave`, stacked.
+    error, error_phase, error_turns : array_like
+        As in `SpringLaws`, or one for all.
+    errors : array_like, optional
+        (e, p, 4), by `wave_table` of lengths [m], stacked.
 
     Returns
     -------
@@ -125,7 +147,9 @@ def spring_laws(
     def each(values: ArrayLike) -> Floats:
         return np.array(np.broadcast_to(np.asarray(values, dtype=np.float64), m))
 
-    table = np.zeros((0, 1, 4)) if waves is None else np.asarray(waves, dtype=np.float64)
+    none = np.zeros((0, 1, 4))
+    table = none if waves is None else np.asarray(waves, dtype=np.float64)
+    moved = none if errors is None else np.asarray(errors, dtype=np.float64)
     found = SpringLaws(
         H,
         each(stiffness),
@@ -141,6 +165,10 @@ def spring_laws(
         each(power),
         each(speed),
         np.ascontiguousarray(table),
+        np.array(np.broadcast_to(np.asarray(error, dtype=np.int64), m)),
+        each(error_phase),
+        each(error_turns),
+        np.ascontiguousarray(moved),
     )
     for name, bad, allowed in (
         ("stiffness", ~(found.stiffness >= 0.0), "a number of at least 0 N/m"),
@@ -149,6 +177,7 @@ def spring_laws(
         ("upper", ~(found.upper >= 0.0), "at least 0 m"),
         ("exponent", ~(found.exponent >= 1.0), "at least 1"),
         ("wave", (found.wave < -1) | (found.wave >= len(table)), f"-1 to {len(table) - 1}"),
+        ("error", (found.error < -1) | (found.error >= len(moved)), f"-1 to {len(moved) - 1}"),
     ):
         if bad.any():
             at = int(np.flatnonzero(bad)[0])
@@ -161,22 +190,27 @@ def spring_laws(
 
 def joined_laws(*parts: SpringLaws) -> SpringLaws:
     """The springs of several groups on the same degrees of freedom, in their order."""
-    intervals = {part.waves.shape[1] for part in parts if len(part.waves)}
-    if len(intervals) > 1:
-        raise InputError(
-            f"waves of {' and '.join(map(str, sorted(intervals)))} intervals cannot be joined: "
-            "make them with equal numbers"
-        )
-    table = [part.waves for part in parts if len(part.waves)] or [parts[0].waves]
-    first = np.cumsum([0, *(len(part.waves) for part in parts)])
-    renumbered = [
-        replace(part, wave=np.where(part.wave >= 0, part.wave + start, CONSTANT))
-        for part, start in zip(parts, first, strict=False)
-    ]
-    fields = [name for name in SpringLaws.__dataclass_fields__ if name != "waves"]
+    tables: dict[str, Any] = {}
+    renumbered = list(parts)
+    for name, number in (("waves", "wave"), ("errors", "error")):
+        found = [getattr(part, name) for part in parts]
+        given = [table for table in found if len(table)]
+        intervals = {table.shape[1] for table in given}
+        if len(intervals) > 1:
+            raise InputError(
+                f"{name} of {' and '.join(map(str, sorted(intervals)))} intervals cannot be "
+                "joined: make them with equal numbers"
+            )
+        tables[name] = np.concatenate(given or found[:1])
+        first = np.cumsum([0, *(len(table) for table in found)])
+        of = [getattr(part, number) for part in parts]
+        moved = [np.where(n >= 0, n + start, CONSTANT) for n, start in zip(of, first, strict=False)]
+        renumbered = [
+            replace(part, **{number: n}) for part, n in zip(renumbered, moved, strict=True)
+        ]
+    fields = [name for name in SpringLaws.__dataclass_fields__ if name not in tables]
     return SpringLaws(
-        **{f: np.concatenate([getattr(p, f) for p in renumbered]) for f in fields},
-        waves=np.concatenate(table),
+        **{f: np.concatenate([getattr(p, f) for p in renumbered]) for f in fields}, **tables
     )
 
 

@@ -1,14 +1,22 @@
-"""Gears of a machine that has all of their data: pairs, mesh stiffness and contact ratios."""
+"""Gears of a machine that has all of their data: pairs, mesh stiffness, stresses."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from math import radians
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.tables import Machine, ParallelData, PlanetaryData
-from fe_drivetrain.gear.involute import Gear, Pair
+from fe_drivetrain.gear.involute import Gear, Pair, Rack
 from fe_drivetrain.gear.iso import iso_stiffness
+from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.gear.meshes import StiffnessTable, mesh_stiffness
 from fe_drivetrain.gear.pair_stiffness import Law
+from fe_drivetrain.gear.rating import ContactStress, RootStress, contact_stress, root_stress
+from fe_drivetrain.gear.root_geometry import Cutter
+from fe_drivetrain.gear.strength import GearMaterial
+
+STEELS = (GearMaterial("case-hardened", 1500e6, 430e6),) * 2
+"""Case-hardened gears of quality MQ, ISO 6336-5."""
 
 
 def machine_pairs(machine: Machine) -> dict[str, Pair]:
@@ -17,7 +25,7 @@ def machine_pairs(machine: Machine) -> dict[str, Pair]:
     Parameters
     ----------
     machine : Machine
-        Its table, with a module, teeth, profile shifts and tip diameters of each stage.
+        Its table, with a module, teeth and profile shifts of each stage.
 
     Returns
     -------
@@ -45,10 +53,12 @@ def machine_pairs(machine: Machine) -> dict[str, Pair]:
 
 def _gears(stage: PlanetaryData | ParallelData, number: int) -> list[Gear]:
     """In the order of the teeth."""
-    if stage.teeth is None or stage.module is None or stage.shifts is None or stage.tips is None:
+    if stage.teeth is None or stage.module is None or stage.shifts is None:
         raise InputError(
-            f"stage {number} has no full data of its gears: give teeth, module, shifts and tips"
+            f"stage {number} has no full data of its gears: give teeth, module and shifts"
         )
+    count = len(stage.teeth)
+    fillets = stage.fillets or count * (Rack().fillet,)
     helix = stage.hand * radians(stage.helix)
     planetary = isinstance(stage, PlanetaryData)
     # a sun is opposite to its planets, and they are as their ring; a wheel opposite to its pinion
@@ -58,14 +68,22 @@ def _gears(stage: PlanetaryData | ParallelData, number: int) -> list[Gear]:
         Gear(
             sign * teeth,
             stage.module,
-            stage.face_width,
+            face,
             turned,
             shift,
             pressure_angle=radians(stage.pressure_angle),
+            rack=Rack(dedendum=stage.dedendum, fillet=fillet),
             tip_diameter=tip,
         )
-        for sign, teeth, turned, shift, tip in zip(
-            signs, stage.teeth, helices, stage.shifts, stage.tips, strict=True
+        for sign, teeth, face, turned, shift, fillet, tip in zip(
+            signs,
+            stage.teeth,
+            stage.faces or count * (stage.face_width,),
+            helices,
+            stage.shifts,
+            fillets,
+            stage.tips or count * (None,),
+            strict=True,
         )
     ]
 
@@ -120,3 +138,72 @@ def with_iso_stiffness(machine: Machine) -> Machine:
         stage["stiffness_of"] = "line"
         stage[keys[mesh]] = iso_stiffness(pair, blank=stage["blank"]).mesh * pair.face_width
     return Machine.model_validate(data)
+
+
+@dataclass(frozen=True)
+class MeshStress:
+    """What a torque on the rotor does to the teeth of a mesh, by ISO 6336.
+
+    Attributes
+    ----------
+    pair : Pair
+        Its gears.
+    torque : float
+        On the first gear in this mesh [N m].
+    contact : ContactStress
+        Hertz pressure of both flanks.
+    roots : tuple of RootStress, or None
+        Of both gears; none of a ring whose cutter is not known.
+    """
+
+    pair: Pair
+    torque: float
+    contact: ContactStress
+    roots: tuple[RootStress, RootStress] | None
+
+
+def mesh_stresses(
+    machine: Machine,
+    torque: float,
+    factors: Mapping[str, LoadFactors] | None = None,
+    materials: tuple[GearMaterial, GearMaterial] = STEELS,
+) -> dict[str, MeshStress]:
+    """Contact and root stresses of all meshes under a torque on the rotor, without losses.
+
+    Parameters
+    ----------
+    machine : Machine
+        As of `machine_pairs`.
+    torque : float
+        On the rotor [N m].
+    factors : mapping of str to LoadFactors, optional
+        By the names of `machine_pairs`; all 1 where left out. Planets share the torque equally but
+        for K_gamma.
+    materials : tuple of GearMaterial
+        Of both gears of each pair, of which the elasticity counts here.
+
+    Returns
+    -------
+    stresses : dict[str, MeshStress]
+        By the names of `machine_pairs`.
+    """
+    given, found = factors or {}, {}
+    for name, pair in machine_pairs(machine).items():
+        number = int(name.split(" ")[1])
+        stage = machine.stages[number - 1]
+        on_first, cutter = abs(torque / machine.speeds[number]), None
+        if isinstance(stage, PlanetaryData):
+            on_first /= stage.planets
+            if name.endswith("ring-planet"):
+                _, planet, sun = stage.teeth or (0, 1, 1)
+                on_first *= planet / sun
+                cutter = Cutter(stage.cutter) if stage.cutter else None
+        own = given.get(name, LoadFactors())
+        known = cutter is not None or not pair.internal
+        found[name] = MeshStress(
+            pair,
+            on_first,
+            contact_stress(pair, on_first, own, materials),
+            root_stress(pair, on_first, own, cutter) if known else None,
+        )
+    return found

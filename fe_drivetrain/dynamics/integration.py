@@ -232,7 +232,8 @@ def prepared(
         raise InputError(f"time step is {dt:g} s but must be above 0 s: change it")
     s = equations.springs
     which = np.flatnonzero(s.special)
-    turning = [i for i in which if s.wave[i] >= 0 and s.turns[i].any()]
+    varies = (s.wave >= 0) | (s.error >= 0)
+    turning = [i for i in which if varies[i] and s.turns[i].any()]
     angle = np.full(len(s.rows), -1)
     angle[turning] = len(which) + np.arange(len(turning))
     R = np.ascontiguousarray(np.vstack([s.rows[which], s.turns[turning]]))
@@ -271,6 +272,10 @@ def prepared(
         s.power[which],
         s.speed[which],
         s.waves,
+        s.error[which],
+        s.error_phase[which],
+        s.error_turns[which],
+        s.errors,
         driven,
     )
     return Stepper(equations, matrices, laws)

@@ -385,8 +385,8 @@ def _heavier(body: Body, shaft: ShaftData, length: float) -> Body:
 def torsional(machine: Machine) -> Torsional:
     """The machine at the torsional level, for what the room `torsion` does with one.
 
-    Windings of meshes are along the lines of action [m/rad], so that their stiffness is in N/m; for
-    stages with z_s + 2 z_p = z_r these are the same systems as `gear_masses` of a gear table.
+    Windings of meshes are along the lines of action [m/rad], so that their stiffness is in N/m;
+    else these are the systems of `gear_masses` of a gear table with the planets' teeth.
     """
     system = machine_system(machine, Level.TORSIONAL)
     inertias = [

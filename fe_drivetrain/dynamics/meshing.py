@@ -21,6 +21,7 @@ from fe_drivetrain.dynamics.equations import (
     spring_laws,
     wave_table,
 )
+from fe_drivetrain.dynamics.mesh_errors import MeshError
 from fe_drivetrain.dynamics.planetary import equal_angles
 from fe_drivetrain.dynamics.system import System, springs_named
 from fe_drivetrain.dynamics.tables import Machine, PlanetaryData
@@ -78,12 +79,27 @@ class Meshing:
     course : MeshStiffness or StiffnessTable, optional
         Of `fe_drivetrain.gear`, whose course over its mean is taken in place of the square wave;
         the mean is that of the system's spring.
+    error : MeshError, optional
+        Transmission error without load, along the normal of the teeth.
     """
 
     contact_ratio: float
     frequency: float
     phase: float = 0.0
     course: MeshStiffness | StiffnessTable | None = None
+    error: MeshError | None = None
+
+    def wave(self, harmonics: int = HARMONICS) -> Floats:
+        """Course of the stiffness over its mean, as `wave_table`.
+
+        Parameters
+        ----------
+        harmonics : int
+            Of the square wave, where no course is given.
+        """
+        if self.course is None:
+            return contact_wave(self.contact_ratio, harmonics)
+        return wave_of(self.course)
 
 
 def machine_meshing(
@@ -91,6 +107,7 @@ def machine_meshing(
     speed: float,
     contact_ratios: Mapping[str, float],
     courses: Mapping[str, MeshStiffness | StiffnessTable] | None = None,
+    errors: Mapping[str, MeshError] | None = None,
 ) -> dict[str, Meshing]:
     """Frequencies and phases of all meshes of a machine, from its teeth.
 
@@ -106,6 +123,8 @@ def machine_meshing(
         By "stage 1 sun-planet", "stage 1 ring-planet", "stage 2 mesh" and so on.
     courses : Mapping[str, MeshStiffness or StiffnessTable], optional
         By the same names, of meshes that vary otherwise than as a square wave.
+    errors : Mapping[str, MeshError], optional
+        By the same names, transmission errors: of planets all with the phase of their mesh.
 
     Returns
     -------
@@ -117,7 +136,7 @@ def machine_meshing(
     InputError
         A contact ratio is missing, or a stage has no teeth.
     """
-    found, given = {}, courses or {}
+    found, given, faults = {}, courses or {}, errors or {}
     for number, ((_, teeth), stage) in enumerate(
         zip(machine.meshing, machine.stages, strict=True), start=1
     ):
@@ -131,11 +150,13 @@ def machine_meshing(
                 for planet, phase in enumerate(of, start=1):
                     name = f"stage {number} {kind} {planet}"
                     turned = -float(phase) % 1.0
-                    found[name] = Meshing(ratio, frequency, turned, given.get(mesh))
+                    found[name] = Meshing(
+                        ratio, frequency, turned, given.get(mesh), faults.get(mesh)
+                    )
         else:
             name = f"stage {number} mesh"
             ratio = _ratio(contact_ratios, name)
-            found[name] = Meshing(ratio, frequency, course=given.get(name))
+            found[name] = Meshing(ratio, frequency, course=given.get(name), error=faults.get(name))
     return found
 
 
@@ -154,7 +175,7 @@ def varying_equations(
     damping: float = 0.0,
     harmonics: int = HARMONICS,
 ) -> Equations:
-    """Equations of motion of a system whose meshes vary with time.
+    """Equations of motion of a system whose meshes vary with time, and have errors.
 
     Parameters
     ----------
@@ -184,19 +205,21 @@ def varying_equations(
     count = len(system.spring_names)
     wave, phase, frequency = np.full(count, -1), np.zeros(count), np.zeros(count)
     half = np.zeros(count)
+    error, error_phase, error_turns = np.full(count, -1), np.zeros(count), np.ones(count)
     waves: list[Floats] = []
+    errors: list[Floats] = []
     for name, mesh in meshing.items():
         of = springs_named(system.spring_names, name, "mesh")
         for i in of:
             system.changeable(system.spring_names[i])
-        waves.append(
-            contact_wave(mesh.contact_ratio, harmonics)
-            if mesh.course is None
-            else wave_of(mesh.course)
-        )
+        waves.append(mesh.wave(harmonics))
         wave[of] = len(waves) - 1
         phase[of], frequency[of] = mesh.phase, mesh.frequency
         half[of] = 0.5 * (backlash or 0.0)
+        if mesh.error is not None:
+            errors.append(mesh.error.table)
+            error[of] = len(errors) - 1
+            error_phase[of], error_turns[of] = mesh.error.phase, mesh.error.turns
     springs = spring_laws(
         system.rows,
         system.stiffness,
@@ -207,6 +230,10 @@ def varying_equations(
         phase=phase,
         frequency=frequency,
         waves=np.stack(waves) if waves else None,
+        error=error,
+        error_phase=error_phase,
+        error_turns=error_turns,
+        errors=np.stack(errors) if errors else None,
     )
     return equations_of_motion(
         system.mass,

@@ -1,4 +1,4 @@
-"""Frequency response, and crossings of natural frequencies with orders of the rotor's speed."""
+"""Frequency response to loads and to meshes; crossings of natural frequencies with orders."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -7,8 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.mesh_errors import harmonic_of
+from fe_drivetrain.dynamics.meshing import Meshing
 from fe_drivetrain.dynamics.modes import Complex, SystemModes, turning_modes
-from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.dynamics.system import System, springs_named
 
 
 def frequency_response(
@@ -63,6 +66,102 @@ def modal_response(
     shapes = modes.shapes[:, :count]
     q = (shapes.T @ load) / (own**2 - w**2 + 2j * ratio * own * w)
     return np.asarray(q @ shapes.T)
+
+
+@dataclass(frozen=True)
+class MeshResponse:
+    """Steady vibration that meshes excite, of one harmonic of the mesh frequency.
+
+    Attributes
+    ----------
+    frequencies : ndarray, (s,)
+        Of the vibration [Hz].
+    motions : ndarray, (s, n)
+        Complex amplitudes of the degrees of freedom [m, rad].
+    forces : ndarray, (s, m)
+        Of all springs with their dampers [N, N m], beside those of the mean load.
+    """
+
+    frequencies: Floats
+    motions: Complex
+    forces: Complex
+
+
+def mesh_response(
+    system: System,
+    meshing: Mapping[str, Meshing],
+    frequencies: ArrayLike,
+    order: int = 1,
+    *,
+    still: Floats | None = None,
+    speed: float = 0.0,
+    damping: float = 0.0,
+) -> MeshResponse:
+    """Frequency response to transmission errors, and to stiffness that varies under a mean load.
+
+    To first order in both, a mesh with the mean k, the course k (1 + kappa), the error e and the
+    mean elongation delta is a linear one under the load k (e - kappa delta) + c e' along its row:
+    the static transmission error under load excites (Gregory, Harris and Munro 1963).
+
+    Parameters
+    ----------
+    system : System
+        Meshes as stiff as on average.
+    meshing : Mapping[str, Meshing]
+        Meshes of one frequency that excite, with their phases and errors; their own frequencies do
+        not count.
+    frequencies : array_like, (s,)
+        Of these meshes [Hz].
+    order : int
+        Which harmonic.
+    still : ndarray, (n,), optional
+        Motions under the mean load, as of `wind_up`: courses of stiffness count; without, errors
+        alone excite.
+    speed : float
+        Reference speed, for gyroscopic terms [rad/s].
+    damping : float
+        As of `varying_equations`: C is this time [s] times the stiffness of the springs, beside
+        their dampers.
+
+    Returns
+    -------
+    response : MeshResponse
+
+    Raises
+    ------
+    InputError
+        A mesh is not in the system, was eliminated with a body without mass, or has no error; or
+        errors do not repeat with their meshes alike.
+    """
+    s, at = system, np.atleast_1d(np.asarray(frequencies, dtype=np.float64))
+    turns = {mesh.error.turns for mesh in meshing.values() if mesh.error is not None}
+    turns |= set() if still is None else {1.0}
+    if len(turns) != 1 or (still is None and any(m.error is None for m in meshing.values())):
+        raise InputError(
+            "meshes of one frequency response must all have errors of one number of periods for "
+            "each of the mesh, 1 beside courses of stiffness: leave the others out"
+        )
+    each = turns.pop()
+    e, kappa = (np.zeros(len(s.spring_names), dtype=complex) for _ in range(2))
+    for name, mesh in meshing.items():
+        of = springs_named(s.spring_names, name, "mesh")
+        for i in of:
+            s.changeable(s.spring_names[i])
+        turned = np.exp(2j * np.pi * order * each * mesh.phase)
+        if mesh.error is not None:
+            own = np.exp(2j * np.pi * order * mesh.error.phase)
+            e[of] = mesh.error.harmonic(order) * own * turned
+        if still is not None:
+            kappa[of] = harmonic_of(mesh.wave()[:, 0], order) * turned
+    wound = 0.0 if still is None else s.stiffness * (s.rows @ still) * kappa
+    f = at * order * each
+    omega = 2.0 * np.pi * f[:, None]
+    along = s.stiffness + 1j * omega * (s.damping + damping * s.stiffness)
+    K = s.K - speed**2 * s.centripetal
+    C = s.C + damping * (s.rows.T @ (s.stiffness[:, None] * s.rows)) + speed * s.gyroscopic
+    whole = K - omega[..., None] ** 2 * s.mass + 1j * omega[..., None] * C
+    q = np.linalg.solve(whole, ((along * e - wound) @ s.rows)[..., None])[..., 0]
+    return MeshResponse(f, np.asarray(q), np.asarray(along * (q @ s.rows.T - e) + wound))
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from fe_drivetrain.bearing.contact_forces import forces
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.newton import FIRMEST, MAX_STEPS, MAX_TRIALS, narrowed, next_firmness
 from fe_drivetrain.bearing.rolling import free_motions
+from fe_drivetrain.bearing.stored_energy import energy_of
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots
@@ -249,7 +250,7 @@ def static_on_rollers(
     if len(set(names)) < len(names):
         raise InputError("two rolling bearings have the same name: give each its own place")
     q = static(system, load, gaps, contacts).q
-    problem = _Problem(_without_springs(system, seats), load, seats, gaps, contacts)
+    problem = _Problem(without_bearings(system, seats), load, seats, gaps, contacts)
     root = diagonal_roots(system.K.diagonal())
     size = float(np.linalg.norm(load / root))
     firm, steps = FIRMEST, 0
@@ -274,8 +275,26 @@ def static_on_rollers(
     return OnRollers(state, tuple(seats), u, F, residual, residual <= 1.0, steps)
 
 
-def _without_springs(system: System, seats: Sequence[Seat]) -> System:
-    """Without those of the motions that rollers resist."""
+def without_bearings(system: System, seats: Sequence[Seat]) -> System:
+    """The system without the springs of the motions that rollers resist.
+
+    Parameters
+    ----------
+    system : System
+        With the springs of all bearings.
+    seats : sequence of Seat
+        Rolling bearings in their place.
+
+    Returns
+    -------
+    system : System
+        With as many springs, those of a stiffness of zero.
+
+    Raises
+    ------
+    InputError
+        A bearing has no springs in the system, or a body without mass was eliminated by them.
+    """
     none = {}
     for one in seats:
         resisted = np.abs(free_motions(one.bearing)[0]).max(axis=1) > 0
@@ -290,8 +309,48 @@ def _without_springs(system: System, seats: Sequence[Seat]) -> System:
     return with_stiffness(system, none)
 
 
+@dataclass(frozen=True)
+class Rollers:
+    """Rolling bearings on a system's degrees of freedom; equal ones are evaluated together.
+
+    Attributes
+    ----------
+    kinds : tuple[Bearing, ...]
+        (b,) bearings.
+    rows : Floats
+        (b, 5, n) motion of each inner ring against the outer one.
+    """
+
+    kinds: tuple[Bearing, ...]
+    rows: Floats
+
+    def carried(self, u: Floats) -> tuple[Floats, Floats]:
+        """Loads (b, 5) and tangents (b, 5, 5) at motions (b, 5)."""
+        F, K = np.zeros_like(u), np.zeros((len(u), 5, 5))
+        for kind, of in self._equal():
+            F[of], K[of] = forces(kind, u[of])
+        return F, K
+
+    def energy(self, u: Floats) -> float:
+        """Stored in all of them at motions (b, 5) [J]."""
+        return float(sum(energy_of(kind, u[of]).sum() for kind, of in self._equal()))
+
+    def _equal(self) -> list[tuple[Bearing, list[int]]]:
+        return [
+            (kind, [k for k, other in enumerate(self.kinds) if other == kind])
+            for kind in dict.fromkeys(self.kinds)
+        ]
+
+
+def rollers_of(system: System, seats: Sequence[Seat]) -> Rollers:
+    """The bearings of seats on the degrees of freedom of a system."""
+    n = len(system.names)
+    rows = np.array([one.rows(system) for one in seats]).reshape(len(seats), 5, n)
+    return Rollers(tuple(one.bearing for one in seats), rows)
+
+
 class _Problem:
-    """Gradient and tangent of the energy; bearings that are equal are evaluated together."""
+    """Gradient and tangent of the energy."""
 
     def __init__(
         self,
@@ -303,8 +362,8 @@ class _Problem:
     ) -> None:
         self.system, self.load = system, load
         self.gaps, self.presses = gaps_and_contacts(system, gaps, contacts)
-        self.rows = np.array([one.rows(system) for one in seats]).reshape(len(seats), 5, len(load))
-        self.kinds = [one.bearing for one in seats]
+        self.rollers = rollers_of(system, seats)
+        self.rows = self.rollers.rows
         self.linear = ~self.presses
         fixed = np.where(self.linear, system.stiffness, 0.0)
         self.K = system.rows.T @ (fixed[:, None] * system.rows) + system.extra
@@ -312,10 +371,7 @@ class _Problem:
     def bearings(self, q: Floats) -> tuple[Floats, Floats, Floats]:
         """Motions and loads (b, 5), tangents (b, 5, 5)."""
         u = np.asarray(self.rows @ q)
-        F, K = np.zeros_like(u), np.zeros((len(u), 5, 5))
-        for kind in dict.fromkeys(self.kinds):
-            of = [k for k, other in enumerate(self.kinds) if other == kind]
-            F[of], K[of] = forces(kind, u[of])
+        F, K = self.rollers.carried(u)
         return u, F, K
 
     def at(self, q: Floats) -> tuple[Floats, Floats, Floats]:

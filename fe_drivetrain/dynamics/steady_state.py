@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import linalg
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.equations import Equations
 
@@ -37,8 +37,10 @@ def restoring(
         (n, n), at constant velocity.
     """
     s = equations.springs
-    x, rate = s.rows @ q - s.offset, s.rows @ velocity
     factor, slope, bend = waves_at(equations, t, q)
+    e, e1, e2 = errors_at(equations, t, q)
+    turning = s.frequency + s.turns @ velocity
+    x, rate = s.rows @ q - s.offset - e, s.rows @ velocity
     high, low = x > s.upper, x < s.lower
     both = s.lower == s.upper
     side = np.where(both, np.abs(x), np.where(high, x - s.upper, np.where(low, s.lower - x, 0.0)))
@@ -49,14 +51,18 @@ def restoring(
     phi = touches * side ** (s.exponent + 1.0) / (s.exponent + 1.0)
     k = s.stiffness
     machine = np.divide(s.power, s.speed + rate, out=np.zeros(len(k)), where=s.power != 0.0)
-    along = k * factor * first + touches * s.damping * rate + machine
+    c = touches * s.damping
+    along = k * factor * first + c * (rate - e1 * turning) + machine
     force = s.rows.T @ along + equations.extra @ q + equations.damping @ velocity
     tangent = s.rows.T @ ((k * factor * second)[:, None] * s.rows) + equations.extra
-    mixed = s.rows.T @ ((k * slope * first)[:, None] * s.turns)
-    tangent = tangent + mixed
+    mixed = s.rows.T @ ((k * (slope * first - factor * second * e1))[:, None] * s.turns)
+    followed = c * e2 * turning
+    tangent = tangent + mixed - s.rows.T @ (followed[:, None] * s.turns)
     if driven:
-        force = force + s.turns.T @ (k * slope * phi)
-        tangent = tangent + mixed.T + s.turns.T @ ((k * bend * phi)[:, None] * s.turns)
+        force = force + s.turns.T @ (k * slope * phi - along * e1)
+        own = k * (bend * phi - 2.0 * slope * first * e1 + factor * second * e1**2)
+        own = own + followed * e1 - along * e2
+        tangent = tangent + mixed.T + s.turns.T @ (own[:, None] * s.turns)
     return np.asarray(force), np.asarray(tangent)
 
 
@@ -66,16 +72,35 @@ def waves_at(equations: Equations, t: float, q: Floats) -> tuple[Floats, Floats,
     factor, slope, bend = np.ones(len(s.rows)), np.zeros(len(s.rows)), np.zeros(len(s.rows))
     which = np.flatnonzero(s.wave >= 0)
     if len(which):
-        intervals = s.waves.shape[1]
         phase = (s.phase + s.frequency * t + s.turns @ q)[which]
-        at = (phase - np.floor(phase)) * intervals
-        place = np.minimum(at.astype(int), intervals - 1)
-        d = (at - place) / intervals
-        c = s.waves[s.wave[which], place].T
-        factor[which] = c[0] + d * (c[1] + d * (c[2] + d * c[3]))
-        slope[which] = c[1] + d * (2.0 * c[2] + 3.0 * c[3] * d)
-        bend[which] = 2.0 * c[2] + 6.0 * c[3] * d
+        factor[which], slope[which], bend[which] = _tables(s.waves, s.wave[which], phase)
     return factor, slope, bend
+
+
+def errors_at(equations: Equations, t: float, q: Floats) -> tuple[Floats, Floats, Floats]:
+    """(m,) errors e of the springs [m] at a time and place, and two derivatives by the phase."""
+    s = equations.springs
+    e, slope, bend = np.zeros(len(s.rows)), np.zeros(len(s.rows)), np.zeros(len(s.rows))
+    which = np.flatnonzero(s.error >= 0)
+    if len(which):
+        turns = s.error_turns[which]
+        phase = (s.phase + s.frequency * t + s.turns @ q)[which] * turns + s.error_phase[which]
+        e[which], one, two = _tables(s.errors, s.error[which], phase)
+        slope[which], bend[which] = turns * one, turns**2 * two
+    return e, slope, bend
+
+
+def _tables(waves: Floats, number: Ints, phase: Floats) -> tuple[Floats, Floats, Floats]:
+    intervals = waves.shape[1]
+    at = (phase - np.floor(phase)) * intervals
+    place = np.minimum(at.astype(int), intervals - 1)
+    d = (at - place) / intervals
+    c = waves[number, place].T
+    return (
+        np.asarray(c[0] + d * (c[1] + d * (c[2] + d * c[3]))),
+        np.asarray(c[1] + d * (2.0 * c[2] + 3.0 * c[3] * d)),
+        np.asarray(2.0 * c[2] + 6.0 * c[3] * d),
+    )
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,16 @@ class _Gears(Part):
     shifts: tuple[float, ...] | None = Field(
         default=None, description="profile shifts in modules, as teeth; of a ring as ISO 21771"
     )
-    tips: tuple[float, ...] | None = Field(default=None, description="tip diameters, as teeth, m")
+    tips: tuple[float, ...] | None = Field(
+        default=None, description="tip diameters, as teeth, m; without, an addendum of a module"
+    )
+    faces: tuple[float, ...] | None = Field(
+        default=None, description="face widths, as teeth, m; without, that in contact"
+    )
+    dedendum: float = dimension(1.25, of="dedendum of the rack, in modules", unit="-", gt=0)
+    fillets: tuple[float, ...] | None = Field(
+        default=None, description="tip radii of the racks, in modules, as teeth; without, 0.38"
+    )
     blank: float = dimension(1.0, of="factor C_R of the gear blanks, ISO 6336-1", unit="-", gt=0)
     hand: Literal[-1, 0, 1] = Field(default=0, description="1 right, -1 left, 0 spur")
     centre_distance: float = dimension(of="centre distance", gt=0)
@@ -153,20 +162,25 @@ class _Gears(Part):
     )
 
     def check_gears(self, teeth: tuple[int, ...] | None) -> None:
-        """Refuse shifts or tips of another number of gears than there are.
+        """Refuse data of another number of gears than there are, and faces below the contact.
 
         Raises
         ------
         InputError
-            They are not as many as the teeth.
+            They are not as many as the teeth, or a face is narrower than the contact.
         """
-        for name in ("shifts", "tips"):
+        for name in ("shifts", "tips", "faces", "fillets"):
             given = getattr(self, name)
             if given is not None and len(given) != len(teeth or ()):
                 raise InputError(
                     f"{name} of a stage are {list(given)} but must be as many as its "
                     f"{len(teeth or ())} teeth: give one for each gear"
                 )
+        if self.faces is not None and min(self.faces) < self.face_width:
+            raise InputError(
+                f"faces of a stage are {list(self.faces)} m but must be at least the face width in "
+                f"contact, {self.face_width:g} m: correct one of them"
+            )
 
     def mesh(self, teeth: int) -> Mesh:
         """Working angles of a mesh: of the sum of teeth if external, their difference if internal.
@@ -193,6 +207,9 @@ class PlanetaryData(_Gears):
     sun: RotorBody = Field(description="sun")
     ring: RotorBody | None = Field(default=None, description="ring, where it is not held")
     ring_support: Six | None = Field(default=None, description="of a ring that is not held")
+    cutter: int | None = Field(
+        default=None, ge=5, description="teeth of the pinion cutter of the ring, for its roots"
+    )
     sun_planet: float = dimension(of="mesh stiffness, N/m or", unit="N m/rad", gt=0)
     ring_planet: float = dimension(of="mesh stiffness, N/m or", unit="N m/rad", gt=0)
     pins: tuple[PinData, ...] = Field(default=(), description="bearings of each planet")

@@ -45,6 +45,10 @@ class Laws(NamedTuple):
     power: Floats
     speed: Floats
     waves: Floats
+    error: Ints
+    error_phase: Floats
+    error_turns: Floats
+    errors: Floats
     driven: bool
 
 
@@ -83,13 +87,8 @@ class Stop(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def _factor(
-    laws: Laws, i: int, phase: float
-) -> tuple[float, float, float]:  # pragma: no cover - compiled
-    """Stiffness over its mean at a phase, and its first and second derivative by the phase."""
-    if laws.wave[i] < 0:
-        return 1.0, 0.0, 0.0
-    table = laws.waves[laws.wave[i]]
+def _wave(table: Floats, phase: float) -> tuple[float, float, float]:  # pragma: no cover
+    """A wave at a phase, and its first and second derivative by the phase."""
     p = len(table)
     s = (phase - np.floor(phase)) * p
     j = min(int(s), p - 1)
@@ -100,6 +99,34 @@ def _factor(
         c1 + s * (2.0 * c2 + 3.0 * c3 * s),
         2.0 * c2 + 6.0 * c3 * s,
     )
+
+
+@njit(cache=True, error_model="numpy")
+def _factor(
+    laws: Laws, i: int, phase: float
+) -> tuple[float, float, float]:  # pragma: no cover - compiled
+    """Stiffness over its mean at a phase, and its first and second derivative by the phase."""
+    if laws.wave[i] < 0:
+        return 1.0, 0.0, 0.0
+    return _wave(laws.waves[laws.wave[i]], phase)
+
+
+@njit(cache=True, error_model="numpy")
+def _error(
+    laws: Laws, i: int, phase: float
+) -> tuple[float, float, float]:  # pragma: no cover - compiled
+    """The error at a phase of the stiffness [m], and its first and second derivative by that."""
+    if laws.error[i] < 0:
+        return 0.0, 0.0, 0.0
+    r = laws.error_turns[i]
+    e, slope, bend = _wave(laws.errors[laws.error[i]], laws.error_phase[i] + r * phase)
+    return e, r * slope, r * r * bend
+
+
+@njit(cache=True, error_model="numpy")
+def _phase(laws: Laws, i: int, t: float, z: Floats) -> float:  # pragma: no cover - compiled
+    at = laws.phase[i] + laws.frequency[i] * t
+    return float(at + z[laws.angle[i]] if laws.angle[i] >= 0 else at)
 
 
 @njit(cache=True, error_model="numpy")
@@ -121,8 +148,16 @@ def _potential(laws: Laws, i: int, x: float) -> tuple[float, float, float]:  # p
 
 
 @njit(cache=True, error_model="numpy")
-def _touches(laws: Laws, i: int, x: float) -> bool:  # pragma: no cover
+def _touches(laws: Laws, i: int, t: float, z: Floats) -> bool:  # pragma: no cover
+    x = z[laws.row[i]] - laws.offset[i] - _error(laws, i, _phase(laws, i, t, z))[0]
     return bool(laws.lower[i] == laws.upper[i] or x > laws.upper[i] or x < laws.lower[i])
+
+
+@njit(cache=True, error_model="numpy")
+def touching(laws: Laws, t: float, z: Floats, damps: Floats) -> None:  # pragma: no cover
+    """Into damps (q,): 1 of each law in contact at values z (r,) of the rows, else 0."""
+    for i in range(len(laws.row)):
+        damps[i] = 1.0 if _touches(laws, i, t, z) else 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -137,7 +172,7 @@ def law_forces(
     tangent: Floats,
     forces: Floats,
     damper: Floats,
-) -> tuple[float, float]:  # pragma: no cover
+) -> tuple[float, float, float]:  # pragma: no cover
     """Forces of all laws beyond the constant matrices.
 
     Parameters
@@ -161,24 +196,25 @@ def law_forces(
 
     Returns
     -------
-    energy, power : float
-        Of the springs beyond the constant stiffness, and that which the clock of stiffnesses that
-        vary with time puts in.
+    energy, power, followed : float
+        Of the springs beyond the constant stiffness; that which the clock of stiffnesses and errors
+        that vary with time puts in; and power of the dampers along the errors, which they do not
+        take out.
     """
     extra[:] = 0.0
     tangent[:] = 0.0
-    energy = power = 0.0
+    energy = power = followed = 0.0
     for i in range(len(laws.row)):
         h, g = laws.row[i], laws.angle[i]
-        phase = laws.phase[i] + laws.frequency[i] * t
-        if g >= 0:
-            phase += z[g]
+        phase = _phase(laws, i, t, z)
         factor, slope, bend = _factor(laws, i, phase)
+        e, e1, e2 = _error(laws, i, phase)
+        turning = laws.frequency[i] + (rate[g] if g >= 0 else 0.0)
         k, c = laws.stiffness[i], laws.damping[i]
-        phi, first, second = _potential(laws, i, z[h] - laws.offset[i])
+        phi, first, second = _potential(laws, i, z[h] - laws.offset[i] - e)
         force = k * factor * first
         stiff = k * factor * second
-        damper[i] = (damps[i] - 1.0) * c * rate[h]
+        damper[i] = (damps[i] - 1.0) * c * rate[h] - damps[i] * c * e1 * turning
         resists = (damps[i] - 1.0) * c
         if laws.power[i] != 0.0:
             speed = laws.speed[i] + rate[h]
@@ -187,15 +223,25 @@ def law_forces(
         forces[i] = force + damper[i] + c * rate[h]
         extra[h] += force + damper[i] - k * z[h]
         tangent[h, h] += stiff - k + by_rate * resists
+        resisted = forces[i] - force
         if g >= 0:
-            tangent[h, g] += k * slope * first
+            # of the damper, by the phase and by its rate
+            by_phase = -damps[i] * c * (e2 * turning + by_rate * e1)
+            tangent[h, g] += k * slope * first - stiff * e1 + by_phase
             if laws.driven:
-                extra[g] += k * slope * phi
-                tangent[g, h] += k * slope * first
-                tangent[g, g] += k * bend * phi
+                extra[g] += k * slope * phi - forces[i] * e1
+                tangent[g, h] += k * slope * first - (stiff + by_rate * (resists + c)) * e1
+                tangent[g, g] += (
+                    k * bend * phi
+                    - 2.0 * k * slope * first * e1
+                    + stiff * e1 * e1
+                    - by_phase * e1
+                    - forces[i] * e2
+                )
         energy += k * factor * phi - 0.5 * k * z[h] * z[h]
-        power += k * slope * laws.frequency[i] * phi
-    return energy, power
+        power += (k * slope * phi - forces[i] * e1) * laws.frequency[i]
+        followed += resisted * e1 * turning
+    return energy, power, followed
 
 
 @njit(cache=True, error_model="numpy")
@@ -327,11 +373,11 @@ def march(
     _times(R, u, z)
     _times(R, v, zr)
     _times(R, a, za)
+    touching(laws, begin, z, damps)
     for i in range(q):
-        damps[i] = 1.0 if _touches(laws, i, z[laws.row[i]] - laws.offset[i]) else 0.0
         if laws.angle[i] >= 0:
             is_phase[laws.angle[i]] = 1.0
-    stored, power = law_forces(laws, begin, z, zr, damps, 0.0, d, tangent, spring, damper)
+    stored, power, followed = law_forces(laws, begin, z, zr, damps, 0.0, d, tangent, spring, damper)
     work = dissipated = clock = 0.0
     record = 0
     for s in range(steps + 1):
@@ -359,11 +405,10 @@ def march(
                     for j in range(r):
                         rhs[i] -= af * R[j, i] * d[j]
             _times(matrices.inverse, rhs, step)
-            energy = power1 = 0.0
+            energy = power1 = followed1 = 0.0
             if q > 0:
                 _times(R, step, free)
-                for i in range(q):
-                    damps[i] = 1.0 if _touches(laws, i, z[laws.row[i]] - laws.offset[i]) else 0.0
+                touching(laws, t - dt, z, damps)
                 for i in range(r):
                     free[i] += z[i]
                     new[i] = free[i]
@@ -372,7 +417,7 @@ def march(
                 while True:
                     for i in range(r):
                         rate[i] = b[1] * (new[i] - z[i]) + b[4] * zr[i] + b[5] * za[i]
-                    energy, power1 = law_forces(
+                    energy, power1, followed1 = law_forces(
                         laws, t, new, rate, damps, b[1], d1, tangent, spring, damper1
                     )
                     if converged or count == MOST_STEPS:
@@ -423,7 +468,8 @@ def march(
                     dissipated += 0.5 * (damper[i] + damper1[i]) * (new[h] - z[h])
                     damper[i] = damper1[i]
                 clock += 0.5 * dt * (power + power1)
-                power, stored = power1, energy
+                dissipated -= 0.5 * dt * (followed + followed1)
+                power, followed, stored = power1, followed1, energy
                 for i in range(r):
                     d[i] = d1[i]
                     z[i] = new[i]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import least_eigenvalue, symmetry_error
 from fe_drivetrain.common.spatial import point_motions
+from fe_drivetrain.plots.figures import stiffness_map
 
 FRAME = (
     "x downwind along the shaft, z up, y = z cross x; origin at the main bearing's centre where "
@@ -124,6 +126,16 @@ class Superelement:
     def rigid_motions(self) -> Floats:
         """(6 n, 6) unit motions of the whole about the first point."""
         return point_motions(self.positions, self.positions[0])
+
+    def plot(self) -> Any:
+        """The stiffness and its couplings, as a Plotly figure.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+            See `fe_drivetrain.plots.stiffness_map`.
+        """
+        return stiffness_map(self.points, self.stiffness, self.name)
 
     def rigid_error(self) -> float:
         """Largest force against a rigid motion, of those that its terms would have one by one."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -35,6 +36,7 @@ from fe_drivetrain.fidelity.ladder import (
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft
 from fe_drivetrain.mesh.measures import mean_size
+from fe_drivetrain.plots.figures import error_against_time
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.scene.scene import Scene
@@ -171,6 +173,23 @@ class Advice:
         if number == len(self.results) - 1:
             return float("nan")
         return _difference(self.results[number].values, self.results[number + 1].values)
+
+    def plot(self) -> Any:
+        """Error of each level over its time, as a Plotly figure; the chosen one drawn larger.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+            See `fe_drivetrain.plots.error_against_time`; of the last level its estimated own error.
+        """
+        return error_against_time(
+            [f"level {result.model.level}, {result.model.title}" for result in self.results],
+            [result.seconds for result in self.results],
+            [*(result.error for result in self.results[:-1]), self.top.estimate],
+            self.tolerance,
+            self.chosen,
+            self.quantity.name,
+        )
 
     def sentence(self) -> str:
         """The answer."""

@@ -15,7 +15,9 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.progress import silent
+from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.reading import value_changes
 from fe_drivetrain.fidelity.adviser import Quantity, band_on_springs, banded_assembly
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.fidelity.quantities import NOISE
@@ -134,7 +136,7 @@ def compare_designs(
     quantities: Sequence[Quantity] | None = None,
     tolerance: float = 0.05,
     load: Mapping[str, float] | None = None,
-    report: Callable[[str], object] = silent,
+    report: Progress = silent,
 ) -> list[Difference]:
     """Quantities of several designs, each at the cheapest level that is enough for all of them.
 
@@ -186,22 +188,18 @@ def compare_designs(
         for one in next(iter(asked.values()))
         if all(one.name in {other.name for other in others} for others in asked.values())
     ]
-    found = {
-        name: _on_springs(scene, _chosen(asked[name], common), _named(report, name))
-        for name, scene in designs.items()
-    }
+    # one after the other on this machine: each takes all cores, and much memory
+    items = [(name, scene, _chosen(asked[name], common)) for name, scene in designs.items()]
+    found = dict(zip(designs, mapped(_on_springs, items, 1, report), strict=True))
     if quantities is None:
         something = [_not_zero(found[name], scene) for name, scene in designs.items()]
         common = [q for q in common if any(q in some for some in something)]
     # half of the tolerance for each of the two values of a change
     short = [q for q in common if any(not found[d][q].band <= tolerance / 2 for d in designs)]
     if short:
-        for name, scene in designs.items():
-            some = _chosen(asked[name], short)
-            level, _, bands = banded_assembly(scene, some, _named(report, name))
-            for quantity, band in zip(some, bands, strict=True):
-                values = quantity.of(level, scene.shaft.length)
-                found[name][quantity.name] = Value(values, band.half_width, level.level)
+        items = [(name, scene, _chosen(asked[name], short)) for name, scene in designs.items()]
+        for name, better in zip(designs, mapped(_as_assembly, items, 1, report), strict=True):
+            found[name] |= better
     first = next(iter(asked))
     differences = [
         Difference(quantity, tuple(found[d][quantity.name] for d in designs))
@@ -212,26 +210,8 @@ def compare_designs(
 
 def scene_changes(before: Scene, after: Scene) -> list[tuple[str, Any, Any]]:
     """What two scenes state differently: dotted key, and both values (None where there is none)."""
-    a, b = (_flat(scene.model_dump(mode="json"), "") for scene in (before, after))
-    return [
-        (key, a.get(key), b.get(key))
-        for key in dict.fromkeys([*a, *b])
-        if key != "title" and a.get(key) != b.get(key)
-    ]
-
-
-def _flat(value: Any, key: str) -> dict[str, Any]:
-    """Values of nested mappings and lists by dotted key."""
-    if isinstance(value, Mapping):
-        parts = value.items()
-    elif isinstance(value, list):
-        parts = enumerate(value)  # type: ignore[assignment]
-    else:
-        return {key: value}
-    found: dict[str, Any] = {}
-    for name, part in parts:
-        found |= _flat(part, f"{key}.{name}" if key else str(name))
-    return found
+    found = value_changes(before.model_dump(mode="json"), after.model_dump(mode="json"))
+    return [change for change in found if change[0] != "title"]
 
 
 def _factors(scene: Scene, load: Mapping[str, float]) -> Floats:
@@ -262,15 +242,26 @@ def _not_zero(found: Mapping[str, Value], scene: Scene) -> list[str]:
     return [name for name in found if sizes.get(name, np.inf) > least]
 
 
+def _as_assembly(
+    report: Progress, name: str, scene: Scene, quantities: Sequence[Quantity]
+) -> dict[str, Value]:
+    """Values of the assembly of solids, by name of the quantity."""
+    level, _, bands = banded_assembly(scene, quantities, _named(report, name))
+    return {
+        quantity.name: Value(quantity.of(level, scene.shaft.length), band.half_width, level.level)
+        for quantity, band in zip(quantities, bands, strict=True)
+    }
+
+
 def _on_springs(
-    scene: Scene, quantities: Sequence[Quantity], report: Callable[[str], object]
+    progress: Progress, name: str, scene: Scene, quantities: Sequence[Quantity]
 ) -> dict[str, Value]:
     """Values by statics where it decides them, else of the meridian between its housings' bounds.
 
     The band is that of the adviser: half of what the bounds differ by, and the change from beam to
     meridian.
     """
-    length = scene.shaft.length
+    report, length = _named(progress, name), scene.shaft.length
     report("level 0: statics")
     statics = statics_level(scene)
     found = {one.name: Value(one.of(statics, length), 0.0, 0) for one in quantities}

@@ -107,7 +107,7 @@ def _of_step(path: Path) -> Survey:
         lines.append(f"gmsh cannot mesh it: {data['unmeshed']}")
     lines += ["", "Bores, the widest first; one of them is the seat [mm]:"]
     marks: list[Mark] = []
-    rows: list[Sequence[str]] = []
+    rows: list[tuple[str, ...]] = []
     for number, seat in enumerate(data["seats"][:_MOST_ROWS], 1):
         x, y, z = (seat["length"] / 2 * np.array(seat["axis"])).tolist()
         marks.append(Mark(f"S{number}", tuple(seat["centre"]), (x, y, z)))

@@ -51,6 +51,8 @@ from .load_factors import root_face_factor as root_face_factor
 from .load_factors import running_in as running_in
 from .load_factors import running_in_relief as running_in_relief
 from .load_factors import transverse_factors as transverse_factors
+from .loaded_error import TransmissionError as TransmissionError
+from .loaded_error import transmission_error as transmission_error
 from .meshes import MeshStiffness as MeshStiffness
 from .meshes import StiffnessTable as StiffnessTable
 from .meshes import mesh_stiffness as mesh_stiffness

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.compare.statistics import CONSTANT
+from fe_drivetrain.plots.figures import load_lines
 
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
@@ -144,6 +146,15 @@ class LoadHistory:
         read = self.attributes.get("channels", "as in the file")
         channels = f"{read}; moments about x = {start:g} m moved to x = {stop:g} m"
         return replace(self, loads=loads, attributes={**self.attributes, "channels": channels})
+
+    def plot(self) -> Any:
+        """Forces and moments over time, as a Plotly figure; see `fe_drivetrain.plots.load_lines`.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return load_lines(self.time, self.loads, self.name)
 
 
 def require_sound(

@@ -1,6 +1,7 @@
 """The six steps by which a team validates a drivetrain, pitch or yaw model (PROTEST 2010).
 
-In: torsional systems, load histories, tables of loads at interfaces. Out: virtual measurements,
+In: project files, results of cases, torsional systems, load histories, channels of a campaign,
+tables of loads at interfaces. Out: how each step stands and what it lacks, virtual measurements,
 identified parameters with bands, drive torques, duty, and what the report's own equations make of
 the same data.
 """

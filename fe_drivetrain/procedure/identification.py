@@ -191,13 +191,13 @@ def method_b(twist: Twist, seconds: float, stiffness: float = 0.0) -> Solutions:
     A = A - stiffness * window_ranges(twist.speed, length)
     first = window_ranges(twist.acceleration, length)
     second = window_ranges(np.gradient(twist.acceleration, twist.step), length)
-    return _pairs(A, second, first)
+    return _pairs(A, A, second, first)
 
 
-def method_c(twist: Twist, seconds: float, stiffness: float) -> Solutions:
+def method_c(twist: Twist, seconds: float, stiffness: float, sampled: bool = False) -> Solutions:
     """Method C, "constant": ranges in neighbouring windows (Eq 12, 13).
 
-    One side of Eq 13 is printed as a sample; it is a range here, as on its other side.
+    The torque of Eq 13 is printed as a sample; it is a range here, as everything else in it.
 
     Parameters
     ----------
@@ -207,15 +207,25 @@ def method_c(twist: Twist, seconds: float, stiffness: float) -> Solutions:
         Mean time of a turn of the rotor [s].
     stiffness : float
         Known [N m/rad].
+    sampled : bool
+        Whether the torque of Eq 13 is the first sample of its window, as printed.
     """
     length = round(seconds / twist.step)
-    A = window_ranges(twist.torque, length) - stiffness * window_ranges(twist.angle, length)
-    return _pairs(A, window_ranges(twist.acceleration, length), window_ranges(twist.speed, length))
+    held = stiffness * window_ranges(twist.angle, length)
+    A = window_ranges(twist.torque, length) - held
+    second = np.asarray(twist.torque)[: len(A) * length : length] - held if sampled else A
+    return _pairs(
+        A,
+        second,
+        window_ranges(twist.acceleration, length),
+        window_ranges(twist.speed, length),
+    )
 
 
-def _pairs(A: Floats, inertial: Floats, damped: Floats) -> Solutions:
-    """Eq 10 and 11 of each window and the next: A = inertial I + damped D."""
-    A1, A2, b1, b2, d1, d2 = A[:-1], A[1:], inertial[:-1], inertial[1:], damped[:-1], damped[1:]
+def _pairs(A: Floats, second: Floats, inertial: Floats, damped: Floats) -> Solutions:
+    """Eq 10 and 11 of each window and the next: A (then second) = inertial I + damped D."""
+    A1, A2, b1, b2 = A[:-1], second[1:], inertial[:-1], inertial[1:]
+    d1, d2 = damped[:-1], damped[1:]
     with np.errstate(divide="ignore", invalid="ignore"):
         damping = (A2 * b1 - A1 * b2) / (b1 * d2 - b2 * d1)
         return Solutions(np.asarray((A1 - damping * d1) / b1), np.asarray(damping))

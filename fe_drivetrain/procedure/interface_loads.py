@@ -17,11 +17,11 @@ from typing import Any, Literal
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.histories.cycles import rainflow_cycles
+from fe_drivetrain.histories.cycles import Cycles, rainflow_cycles
 from fe_drivetrain.histories.damage import damage_equivalent_load
 from fe_drivetrain.histories.levels import even_levels, time_at_level
 
@@ -30,6 +30,7 @@ GROUND = "ground"
 """What is outside of all bodies: rotor, frame, grid."""
 
 _UNITS = ("N", "N", "N", "N m", "N m", "N m")
+_ACCELERATIONS = ("ax", "ay", "az", "alpha_x", "alpha_y", "alpha_z")
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +207,7 @@ def check_equilibrium(table: LoadTable, within: float = 1e-9) -> None:
 
 
 def analysed(table: LoadTable, slopes: Sequence[float] = (4.0, 10.0)) -> list[dict[str, Any]]:
-    """Mean, extreme and fatigue loads of each component at each interface.
+    """Mean, extremes and fatigue of each load, displacement and acceleration at each interface.
 
     Parameters
     ----------
@@ -218,13 +219,14 @@ def analysed(table: LoadTable, slopes: Sequence[float] = (4.0, 10.0)) -> list[di
     Returns
     -------
     list of dict
-        Interface, component, unit, source, mean, least, largest, a damage-equivalent load for each
-        slope, and the load duration distribution: limits and seconds of 20 levels.
+        Interface, component, unit, source, mean, least, largest, a damage-equivalent value for each
+        slope, the duration distribution (limits and seconds of 20 levels), and rainflow cycles
+        (limits of 20 ranges, and how many).
     """
     step = float(table.time[1] - table.time[0])
     rows = []
     for part in table.interfaces:
-        for component, unit, signal in zip(FORCES, _UNITS, part.loads.T, strict=True):
+        for component, unit, signal in _signals(part):
             levels = time_at_level(
                 signal, step, even_levels(float(signal.min()), float(signal.max()), 20)
             )
@@ -246,13 +248,39 @@ def analysed(table: LoadTable, slopes: Sequence[float] = (4.0, 10.0)) -> list[di
                     },
                     "levels": levels.edges.tolist(),
                     "seconds": levels.amount.tolist(),
+                    **_cycles(cycles[0]),
                 }
             )
     return rows
 
 
+def _signals(part: Interface) -> list[tuple[str, str, Floats]]:
+    """Component, unit and (n,) samples of all that an interface has."""
+    found = []
+    for names, units, values in (
+        (FORCES, _UNITS, part.loads),
+        (MOTIONS, ("m",) * 3 + ("rad",) * 3, part.displacements),
+        (_ACCELERATIONS, ("m/s^2",) * 3 + ("rad/s^2",) * 3, part.accelerations),
+    ):
+        if values is not None:
+            found += list(zip(names, units, np.asarray(values).T, strict=True))
+    return found
+
+
+def _cycles(cycles: Cycles) -> dict[str, list[float]]:
+    """Rainflow cycles in 20 even classes of their range."""
+    largest = float(cycles.ranges.max(initial=0.0))
+    counts, limits = np.histogram(
+        cycles.ranges, bins=20, range=(0.0, largest or 1.0), weights=cycles.counts
+    )
+    return {"ranges": limits.tolist(), "cycles": counts.tolist()}
+
+
 def write_load_csv(table: LoadTable, path: str | Path) -> None:
-    """Write time and all loads, a column each, as "gearbox entrance Fx [N]".
+    """Write time and all loads and motions, a column each, as "gearbox entrance Fx [N]".
+
+    Displacements are "hub ux [m]" to "hub rz [rad]", accelerations "hub ax [m/s^2]" to
+    "hub alpha_z [rad/s^2]".
 
     Parameters
     ----------
@@ -261,12 +289,9 @@ def write_load_csv(table: LoadTable, path: str | Path) -> None:
     path : str or Path
         File, which appears whole.
     """
-    heads = [
-        f"{part.name} {component} [{unit}]"
-        for part in table.interfaces
-        for component, unit in zip(FORCES, _UNITS, strict=True)
-    ]
-    columns = np.column_stack([table.time, *(part.loads for part in table.interfaces)])
+    signals = [(part.name, *signal) for part in table.interfaces for signal in _signals(part)]
+    heads = [f"{name} {component} [{unit}]" for name, component, unit, _ in signals]
+    columns = np.column_stack([table.time, *(values for *_, values in signals)])
     with atomic_path(Path(path)) as hidden, hidden.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["time [s]", *heads])

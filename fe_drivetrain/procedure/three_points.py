@@ -60,6 +60,41 @@ class ThreePoints:
                 "bearing at two places, the ratio not 0"
             )
 
+    @property
+    def positions(self) -> dict[str, Floats]:
+        """(3,) of each interface [m]."""
+        return {
+            "hub": np.array([self.hub, 0.0, 0.0]),
+            "main bearing": np.array([self.bearing, 0.0, 0.0]),
+            "gearbox entrance": np.array([self.entrance, 0.0, 0.0]),
+            "left arm": np.array([self.arms, 0.5 * self.between_arms, 0.0]),
+            "right arm": np.array([self.arms, -0.5 * self.between_arms, 0.0]),
+            "high-speed shaft": np.array([self.output, self.offset, 0.0]),
+            "generator supports": np.array([self.generator, self.offset, 0.0]),
+        }
+
+    @property
+    def centres(self) -> dict[str, Floats]:
+        """(3,) centre of mass of each body [m]."""
+        return {
+            "shaft": np.array([self.shaft_centre, 0.0, 0.0]),
+            "gearbox": np.array([self.gearbox_centre, 0.0, 0.0]),
+            "generator": self.positions["generator supports"],
+        }
+
+    @property
+    def interfaces(self) -> tuple[tuple[str, str, str], ...]:
+        """Name of each, body that gives its loads, and body that takes them."""
+        return (
+            ("hub", GROUND, "shaft"),
+            ("main bearing", GROUND, "shaft"),
+            ("gearbox entrance", "shaft", "gearbox"),
+            ("left arm", GROUND, "gearbox"),
+            ("right arm", GROUND, "gearbox"),
+            ("high-speed shaft", "generator", "gearbox"),
+            ("generator supports", GROUND, "generator"),
+        )
+
 
 def three_point_loads(places: ThreePoints, time: Floats, hub: Floats) -> LoadTable:
     """Loads at hub, main bearing, entrance, arms, high-speed shaft and generator's supports.
@@ -77,19 +112,10 @@ def three_point_loads(places: ThreePoints, time: Floats, hub: Floats) -> LoadTab
     """
     n = len(time)
     zero = np.zeros(n)
-    at = {
-        "hub": np.array([places.hub, 0.0, 0.0]),
-        "main bearing": np.array([places.bearing, 0.0, 0.0]),
-        "gearbox entrance": np.array([places.entrance, 0.0, 0.0]),
-        "left arm": np.array([places.arms, 0.5 * places.between_arms, 0.0]),
-        "right arm": np.array([places.arms, -0.5 * places.between_arms, 0.0]),
-        "high-speed shaft": np.array([places.output, places.offset, 0.0]),
-        "generator supports": np.array([places.generator, places.offset, 0.0]),
-    }
+    at, centres = places.positions, places.centres
+    masses = (places.shaft_mass, places.gearbox_mass, places.generator_mass)
     weights = {
-        "shaft": (places.shaft_mass, np.array([places.shaft_centre, 0.0, 0.0])),
-        "gearbox": (places.gearbox_mass, np.array([places.gearbox_centre, 0.0, 0.0])),
-        "generator": (places.generator_mass, at["generator supports"]),
+        name: (mass, centre) for (name, centre), mass in zip(centres.items(), masses, strict=True)
     }
     own = {
         name: np.array([0.0, 0.0, -mass * GRAVITY, 0.0, 0.0, 0.0])
@@ -123,20 +149,20 @@ def three_point_loads(places: ThreePoints, time: Floats, hub: Floats) -> LoadTab
     entrance = own["shaft"] @ wrench_transport(weights["shaft"][1] - at["gearbox entrance"]).T
     for loads, name in ((hub, "hub"), (bearing, "main bearing")):
         entrance = entrance + loads @ wrench_transport(at[name] - at["gearbox entrance"]).T
-    supports = on_gearbox - own["generator"]
+    found = {
+        "hub": hub,
+        "main bearing": bearing,
+        "gearbox entrance": entrance,
+        "left arm": left,
+        "right arm": right,
+        "high-speed shaft": on_gearbox,
+        "generator supports": on_gearbox - own["generator"],
+    }
     return LoadTable(
         np.asarray(time, dtype=np.float64),
         tuple(
-            Interface(name, of, on, at[name], np.asarray(loads))
-            for name, of, on, loads in (
-                ("hub", GROUND, "shaft", hub),
-                ("main bearing", GROUND, "shaft", bearing),
-                ("gearbox entrance", "shaft", "gearbox", entrance),
-                ("left arm", GROUND, "gearbox", left),
-                ("right arm", GROUND, "gearbox", right),
-                ("high-speed shaft", "generator", "gearbox", on_gearbox),
-                ("generator supports", GROUND, "generator", supports),
-            )
+            Interface(name, of, on, at[name], np.asarray(found[name]))
+            for name, of, on in places.interfaces
         ),
         tuple(Body(name, centre, own[name]) for name, (_, centre) in weights.items()),
     )

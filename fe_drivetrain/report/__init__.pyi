@@ -1,4 +1,3 @@
-from .charts import PALETTE as PALETTE
 from .charts import bars as bars
 from .charts import chart as chart
 from .charts import crosses as crosses

@@ -1,84 +1,14 @@
-"""A chart as a page draws it: Plotly's JSON in one style for all."""
+"""A chart as a page holds it: its height, and its figure as JSON."""
 
 from __future__ import annotations
 
 import json
-import math
-from itertools import cycle
 from typing import Any
 
 from markupsafe import Markup
 
-from fe_drivetrain.report.charts import PALETTE
+from fe_drivetrain.plots.style import is_number, styled
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.report.typeset import typeset
-
-#: Colours of methods that stand in many charts, by the beginning of a trace's name.
-_OF_METHODS = {
-    "level 0": "#cc79a7",
-    "level 1, Timoshenko beam, rigid": "#e69f00",
-    "level 1": "#d55e00",
-    "level 2": "#009e73",
-    "level 3": "#56b4e9",
-    "level 4": "#0072b2",
-    "finite elements": "#0072b2",
-    "FE": "#0072b2",
-    "meridian": "#009e73",
-    "pinned beam": "#e69f00",
-    "torsional-spring": "#d55e00",
-    "torsional springs": "#d55e00",
-    "beam": "#d55e00",
-    "tetrahedra of 4 nodes": "#cc79a7",
-    "tetrahedra of 10 nodes": "#d55e00",
-    "curved tetrahedra": "#d55e00",
-    "hexahedra of 8 nodes": "#e69f00",
-    "hexahedra of 20 nodes": "#56b4e9",
-    "hexahedra of 27 nodes": "#0072b2",
-    "sliding": "#0072b2",
-    "averaged": "#d55e00",
-    "rigid": "#009e73",
-    "bonded": "#cc79a7",
-    "superlu": "#0072b2",
-    "multigrid": "#d55e00",
-    "patches": "#009e73",
-    "equal": "#767676",
-    "tolerance": "#767676",
-}
-# line styles of the traces that come after as many as there are colours
-_DASHES = ("solid", "dash", "dot", "dashdot")
-_DECADES = 8  # with labels on a logarithmic axis, at most
-_AXIS = {
-    # no prefixes: 5 nano on an axis of kN is no unit
-    "exponentformat": "power",
-    "minexponent": 4,
-    "hoverformat": ".4~g",
-    "showline": True,
-    "linecolor": "#52606d",
-    "ticks": "outside",
-    "tickcolor": "#52606d",
-    "gridcolor": "#e4e7eb",
-    "zerolinecolor": "#9aa5b1",
-    "automargin": True,
-    "title": {"standoff": 10},
-}
-_CHART_TEMPLATE: dict[str, Any] = {
-    "layout": {
-        "colorway": list(PALETTE),
-        "font": {"family": "system-ui, 'Segoe UI', Arial, sans-serif", "size": 14},
-        "paper_bgcolor": "white",
-        "plot_bgcolor": "white",
-        "margin": {"l": 60, "r": 44, "t": 30, "b": 50},
-        # beside the plot, not over the last names of the legend
-        "modebar": {"orientation": "v"},
-        "legend": {"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0, "xanchor": "left"},
-        "hovermode": "closest",
-        "hoverlabel": {"align": "left"},
-        "colorscale": {"sequential": "Viridis", "sequentialminus": "Viridis"},
-        "xaxis": _AXIS,
-        "yaxis": _AXIS,
-    },
-    "data": {"heatmap": [{"colorscale": "Viridis"}], "contour": [{"colorscale": "Viridis"}]},
-}
 
 
 def chart_height(item: Chart) -> int:
@@ -88,30 +18,10 @@ def chart_height(item: Chart) -> int:
 
 
 def figure_as_json(item: Chart) -> Markup:
-    """The figure in the page's look, as JSON that can stand inside a script element."""
-    figure = dict(item.figure)
-    layout = {**figure.get("layout", {}), "template": _CHART_TEMPLATE, "autosize": True}
-    for size in ("width", "height"):
-        layout.pop(size, None)
-    if layout.get("title"):
-        # a title takes the legend's place above the plot
-        look = {k: v for k, v in _CHART_TEMPLATE["layout"].items() if k != "legend"}
-        layout["template"] = {**_CHART_TEMPLATE, "layout": look}
-    # WebGL is missing on many a remote desktop, and a browser allows a page only a few contexts
-    traces = [
-        {**trace, "type": "scatter"} if trace.get("type") == "scattergl" else trace
-        for trace in figure.get("data", [])
-    ]
-    for axis in ("x", "y"):
-        own = layout.get(f"{axis}axis", {})
-        if own.get("type") == "log":
-            layout[f"{axis}axis"] = {**_log_ticks(axis, traces), **own}
-    if any(trace.get("name") == "equal" for trace in traces):
-        # the diagonal is one
-        layout["yaxis"] = {"scaleanchor": "x", "constrain": "domain", **layout.get("yaxis", {})}
-        layout["xaxis"] = {"constrain": "domain", **layout.get("xaxis", {})}
-    content = {"data": _coloured(traces), "layout": layout}
-    return script_json(_finite(content))
+    """The figure in the project's look, as JSON that can stand inside a script element."""
+    sizes = ("width", "height")
+    own = {k: v for k, v in item.figure.get("layout", {}).items() if k not in sizes}
+    return script_json(styled(item.figure.get("data", []), {**own, "autosize": True}))
 
 
 def script_json(content: Any) -> Markup:
@@ -120,75 +30,3 @@ def script_json(content: Any) -> Markup:
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
-
-
-def _log_ticks(axis: str, traces: list[dict[str, Any]]) -> dict[str, Any]:
-    """Labels of a logarithmic axis that do not run into each other: decades, or 1, 2 and 5."""
-    values = [v for trace in traces for v in trace.get(axis, []) if is_number(v) and v > 0]
-    decades = math.log10(max(values) / min(values)) if values else 0.0
-    every = math.ceil(decades / _DECADES)
-    return {"dtick": every if decades >= 2 else "D2" if decades >= 1 else "D1"}
-
-
-def _coloured(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The same traces, each in a colour of its own, those of a known method in that method's.
-
-    Where there are more than colours, the lines of the others are drawn in another style.
-    """
-    taken = {colour for trace in traces if (colour := _own_colour(trace))}
-    kinds = ("scatter", "scatterpolar", "bar")
-    plain = [t for t in traces if not _own_colour(t) and t.get("type", "scatter") in kinds]
-    chosen: dict[int, str] = {}
-    for trace in plain:
-        colour = _of_method(str(trace.get("name", "")))
-        if colour and colour not in taken:
-            chosen[id(trace)] = colour
-            taken.add(colour)
-    left = iter([colour for colour in PALETTE if colour not in taken])
-    again = cycle([(colour, dash) for dash in _DASHES[1:] for colour in PALETTE])
-    found = []
-    for trace in traces:
-        if not any(trace is other for other in plain):
-            found.append(trace)
-            continue
-        dash = None
-        colour = chosen.get(id(trace)) or next(left, "")
-        if not colour:
-            colour, dash = next(again)
-        looks = {"marker": {"color": colour, **trace.get("marker", {})}}
-        if trace.get("type") != "bar":
-            looks["line"] = {"color": colour, **({"dash": dash} if dash else {})}
-            looks["line"] |= trace.get("line", {})
-        found.append({**trace, **looks})
-    return found
-
-
-def _own_colour(trace: dict[str, Any]) -> Any:
-    """The colour that a trace brings; true of colours of its points."""
-    for part in ("line", "marker"):
-        colour = trace.get(part, {}).get("color")
-        if colour is not None:
-            return colour if isinstance(colour, str) else True
-    return None
-
-
-def _of_method(name: str) -> str | None:
-    """The colour of a method, by the longest beginning of the name that is known."""
-    known = [start for start in _OF_METHODS if name.startswith(start)]
-    return _OF_METHODS[max(known, key=len)] if known else None
-
-
-def _finite(value: Any) -> Any:
-    """The same data, its texts typeset, with null for what JSON has no number for."""
-    if isinstance(value, dict):
-        return {key: _finite(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(inner) for inner in value]
-    if isinstance(value, str):
-        return typeset(value.replace("`", ""))  # a chart has no code in it
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def is_number(value: object) -> bool:
-    """Whether a value is a number, which a truth value is not."""
-    return isinstance(value, int | float) and not isinstance(value, bool)

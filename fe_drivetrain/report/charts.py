@@ -8,26 +8,6 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.report.results import Chart
 
-PALETTE = (
-    "#0072b2",
-    "#d55e00",
-    "#009e73",
-    "#cc79a7",
-    "#e69f00",
-    "#56b4e9",
-    "#1f2933",
-    "#882255",
-    "#999933",
-    "#44aa99",
-    "#332288",
-    "#aa4499",
-    "#7f5f00",
-    "#767676",
-)
-"""Colours that colour-blind readers tell apart, as well as so many can be: those of Okabe and Ito
-2008, "Color Universal Design", without the yellow, which is too faint on white, and then of Tol's
-muted scheme (2021, "Colour Schemes", SRON/EPS/TN/09-002)."""
-
 
 def trace(name: str, x: ArrayLike, y: ArrayLike, points: bool = False, **more: Any) -> Any:
     """A line, or points; numbers rounded to what a chart can show."""

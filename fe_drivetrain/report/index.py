@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+import jinja2
 
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
@@ -35,6 +38,9 @@ WORDS = {
     "pass": "pass",
 }
 """Verdicts of cases, worst first, as the page prints them."""
+
+PROBLEMS = "problems.json"
+"""Beside the pages: why cases have no results, for who writes the pages next."""
 
 _MOST = 1e9  # share of a tolerance, as the page sorts it
 
@@ -110,6 +116,7 @@ def write_index(
     """
     folder = Path(folder)
     rows = sorted(_rows(folder, problems or {}), key=lambda row: (row.badness, row.name))
+    _keep_problems(folder, problems or {})
     with_results = [(row, row.results) for row in rows if row.results]
     verdicts = [v for _, results in with_results for v in results.verdicts]
     limits = [
@@ -150,6 +157,35 @@ def write_index(
     return folder / "index.html"
 
 
+def problems_before(folder: Path) -> dict[str, Problem]:
+    """Why cases had no results when the pages of a folder were last written.
+
+    Parameters
+    ----------
+    folder : Path
+        As of `write_index`.
+
+    Returns
+    -------
+    dict
+        By the name of the case; empty where nothing is known.
+    """
+    try:
+        found = json.loads((folder / PROBLEMS).read_text(encoding="utf-8"))
+        return {name: Problem(**said) for name, said in found.items() if said["state"] in WORDS}
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):  # none, or none of ours
+        return {}
+
+
+def _keep_problems(folder: Path, problems: Mapping[str, Problem]) -> None:
+    if not problems:
+        (folder / PROBLEMS).unlink(missing_ok=True)
+        return
+    with atomic_path(folder / PROBLEMS) as unfinished:
+        said = {name: problem._asdict() for name, problem in problems.items()}
+        unfinished.write_text(json.dumps(said, indent=1), encoding="utf-8")
+
+
 def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
     rows = [Row(name, p.state, problem=p.message) for name, p in problems.items()]
     for name, file in results_below(folder).items():
@@ -178,6 +214,17 @@ def _read(file: Path, *_state: int) -> Results:
 
 def _write(page: Path, template: str, **content: Any) -> None:
     script = read_template("listing.js")
+    with atomic_path(page) as unfinished:
+        text = (
+            _listings()
+            .get_template(template)
+            .render(script=script, script_hash=policy_hash(script), **content)
+        )
+        unfinished.write_text(text, encoding="utf-8")
+
+
+@lru_cache(maxsize=1)
+def _listings() -> jinja2.Environment:
     environment = templates()
     environment.filters |= {
         "share": lambda verdict: min(share_of_tolerance(verdict), _MOST),
@@ -187,8 +234,4 @@ def _write(page: Path, template: str, **content: Any) -> None:
         "sparkline": sparkline,
         "change": change_text,
     }
-    with atomic_path(page) as unfinished:
-        text = environment.get_template(template).render(
-            script=script, script_hash=policy_hash(script), **content
-        )
-        unfinished.write_text(text, encoding="utf-8")
+    return environment

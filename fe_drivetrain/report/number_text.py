@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from fe_drivetrain.common.typeset import MINUS, THIN_SPACE, superscript
 from fe_drivetrain.report.results import Limit, Verdict
-from fe_drivetrain.report.typeset import MINUS, THIN_SPACE, superscript
 
 DIGITS = 5
 """Significant digits of a number on the page; results.json keeps all of them."""

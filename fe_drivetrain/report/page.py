@@ -15,9 +15,10 @@ from urllib.parse import quote, unquote
 from markupsafe import Markup, escape
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.plots.style import is_number
 from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
 from fe_drivetrain.report.bundle import place_plotly, plotly_file
-from fe_drivetrain.report.chart_style import chart_height, figure_as_json, is_number, script_json
+from fe_drivetrain.report.chart_style import chart_height, figure_as_json, script_json
 from fe_drivetrain.report.history import FILE, Point, points_over_runs, tolerated
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.rendering import policy_hash, read_template, templates

@@ -15,6 +15,7 @@ from urllib.parse import quote
 import jinja2
 from markupsafe import Markup, escape
 
+from fe_drivetrain.common.typeset import typeset
 from fe_drivetrain.report.number_text import (
     band_text,
     computed_text,
@@ -24,7 +25,6 @@ from fe_drivetrain.report.number_text import (
     safe_range,
     tolerance_text,
 )
-from fe_drivetrain.report.typeset import typeset
 
 _TEMPLATES = Path(__file__).parent / "templates"
 
@@ -51,6 +51,7 @@ def templates() -> jinja2.Environment:
         "tolerance": tolerance_text,
         "safe_range": safe_range,
         "page_of": lambda case: Markup(f"{quote(case)}/report.html"),
+        "address": lambda path: Markup(quote(path)),  # of a scheme as javascript: a file's name
         "as_typed": escape,
         "plain": lambda text: escape(typeset(text.replace("`", ""))),  # in attributes
     }

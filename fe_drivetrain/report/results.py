@@ -241,6 +241,11 @@ class Table(_Result):
     caption: str
     columns: list[str]
     rows: list[list[Cell]]
+    links: list[str] = Field(
+        default=[],
+        description="address, relative to the page, that the first cell of each row leads to; "
+        "empty: none",
+    )
 
 
 class Chart(_Result):

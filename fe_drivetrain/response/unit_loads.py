@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import dofs, eliminate
+from fe_drivetrain.plots.figures import load_bars
 from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import Diagnostics, solve
@@ -107,6 +109,26 @@ class Response:
         result = hub_loads @ driving(R, hub_loads.shape[-1]).T
         result += constant
         return np.asarray(result)
+
+    def plot(self, hub_loads: Floats, gearbox_weight: float = 0.0, gravity: float = 0.0) -> Any:
+        """What the drivetrain puts on its supports under one load, as a Plotly figure.
+
+        Parameters
+        ----------
+        hub_loads : Floats
+            (6,) and more, as of `history`.
+        gearbox_weight, gravity : float
+            As of `history`.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+            See `fe_drivetrain.plots.load_bars`.
+        """
+        loads = np.asarray(hub_loads, dtype=np.float64)
+        supports = [name for name in self.reactions if "." not in name]
+        found = {name: self.history(name, loads, gearbox_weight, gravity) for name in supports}
+        return load_bars(found, "On the supports")
 
 
 def driving(matrix: Floats, n: int) -> Floats:

@@ -105,7 +105,7 @@ class Hierarchy:
 
     def precondition(self, R: Floats) -> Floats:
         """One V-cycle for all columns of R; symmetric positive definite."""
-        return self._cycle(0, R)
+        return self._cycle(0, np.ascontiguousarray(R))
 
     def _cycle(self, number: int, B: Floats) -> Floats:
         if number == len(self.levels):
@@ -158,11 +158,10 @@ def smooth(level: Level, X: Floats | None, B: Floats, options: Options) -> Float
     high, low = level.largest, options.smoothed * level.largest
     centre, half = 0.5 * (high + low), 0.5 * (high - low)
     momentum, step, rho = 0.0, 1.0 / centre, half / centre
-    D = np.zeros_like(B)
+    D = np.empty_like(B) if X is None else np.zeros_like(B)
     for number in range(options.degree):
         if X is None:
-            blocks = B.reshape(-1, 3, B.shape[1])
-            D = step * np.matmul(level.inverse, blocks).reshape(B.shape)
+            kernels.times_blocks(level.inverse, B, step, D)
             X = D.copy()
         else:
             out = np.empty_like(X)
@@ -263,8 +262,8 @@ def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
         (n / 3, 3, 3) inverses of its diagonal blocks.
     """
     r = np.random.default_rng(0).standard_normal((K.shape[0], 1))
-    zero, Kp = np.zeros_like(r), np.empty_like(r)
-    z = np.matmul(inverse, r.reshape(-1, 3, 1)).reshape(r.shape)
+    zero, Kp, z = np.zeros_like(r), np.empty_like(r), np.empty_like(r)
+    kernels.times_blocks(inverse, r, 1.0, z)
     p, rz = z.copy(), float(r.ravel() @ z.ravel())
     diagonal, beside = [], []
     alpha, beta = 1.0, 0.0
@@ -276,7 +275,7 @@ def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
         before, alpha = alpha, rz / curvature
         diagonal.append(1.0 / alpha + beta / before)
         r += alpha * Kp
-        z = np.matmul(inverse, r.reshape(-1, 3, 1)).reshape(r.shape)
+        kernels.times_blocks(inverse, r, 1.0, z)
         new = float(r.ravel() @ z.ravel())
         beta, rz = new / rz, new
         beside.append(math.sqrt(max(beta, 0.0)) / alpha)

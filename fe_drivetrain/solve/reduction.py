@@ -147,7 +147,7 @@ def _joints(
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-    bodies = reduced_stiffness(K - sums.springs.tobsr((3, 3)), sums.elimination)
+    bodies = reduced_stiffness(in_blocks(K - sums.springs.tobsr((3, 3))), sums.elimination)
     on_ground = in_blocks(bodies + ground.tocsr().tobsr((3, 3)))
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 

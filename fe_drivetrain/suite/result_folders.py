@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import HiddenFolder
 from fe_drivetrain.common.progress import Progress, silent
-from fe_drivetrain.suite.case import Case
+from fe_drivetrain.report.results import Problem
+from fe_drivetrain.suite.case import Case, all_cases
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.settings import settings_by_case
 
 if TYPE_CHECKING:
     from fe_drivetrain.report.results import Results
+
+NOT_RUN = Problem("not run: the run has not come to its end", "not run")
+"""Of a case that has not had its turn, or not come to its end."""
+PLANNED = Problem("waits for its turn", "planned")
+"""Of a case whose turn comes."""
+RUNNING = Problem("at work", "running")
+"""Of a case whose turn it is."""
 
 
 def result_folder(out: Path, case: Case) -> Path:
@@ -53,7 +61,8 @@ def run_case(
 
     Everything is written to a hidden folder beside ``out`` first, so that a run that fails or is
     stopped leaves what was there before. Of a run that was killed, the next one into the same place
-    removes that folder.
+    removes that folder. Where ``out`` is GROUP/NAME of a folder of reports, the pages that list the
+    cases there are written again.
 
     Parameters
     ----------
@@ -83,15 +92,38 @@ def run_case(
         if shared is None:
             carry_history(out, folder.path)
         check_history(shared or folder.path)
-        results = run_into(case, folder.path, taken, quick, report, shared)
-        if shared is None:  # before others see the folder, and may put another in its place
-            record_run(folder.path, results)
-        put_in_place(folder, out)
-        if shared is not None:
-            record_run(shared, results)
+        with _listed(case, shared):
+            results = run_into(case, folder.path, taken, quick, report, shared)
+            if shared is None:  # before others see the folder, and may put another in its place
+                record_run(folder.path, results)
+            put_in_place(folder, out)
+            if shared is not None:
+                record_run(shared, results)
     finally:
         folder.discard()
     return results
+
+
+@contextmanager
+def _listed(case: Case, shared: Path | None) -> Iterator[None]:
+    """Let the pages of a folder of reports say that a case runs, and then what came of it."""
+    if shared is None:
+        yield
+        return
+    from fe_drivetrain.report.index import problems_before, write_index
+
+    def write(own: Mapping[str, Problem]) -> None:
+        others = {name: why for name, why in problems_before(shared).items() if name != case.name}
+        write_index(shared, {**others, **own}, known)
+
+    known = list(all_cases())
+    write({case.name: RUNNING})
+    left = {case.name: NOT_RUN}
+    try:
+        yield
+        left = {}
+    finally:
+        write(left)
 
 
 def run_into(

@@ -15,7 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.made_by import arithmetic, program_hash
-from fe_drivetrain.common.processes import Processes
+from fe_drivetrain.common.pool import Pool, pool
 from fe_drivetrain.common.progress import Progress, silent
 
 _P = ParamSpec("_P")
@@ -111,28 +111,28 @@ class Run:
 
     @contextmanager
     def side_by_side(self, jobs: int) -> Iterator[Jobs]:
-        """Do independent work in processes, as many as the cores allow; see `Processes`.
+        """Do independent work in processes, or on a cluster; see `pool`.
 
         Parameters
         ----------
         jobs : int
-            How many may run at once.
+            How many may run at once on this machine.
         """
         start, before = time.perf_counter(), sum(self.times.values())
-        with Processes(jobs, self.report) as processes:
-            yield Jobs(self, processes)
-        if processes.count:
+        with pool(jobs, self.report) as workers:
+            yield Jobs(self, workers)
+        if workers.count:
             passed = time.perf_counter() - start
             counted = sum(self.times.values()) - before
-            self.add_time(f"side by side in {processes.count} processes", passed - counted)
+            self.add_time(f"side by side in {workers.count} processes", passed - counted)
 
 
 class Jobs:
     """Work of a run that is done side by side."""
 
-    def __init__(self, run: Run, processes: Processes) -> None:
+    def __init__(self, run: Run, workers: Pool) -> None:
         self._run = run
-        self._processes = processes
+        self._workers = workers
 
     def start(
         self, function: Callable[Concatenate[Run, _P], _T], *args: _P.args, **kwargs: _P.kwargs
@@ -143,10 +143,10 @@ class Jobs:
         can be pickled.
         """
         run = self._run
-        job = self._processes.start(
+        job = self._workers.start(
             _with_own_run, function, dict(run.settings), run.quick, run.folder, args, kwargs
         )
-        return RunJob(job, run, bool(self._processes.count))
+        return RunJob(job, run, bool(self._workers.count))
 
 
 class RunJob(Generic[_T]):

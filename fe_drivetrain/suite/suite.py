@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import threading
 import traceback
 from collections.abc import Collection, Mapping, Sequence
@@ -10,23 +11,22 @@ from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError, MissingToolError
-from fe_drivetrain.common.files import HiddenFolder, sentence_about
+from fe_drivetrain.common.files import HiddenFolder, empty, sentence_about
+from fe_drivetrain.common.pool import pool
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import Case, all_cases
 from fe_drivetrain.suite.result_folders import (
+    NOT_RUN,
+    PLANNED,
+    RUNNING,
     new_folder,
     put_in_place,
     result_folder,
     run_into,
 )
 from fe_drivetrain.suite.settings import settings_by_case
-
-NOT_RUN = Problem("not run: the run has not come to its end", "not run")
-"""Of a case that has not had its turn, or not come to its end."""
-_PLANNED = Problem("waits for its turn", "planned")
-_RUNNING = Problem("at work", "running")
 
 
 def run_cases(
@@ -39,8 +39,9 @@ def run_cases(
 ) -> dict[str, Problem]:
     """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
 
-    Independent cases run in processes side by side, as many as the cores allow; those that are to
-    be `alone` come after them, one by one, each in a process that starts afresh. A case that fails
+    Independent cases run in processes side by side, as many as the cores allow, or on a cluster
+    (`scheduled_by`); those that are to be `alone` come after them on this machine, one by one, each
+    in a process that starts afresh. A case that fails
     does not keep the others from their work. Each result folder appears whole or not at all; when
     stopped, those of finished cases stay, and the page lists the others as not run.
 
@@ -70,25 +71,27 @@ def run_cases(
         A result folder cannot be written or holds something else, or no case takes a setting.
     """
     from fe_drivetrain.report.history import check_history, record_run
-    from fe_drivetrain.report.index import write_index
+    from fe_drivetrain.report.index import problems_before, write_index
     from fe_drivetrain.report.results import read_results
 
     out = Path(out)
     taken = settings_by_case(cases, settings or {})
+    asked = {case.name for case in cases}
     cases = [case for case in cases if case.name not in kept]
     known = list(all_cases())
+    others = {name: why for name, why in problems_before(out).items() if name not in asked}
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
-    pending = {case.name: _PLANNED for case in cases}
+    pending = {case.name: PLANNED for case in cases}
     writing = threading.Lock()  # steps are reported by several threads
 
     def show(step: str, lane: int = 0) -> None:
         name = step.partition(": ")[0]
-        if lane != OVERALL and pending.get(name) is _PLANNED:
+        if lane != OVERALL and pending.get(name) is PLANNED:
             with writing:
                 if name in pending:
-                    pending[name] = _RUNNING
-                    write_index(out, problems | pending, known)
+                    pending[name] = RUNNING
+                    write_index(out, others | problems | pending, known)
         report(step, lane)
 
     def finish(case: Case, problem: Problem | None) -> None:
@@ -101,7 +104,9 @@ def run_cases(
         if not problem:
             record_run(out, read_results(result_folder(out, case) / "results.json"))
         with writing:
-            write_index(out, problems | pending, known)  # a run that is killed later could not
+            write_index(
+                out, others | problems | pending, known
+            )  # a run that is killed later could not
         count()
 
     def count() -> None:
@@ -112,17 +117,17 @@ def run_cases(
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
         check_history(out)
-        write_index(out, problems | pending, known)
+        write_index(out, others | problems | pending, known)
         count()
         beside = [case for case in cases if not case.alone]
-        with Processes(len(beside), show, each_for_itself=True) as processes:
+        with pool(len(beside), show, each_for_itself=True) as workers:
             jobs: dict[Future[Problem | None], Case] = {
-                processes.start(
+                workers.start(
                     _run, case, folders[case.name].path, taken[case.name], quick, out
                 ): case
                 for case in beside
             }
-            for job in processes.finished(jobs):
+            for job in workers.finished(jobs):
                 finish(jobs[job], _outcome(job))
         for case in cases:
             if case.alone:
@@ -135,7 +140,7 @@ def run_cases(
         for folder in folders.values():
             folder.discard()
         if len(folders) == len(cases):  # else nothing was begun
-            write_index(out, problems | dict.fromkeys(pending, NOT_RUN), known)
+            write_index(out, others | problems | dict.fromkeys(pending, NOT_RUN), known)
     return problems
 
 
@@ -161,6 +166,12 @@ def _run(
         report(f"{case.name}: {step}" if step else "", lane)
 
     try:
+        if not folder.is_dir():
+            raise InputError(
+                f"{platform.node()} does not see {folder}: give a folder with --out that "
+                "all workers share"
+            )
+        empty(folder)  # a worker may have died half-way
         run_into(case, folder, settings, quick, named, shared)
     except InputError as error:
         return Problem(str(error), "skipped" if isinstance(error, MissingToolError) else "failed")

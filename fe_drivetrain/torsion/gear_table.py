@@ -73,6 +73,12 @@ class PlanetaryStage(_Stage):
 
     kind: Literal["planetary"] = Field(default="planetary", description="the word planetary")
     planets: int = Field(default=3, ge=1, description="number of planets")
+    planet_teeth: int | None = Field(
+        default=None,
+        ge=1,
+        description="teeth of a planet, beside those of ring and sun; without, (ring - sun) / 2, "
+        "as of stages without profile shift",
+    )
     carrier: float = dimension(of="inertia of the carrier, planets as points", unit=INERTIA, gt=0)
     planet: float = dimension(of="inertia of one planet about its own axis", unit=INERTIA, gt=0)
     sun: float = dimension(of="inertia of the sun", unit=INERTIA, gt=0)
@@ -88,6 +94,18 @@ class PlanetaryStage(_Stage):
                 f"PlanetaryStage: ratio is {self.speed_ratio:g} but must be greater than 2, or no "
                 "planet fits between sun and ring: raise it"
             )
+        if self.planet_teeth is not None and self.teeth is None:
+            raise InputError(
+                f"PlanetaryStage: planets have {self.planet_teeth} teeth, but ring and sun have a "
+                "ratio alone: give their teeth, or leave out those of the planets"
+            )
+        if self.planet_over_sun >= self.speed_ratio - 1:
+            ring, sun = self.teeth or (0, 0)
+            raise InputError(
+                f"PlanetaryStage: planets have {self.planet_teeth} teeth but must have fewer than "
+                f"the ring, {ring}; beside a sun of {sun} they have about {(ring - sun) // 2}: "
+                "correct one of them"
+            )
         return self
 
     @property
@@ -97,13 +115,30 @@ class PlanetaryStage(_Stage):
 
     @property
     def planet_over_sun(self) -> float:
-        """Radius of a planet over that of the sun: the ring is as wide as the sun and two of it."""
+        """Base radius, or teeth, of a planet over that of the sun.
+
+        Where the planets' teeth are not known, the ring is as wide as the sun and two planets;
+        stages with profile shift may have a tooth or two fewer.
+        """
+        if self.teeth is not None and self.planet_teeth is not None:
+            return self.planet_teeth / self.teeth[1]
         return (self.speed_ratio - 2) / 2
+
+    @property
+    def windings(self) -> tuple[float, float]:
+        """Of a planet's meshes with ring and sun, about its axis, for each turn of the carrier.
+
+        The line of action moves by a cos(alpha_w), which is the difference of the base radii of
+        ring and planet in the one mesh and the sum of those of planet and sun in the other,
+        whatever the profile shifts: (z_r - z_p) / z_p and (z_s + z_p) / z_p.
+        """
+        p = self.planet_over_sun
+        return (self.speed_ratio - 1 - p) / p, (1 + p) / p
 
     @property
     def planet_speed(self) -> float:
         """Of a planet (in a frame that does not turn) to the carrier, negative."""
-        return -self.speed_ratio / (self.speed_ratio - 2)
+        return -self.windings[0]
 
 
 class ParallelStage(_Stage):
@@ -288,10 +323,12 @@ def two_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsio
 def gear_masses(table: Drivetrain, generator: GeneratorState = "fixed") -> Torsional:
     """A mass for each part of the gearbox, meshes as springs (Eq 4.36-4.37).
 
-    The ring stands still. Each mesh is wound by the sliding of the pitch circles over each other,
-    about the axis that its stiffness is given for: the planet's, or the gear's. (Eq 4.37 writes
-    r_2 cos(alpha) theta_2 for what the carrier adds; with r_2 that of the planets' centres this is
-    the same where the stage turns without load, as it must: no mesh is wound then.)
+    The ring stands still. Each mesh is wound by the sliding of the base circles along the line of
+    action, about the axis that its stiffness is given for: the planet's, or the gear's. (Eq 4.37
+    writes r_2 cos(alpha) theta_2 for what the carrier adds; with r_2 that of the planets' centres
+    and the working angle of each mesh this is the same where the stage turns without load, as it
+    must: no mesh is wound then. The angles differ where z_s + 2 z_p is not z_r, as in profile-
+    shifted stages with `planet_teeth`.)
     Parts are called "stage 1 carrier", "... planet 1", "... sun", "... gear", "... pinion", meshes
     "stage 1 ring-planet 1", "... sun-planet 1", "... mesh".
     """
@@ -380,7 +417,7 @@ def mesh_damping(
 def _planetary(
     name: str, carrier: str, sun: str, stage: PlanetaryStage
 ) -> tuple[list[Inertia], list[Element]]:
-    p = stage.planet_over_sun  # radii over the sun's: planet p, carrier 1 + p, ring 1 + 2 p
+    by_ring, by_sun = stage.windings
     planets = [f"{name} planet {i + 1}" for i in range(stage.planets)]
     masses = [
         Inertia(carrier, stage.carrier),
@@ -392,13 +429,13 @@ def _planetary(
         meshes += [
             Element(
                 f"{name} ring-planet {i}",
-                {carrier: (1 + p) / p, planet: 1.0},
+                {carrier: by_ring, planet: 1.0},
                 stage.ring_planet,
                 stage.ring_planet_damping,
             ),
             Element(
                 f"{name} sun-planet {i}",
-                {carrier: (1 + p) / p, planet: -1.0, sun: -1 / p},
+                {carrier: by_sun, planet: -1.0, sun: -1 / stage.planet_over_sun},
                 stage.sun_planet,
                 stage.sun_planet_damping,
             ),

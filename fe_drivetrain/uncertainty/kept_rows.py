@@ -10,6 +10,11 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.pool import mapped, on_cluster
+from fe_drivetrain.common.progress import Progress
+
+AT_A_TIME = 8
+"""Samples of one job of a cluster."""
 
 EVERY = 2.0
 """Seconds between two times that results are written: so much is lost at most."""
@@ -33,7 +38,7 @@ def evaluated_rows(
     content : mapping or None
         All that the results depend on, as plain data; None keeps nothing.
     report : callable
-        Called with the number of a sample before it is evaluated, the first being 1.
+        Called with the number of a sample that was evaluated, the first being 1.
     cache : Cache or None
         Where they are kept; the user's if not given.
 
@@ -56,14 +61,23 @@ def evaluated_rows(
             used.keep("solutions", whole, arrays)
             written, last = len(values), time.monotonic()
 
+    # a sample takes some milliseconds: other processes of this machine would not pay
+    chunk = AT_A_TIME if on_cluster() else 1
+    items = ((evaluate, rows[k : k + chunk]) for k in range(len(values), len(rows), chunk))
     try:
-        for number in range(len(values), len(rows)):
-            report(number + 1)
-            found = evaluate(rows[number])
-            names = names or list(found)
-            values.append([found[name] for name in names])
+        for found in mapped(_evaluated, items, 1):
+            for one in found:
+                report(len(values) + 1)
+                names = names or list(one)
+                values.append([one[name] for name in names])
             if time.monotonic() - last > EVERY:
                 keep()
     finally:
         keep()
     return dict(zip(names, np.array(values).reshape(len(rows), len(names)).T.copy(), strict=True))
+
+
+def _evaluated(
+    _report: Progress, evaluate: Callable[[Floats], Mapping[str, float]], rows: Floats
+) -> list[Mapping[str, float]]:
+    return [evaluate(row) for row in rows]

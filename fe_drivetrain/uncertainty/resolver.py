@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.quantities import Solved
@@ -88,6 +90,35 @@ class Resolver:
         solve = partial(unit_stiffness, scene, name, coupling=self.coupling)
         return _kept(self.springs, f"{self.coupling} {unit_content(scene, name)}", solve)
 
+    def solve_springs(
+        self, scenes: Sequence[Scene], name: str, report: Callable[[int], object]
+    ) -> list[Floats]:
+        """(6, 6) stiffness of a bearing unit in each of several scenes.
+
+        Parameters
+        ----------
+        scenes : sequence of Scene
+            Which.
+        name : str
+            Of the bearing.
+        report : callable
+            Called with the number of a scene before its stiffness is there, the first being 1.
+        """
+        contents = [f"{self.coupling} {unit_content(scene, name)}" for scene in scenes]
+        missing = {
+            content: scene
+            for content, scene in zip(contents, scenes, strict=True)
+            if content not in self.springs
+        }
+        # one after the other on this machine: each takes all cores
+        items = ((scene, name, self.coupling) for scene in missing.values())
+        solved = mapped(_unit_stiffness, items, 1)
+        for number, content in enumerate(contents, 1):
+            report(number)
+            if content not in self.springs:
+                self.springs[content] = next(solved)
+        return [self.springs[content] for content in contents]
+
     def _body(self, scene: Scene) -> Condensed:
         modulus = scene.material_of("shaft").youngs_modulus
         first, body = _kept(
@@ -96,6 +127,10 @@ class Resolver:
             lambda: (modulus, condensed_shaft(scene, self.level)),
         )
         return replace(body, stiffness=body.stiffness * (modulus / first))
+
+
+def _unit_stiffness(_report: Progress, scene: Scene, name: str, coupling: Coupling) -> Floats:
+    return unit_stiffness(scene, name, coupling=coupling)
 
 
 _T = TypeVar("_T")

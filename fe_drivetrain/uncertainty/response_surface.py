@@ -135,17 +135,27 @@ def unit_surface(
     keys = tuple(spreads)
     nominal = np.array(nominal_values(scene, keys))
     known = [distribution(s, v) for s, v in zip(spreads.values(), nominal.tolist(), strict=True)]
-    count = 1 + 2 * len(keys) + CHECKS
-    done = 0
-
-    def solved(values: Mapping[str, float]) -> Floats:
-        nonlocal done
-        done += 1
-        face = "in shape" if resolver.coupling == "rigid" else "on average"
-        report(f"stiffness of {name}, face {face} ({done} of {count})")
-        return resolver.spring(with_values(scene, values), name)
-
-    base = solved({})
+    steps = []
+    for value, spread in zip(nominal.tolist(), known, strict=True):
+        low, high = (math.log(spread.ppf(q) / value) for q in (EDGE, 1.0 - EDGE))
+        steps.append(np.array([min(low, -LEAST_REACH), max(high, LEAST_REACH)]))
+    moves = [
+        {key: value * math.exp(step)}
+        for key, value, t in zip(keys, nominal.tolist(), steps, strict=True)
+        for step in t
+    ]
+    drawn = [
+        {key: float(spread.ppf(q)) for key, spread, q in zip(keys, known, row, strict=True)}
+        for row in qmc.LatinHypercube(d=len(keys), rng=seed).random(CHECKS)
+    ]
+    count = 1 + len(moves) + len(drawn)
+    face = "in shape" if resolver.coupling == "rigid" else "on average"
+    solved = resolver.solve_springs(
+        [with_values(scene, values) for values in [{}, *moves, *drawn]],
+        name,
+        lambda number: report(f"stiffness of {name}, face {face} ({number} of {count})"),
+    )
+    base, moved, checks = solved[0], solved[1 : 1 + len(moves)], solved[1 + len(moves) :]
     root = carried_root(base)
     inverse = np.linalg.pinv(root, rcond=1e-13)
 
@@ -155,11 +165,9 @@ def unit_surface(
         return np.asarray(vectors * np.log(values) @ vectors.T)
 
     slopes, bends, reach = [], [], []
-    for key, value, spread in zip(keys, nominal.tolist(), known, strict=True):
-        low, high = (math.log(spread.ppf(q) / value) for q in (EDGE, 1.0 - EDGE))
-        t = np.array([min(low, -LEAST_REACH), max(high, LEAST_REACH)])
-        moved = [logarithm(solved({key: value * math.exp(step)})) for step in t]
-        slope, bend = np.tensordot(np.linalg.inv(np.column_stack([t, t**2])), np.array(moved), 1)
+    for k, t in enumerate(steps):
+        pair = np.array([logarithm(stiffness) for stiffness in moved[2 * k : 2 * k + 2]])
+        slope, bend = np.tensordot(np.linalg.inv(np.column_stack([t, t**2])), pair, 1)
         slopes.append(slope)
         bends.append(bend)
         reach.append(np.abs(t).min())
@@ -176,11 +184,8 @@ def unit_surface(
         count,
     )
     error = 0.0
-    for row in qmc.LatinHypercube(d=len(keys), rng=seed).random(CHECKS):
-        values = {
-            key: float(spread.ppf(q)) for key, spread, q in zip(keys, known, row, strict=True)
-        }
-        exact = unit_numbers(solved(values))
+    for values, stiffness in zip(drawn, checks, strict=True):
+        exact = unit_numbers(stiffness)
         found = unit_numbers(surface(with_values(scene, values)))
         error = max(error, *(abs(found[n] / k - 1.0) for n, k in exact.items() if k > 0))
     return UnitSurface(**(vars(surface) | {"error": error}))

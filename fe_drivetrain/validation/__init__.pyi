@@ -38,6 +38,7 @@ from . import penalised_couplings as penalised_couplings
 from . import plane_rings as plane_rings
 from . import plane_teeth as plane_teeth
 from . import pressed_plate as pressed_plate
+from . import published_campaigns as published_campaigns
 from . import published_drivetrains as published_drivetrains
 from . import published_gears as published_gears
 from . import quarter_disc as quarter_disc

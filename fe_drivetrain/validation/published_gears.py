@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import radians
 
+from fe_drivetrain.dynamics import library_machine, machine_pairs
 from fe_drivetrain.gear import Gear, Pair, Rack
 
 
@@ -86,34 +87,13 @@ def nrel_5mw() -> dict[str, Pair]:
 
 
 def nrel_750kw() -> dict[str, Pair]:
-    """Four meshes of the NREL 750 kW gearbox.
+    """Four meshes of the NREL 750 kW gearbox, as the table of that machine has them.
 
-    Published root circles fix the shifts with a dedendum of 1.467 modules (1.503 in the last
-    stage); tips are assumed at a clearance of 0.4 modules from the other's roots.
+    Published root circles and centre distances fix shifts and dedenda; tips are assumed at a
+    clearance of 0.4 modules from the other's roots.
     """
-
-    def gear(teeth: int, m: float, width: float, helix: float, shift: float, tip: float) -> Gear:
-        rack = Rack(dedendum=1.503 if m == 5.0 else 1.467)
-        return Gear(
-            teeth, 1e-3 * m, 1e-3 * width, radians(helix), shift, rack=rack, tip_diameter=2e-3 * tip
-        )
-
-    planet = gear(39, 10.0, 227.5, -7.5, 0.399, 211.0)
-    # a sun is right-handed, planets and ring are left-handed
-    return {
-        "sun": Pair(gear(21, 10.0, 220.0, 7.5, 0.176, 118.0), planet, 0.308),
-        "ring": Pair(planet, gear(-99, 10.0, 230.0, -7.5, -0.974, 498.0), 0.308),
-        "intermediate": Pair(
-            gear(23, 8.25, 186.0, -14.0, 0.154, 107.7),
-            gear(82, 8.25, 170.0, 14.0, 0.296, 359.7),
-            0.450,
-        ),
-        "high speed": Pair(
-            gear(22, 5.0, 120.0, 14.0, 0.166, 63.0),
-            gear(88, 5.0, 110.0, -14.0, 0.156, 233.0),
-            0.285,
-        ),
-    }
+    pairs = machine_pairs(library_machine("nrel_750kw"))
+    return dict(zip(("sun", "ring", "intermediate", "high speed"), pairs.values(), strict=True))
 
 
 def iso_example_1() -> Pair:

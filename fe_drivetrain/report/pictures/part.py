@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -46,9 +45,9 @@ def picture_of_part(
     import pyvista
 
     view = View.fitting(points[np.unique(triangles)], _FROM, top=80, bottom=80)
-    nodes: Any = np.array(points)
-    faces: Any = np.array(triangles)
-    surface = pyvista.PolyData.from_regular_faces(nodes, faces)
+    surface = pyvista.PolyData.from_regular_faces(
+        np.array(points), np.array(triangles, dtype=np.int_)
+    )
     with drawing(path, view) as sheet:
         sheet.solid(surface, sharp_edges(surface), _COLOUR)
         middle = view.project(points.mean(axis=0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 MINUS = "\u2212"
 THIN_SPACE = "\u202f"
@@ -24,11 +25,12 @@ def superscript(power: int | str) -> str:
     return str(power).replace(" ", "").translate(_SUPERSCRIPTS)
 
 
+@lru_cache(maxsize=65536)
 def typeset(text: str) -> str:
     """Text with m^2 as m², h^p as hᵖ, 1e-8 as 10⁻⁸, 3.4e+08 as 3.4 × 10⁸, and minus signs.
 
     A number and its % stay on one line. What is to be typed again, as ``--set key=-4e5``, is
-    left alone.
+    left alone. What was set before is known: pages that list cases are written again and again.
     """
     text = _SCIENTIFIC.sub(_power_of_ten, text)
     text = _FACTOR.sub(lambda found: f"\u00a0×\u00a010{superscript(int(found[1]))}", text)

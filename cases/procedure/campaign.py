@@ -1,0 +1,181 @@
+"""A campaign on the 750 kW reference drivetrain: virtual measurements, and a model beside them."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.dynamics import Machine, library_machine, torsional
+from fe_drivetrain.procedure import (
+    Sensor,
+    band_torque,
+    element_torques,
+    measured,
+    periodic_motions,
+    scaled_to_power,
+    spectral_fit,
+    timed_angle,
+    write_channels,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Run
+from fe_drivetrain.torsion import (
+    Element,
+    Inertia,
+    Torsional,
+    damped,
+    static_stiffness,
+)
+
+MACHINE, SHAFT = "nrel_750kw", "LSS"
+SPEED, MEAN, DEVIATION = 22.1 * np.pi / 30.0, 3.25e5, 4e4  # rad/s, N m
+STEP, BAND, USED = 0.01, (0.05, 5.0), (0.2, 3.0)  # s, Hz
+DAMPING, EFFICIENCY, PULSES = 4e5, 0.95, 4096  # N m s/rad of the shaft, -, a turn
+GAUGE = Sensor(gain=0.93, offset=1e3, noise=1e3)
+WINDS, WINDOWS, TURBULENCE = (6, 7, 8, 9, 10), 3, 0.1
+
+
+@case(
+    "A campaign on the 750 kW reference drivetrain: virtual measurements beside a simpler model",
+    source="PROTEST 2010, ECN-E--10-100, section 4.6; Al-Hamadani 2018, Table 4.2",
+)
+def run(run: Run, page: Page) -> None:
+    """Record torque and angles with sensors, write them as a campaign would, compare a model."""
+    machine = library_machine(MACHINE)
+    truth, simple = eleven_inertias(machine), two_inertias(machine)
+    count = round((120.0 if run.quick else 300.0) / STEP)
+    torque = MEAN + band_torque(count, STEP, BAND, DEVIATION, seed=5)
+    with run.step("virtual measurement"):
+        recorded, gain = measurement(truth, torque)
+        write_channels(run.folder / "measured.csv", STEP, recorded)
+        write_channels(run.folder / "wind.csv", 1.0, {"wind speed [m/s]": winds()})
+    with run.step("model"):
+        inner = slice(round(0.5 / STEP), -round(0.5 / STEP))
+        computed = shaft_torque(simple, torque, "drivetrain")[inner]
+        write_channels(run.folder / "computed.csv", STEP, {"LSS torque [N m]": computed})
+    gauge = recorded["LSS torque [N m]"]
+    page.equals(
+        "mean torque, scaled to electrical power [kN m]",
+        float(gauge.mean()) / 1e3,
+        MEAN / 1e3,
+        within=1e-3,
+        why="the mean of the torque over a record that is cut by half a second at both ends",
+        source="the driving torque",
+        measure="reaction",
+    )
+    twist = recorded["rotor angle [rad]"] - recorded["gearbox angle [rad]"]
+    fit = spectral_fit(gauge, twist, STEP, USED)
+    stiffness = next(e.stiffness for e in truth.elements if e.name == SHAFT)
+    page.equals(
+        "stiffness of the main shaft, identified, over gain and truth",
+        float(fit.values[2]) / gain / stiffness,
+        1.0,
+        within=0.01,
+        why="noise of bridge and encoders; the error of gain that the offset makes is divided out",
+        source="the shaft of the simulated drivetrain",
+        band=float(fit.bands[2]) / stiffness,
+        measure="stiffness",
+    )
+    page.answer(
+        f"Scaling by power leaves a gain of {gain:.4f} in the torque: the offset of "
+        f"{GAUGE.offset:g} N m has become an error of gain, and the stiffness found has it, too.",
+        "measured.csv, computed.csv and wind.csv are what a campaign would hand on.",
+    )
+    page.section("Torque of the main shaft")
+    shown = slice(0, round(20.0 / STEP))
+    time = np.arange(len(gauge)) * STEP
+    page.chart(
+        "As recorded and scaled, and of the model of two inertias",
+        [
+            trace("measured", time[shown], gauge[shown] / 1e3),
+            trace("computed", time[shown], computed[shown] / 1e3),
+        ],
+        "time [s]",
+        "torque [kN m]",
+    )
+    rows = [
+        {
+            "statistic": name,
+            "measured [kN m]": float(of(gauge)) / 1e3,
+            "computed [kN m]": float(of(computed)) / 1e3,
+        }
+        for name, of in (
+            ("mean", np.mean),
+            ("standard deviation", np.std),
+            ("least", np.min),
+            ("largest", np.max),
+        )
+    ]
+    page.table("Statistics", rows)
+    page.data("statistics", rows)
+    page.assume("damping of the main shaft", DAMPING, "N m s/rad", "the table has none")
+    page.assume("efficiency", EFFICIENCY, "", "of a virtual measurement of power")
+    page.assume("wind", f"{WINDOWS} windows each of {WINDS} m/s", "", "of a virtual campaign")
+
+
+def eleven_inertias(machine: Machine) -> Torsional:
+    """The table's own inertias, with damping in the main shaft."""
+    return damped(torsional(machine), {SHAFT: DAMPING})
+
+
+def two_inertias(machine: Machine) -> Torsional:
+    """Rotor and generator, referred to the rotor, the stiffness between them and the grid's."""
+    full = torsional(machine)
+    ratio = machine.speeds[-1] ** 2
+    stiffness = static_stiffness(full, "rotor", "generator")
+    shaft = next(e for e in full.elements if e.name == SHAFT)
+    # the same loss where the shaft has its share of the winding
+    damping = DAMPING * (stiffness / shaft.stiffness) ** 2
+    return Torsional(
+        (
+            Inertia("rotor", machine.rotor.inertia),
+            Inertia("generator", ratio * machine.generator.inertia),
+        ),
+        (
+            Element("drivetrain", {"rotor": 1.0, "generator": -1.0}, stiffness, damping),
+            Element("grid", {"generator": 1.0}, ratio * machine.generator.stiffness),
+        ),
+    )
+
+
+def shaft_torque(system: Torsional, torque: Floats, element: str) -> Floats:
+    """(n,) torque in an element while the rotor is driven [N m]."""
+    motions = periodic_motions(system, on_rotor(system, torque), STEP)
+    place = [e.name for e in system.elements].index(element)
+    return np.asarray(element_torques(system, motions)[place])
+
+
+def on_rotor(system: Torsional, torque: Floats) -> Floats:
+    """(inertias, n) torques, of which the rotor alone is driven [N m]."""
+    given = np.zeros((len(system.inertias), len(torque)))
+    given[[part.name for part in system.inertias].index("rotor")] = torque
+    return given
+
+
+def measurement(system: Torsional, torque: Floats) -> tuple[dict[str, Floats], float]:
+    """Torque by a bridge, scaled to power, and angles by timed pulses; the gain that is left."""
+    motions = periodic_motions(system, on_rotor(system, torque), STEP)
+    names = [part.name for part in system.inertias]
+    place = [e.name for e in system.elements].index(SHAFT)
+    time, inner = motions.time, slice(round(0.5 / STEP), -round(0.5 / STEP))
+    bridge = measured(GAUGE, element_torques(system, motions)[place], seed=6)[inner]
+    speed = (SPEED + motions.speed[names.index("rotor")])[inner]
+    power = EFFICIENCY * torque[inner] * speed
+    factor = scaled_to_power(bridge, speed, power, EFFICIENCY)
+    angles = {
+        f"{name} angle [rad]": timed_angle(
+            time, SPEED * time + motions.angle[names.index(part)], PULSES, time[inner]
+        )
+        for name, part in (("rotor", "rotor"), ("gearbox", "stage 1 carrier"))
+    }
+    columns = {"LSS torque [N m]": factor * bridge, **angles, "power [W]": power}
+    return columns, factor * GAUGE.gain
+
+
+def winds() -> Floats:
+    """Wind at 1 Hz in windows of ten minutes, some of each mean [m/s]."""
+    parts = [
+        v + band_torque(600, 1.0, (0.002, 0.2), TURBULENCE * v, seed=100 * v + k)
+        for v in WINDS
+        for k in range(WINDOWS)
+    ]
+    return np.concatenate(parts)

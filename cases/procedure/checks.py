@@ -1,0 +1,472 @@
+"""Twenty checks that need nobody's private data, each run: exact or printed value beside ours."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure import checks_of_parts
+from fe_drivetrain.cases.procedure.checks_of_parts import Found
+from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.histories import (
+    alias,
+    capture_matrix,
+    damage_equivalent_load,
+    equivalent_level,
+    even_levels,
+    rainflow_cycles,
+    time_at_level,
+)
+from fe_drivetrain.procedure import (
+    Excitation,
+    Procedure,
+    ThreePoints,
+    Twist,
+    Visit,
+    band_torque,
+    driven_motions,
+    element_torques,
+    imbalance,
+    least_squares,
+    logarithmic_decrement,
+    periodic_motions,
+    ratio_by_ranges,
+    reduced_torque,
+    require_complete,
+    resonances,
+    sampling_rates,
+    stiffness_by_ranges,
+    three_point_loads,
+)
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import (
+    Inertia,
+    chain,
+    changed,
+    damped_modes,
+    gear_masses,
+    gear_speeds,
+    modal_damping,
+    natural_modes,
+    referred,
+    response,
+    stage_masses,
+    static_stiffness,
+)
+from fe_drivetrain.validation import published_campaigns, published_drivetrains
+
+TABLE = published_drivetrains.table("drivetrain_c")
+FRONT, REAR, STIFFNESS, DAMPING = 150.34, 24.0, 5296.0, 19.86
+PAIR = chain((Inertia("rotor", FRONT), Inertia("generator", REAR)), [("shaft", STIFFNESS, DAMPING)])
+REDUCED = FRONT * REAR / (FRONT + REAR)
+STEP = 0.005  # s
+PLACES = ThreePoints(
+    hub=-1.5,
+    bearing=0.0,
+    entrance=1.4,
+    arms=2.2,
+    output=3.1,
+    generator=4.5,
+    between_arms=2.4,
+    offset=0.5,
+    shaft_mass=8e3,
+    shaft_centre=0.4,
+    gearbox_mass=12e3,
+    gearbox_centre=2.1,
+    generator_mass=7e3,
+    ratio=100.0,
+)
+
+
+def interfaces() -> list[Found]:
+    """Equilibrium at interfaces in every row."""
+    loads = np.array([250e3, 5e3, -400e3, 800e3, 50e3, 20e3])
+    size = np.random.default_rng(1).standard_normal((200, 6))
+    changing = np.asarray(loads * (1.0 + 0.3 * size), dtype=np.float64)
+    table = three_point_loads(PLACES, np.arange(200) * 0.1, changing)
+    worst = max(float(np.abs(imbalance(table, body.name)).max()) for body in table.bodies)
+    arms = [table.interface(f"{side} arm").loads[:, 2] for side in ("left", "right")]
+    housing = -0.5 * PLACES.between_arms * (arms[0] - arms[1])
+    torque = float(np.mean(housing / table.interface("hub").loads[:, 3]))
+    return [
+        Found("largest imbalance of a body in any row", worst, 0.0, "statics"),
+        Found(
+            "torque of the housing over T_LSS", torque, 1.0 - 1.0 / PLACES.ratio, "T_LSS - T_HSS"
+        ),
+    ]
+
+
+def power() -> list[Found]:
+    """Power in is losses and change of energy."""
+    time = np.arange(4001) * 1e-3
+    torques = np.stack([200.0 + 50.0 * np.sin(10.0 * time), np.full(4001, -200.0)])
+    m = driven_motions(PAIR, torques, 1e-3)
+    twist, rate = m.angle[0] - m.angle[1], m.speed[0] - m.speed[1]
+    energy = 0.5 * (PAIR.J @ m.speed**2 + STIFFNESS * twist**2)
+    net = np.einsum("it,it->t", torques, m.speed) - DAMPING * rate**2
+    work = 1e-3 * float((net[1:] + net[:-1]).sum()) / 2.0
+    return [
+        Found(
+            "(energy in - losses) / change of energy",
+            work / float(energy[-1] - energy[0]),
+            1.0,
+            "conservation of energy",
+            1e-4,
+            "trapezia over 1 ms",
+        )
+    ]
+
+
+def levels() -> list[Found]:
+    """A model of few masses as the limit of one of many; frequencies rise with each spring."""
+    gears = gear_masses(TABLE, "free")
+    rigid = changed(gears, {e.name: 1e8 * e.stiffness for e in gears.elements if "stage" in e.name})
+    stages = stage_masses(TABLE, "free")
+    speeds = gear_speeds(TABLE)
+    planets = sum(
+        part.inertia * speeds[part.name] ** 2 for part in gears.inertias if "planet" in part.name
+    )
+    stages = changed(stages, {"stage 1": float(stages.J[1] + planets)})
+    few, many = (natural_modes(s).frequencies[1:5] for s in (stages, rigid))
+    base = natural_modes(gears).frequencies
+    least = min(
+        float((natural_modes(changed(gears, {e.name: 1.1 * e.stiffness})).frequencies - base).min())
+        for e in gears.elements
+    )
+    return [
+        Found(
+            "frequencies with rigid meshes, of gears over stages, largest difference",
+            float(np.abs(many / few - 1.0).max()),
+            0.0,
+            "the same masses lumped",
+            1e-5,
+            "meshes 1e8 times as stiff",
+        ),
+        Found(
+            "largest fall of a frequency when a spring gets 10 % stiffer, over the highest",
+            max(-least, 0.0) / float(base[-1]),
+            0.0,
+            "Rayleigh's quotient rises with every spring",
+        ),
+    ]
+
+
+def series() -> list[Found]:
+    """Springs in series; a stiffness seen through gears."""
+    k = (3.0e8, 5.0e7, 2.0e8)
+    parts = [Inertia(str(i), 1.0 + i) for i in range(4)]
+    shafts = chain(parts, [(f"k{i}", value, 0.0) for i, value in enumerate(k)])
+    n = 81.49
+    low = referred(PAIR, {"rotor": n, "generator": n})
+    return [
+        Found(
+            "three springs in series over K1 K2 / (K1 + K2)",
+            static_stiffness(shafts, "0", "3") * sum(1.0 / v for v in k),
+            1.0,
+            "compliances add",
+        ),
+        Found(
+            "stiffness seen at the low-speed shaft over that at the high-speed one, by n^2",
+            float(low.K[0, 0]) / STIFFNESS / n**2,
+            1.0,
+            "energy",
+        ),
+    ]
+
+
+def energies() -> list[Found]:
+    """Energy shares; crossings of constant modes."""
+    system = gear_masses(TABLE, "free")
+    modes = natural_modes(system)
+    elements = tuple(e.name for e in system.elements)
+    met = resonances([Excitation("all", 6.0, system.names)], modes, elements, (9.0, 18.0))
+    return [
+        Found(
+            "sum of energy shares - 1, largest",
+            max(abs(m.share - 1.0) for m in met),
+            0.0,
+            "all inertias have the kinetic energy",
+        ),
+        Found(
+            "order x speed / 60 over the frequency at crossings, largest difference from 1",
+            max(abs(6.0 * m.crossing / 60.0 / m.frequency - 1.0) for m in met),
+            0.0,
+            "n = 60 f / order",
+        ),
+    ]
+
+
+def sweep() -> list[Found]:
+    """The largest response at the crossing; decrement of a stop."""
+    modes = natural_modes(PAIR)
+    (meeting,) = resonances([Excitation("6P", 6.0, ("rotor",))], modes, ("shaft",), (20.0, 30.0))
+    speeds = np.linspace(20.0, 30.0, 2001)
+    turned = response(PAIR, "rotor", 6.0 * speeds / 60.0)
+    peak = float(speeds[np.abs(turned[:, 0] - turned[:, 1]).argmax()])
+    time = np.arange(4000) * 0.002
+    drive: Floats = np.interp(time, [0.0, 1.0, 1.002], [1000.0, 1000.0, 0.0])
+    motions = driven_motions(PAIR, np.stack([drive, -drive]), 0.002)
+    decay = logarithmic_decrement((motions.angle[0] - motions.angle[1])[520:], 0.002)
+    return [
+        Found(
+            "speed of the largest response over the crossing",
+            peak / meeting.crossing,
+            1.0,
+            "n = 60 f / order",
+            float(modal_damping(PAIR)[1]),
+            "half the bandwidth, zeta",
+        ),
+        Found(
+            "damping ratio by the decrement of a stop",
+            decay.ratio,
+            float(damped_modes(PAIR).ratios[0]),
+            "eigenvalues",
+            1e-4 * decay.ratio,
+            "parabolas through samples",
+        ),
+    ]
+
+
+def identified() -> list[Found]:
+    """What printed equations give at resonance, and least squares."""
+    driving = band_torque(38000, STEP, (2.4, 2.7), 100.0, 1)
+    m = periodic_motions(PAIR, np.stack([driving, 0.0 * driving]), STEP)
+    x = [a[0] - a[1] for a in (m.angle, m.speed, m.acceleration)]
+    shaft = Twist(STEP, element_torques(PAIR, m)[0], *x)
+    torque, _ = reduced_torque(driving, 0.0 * driving, FRONT, REAR)
+    omega = float(np.sqrt(STIFFNESS / REDUCED))
+    exact = np.array([REDUCED, DAMPING, STIFFNESS])
+    low = Twist(STEP, 9.0 * torque, *(a / 9.0 for a in x))
+    return [
+        Found(
+            "Eq 4: stiffness over the truth",
+            float(np.median(stiffness_by_ranges(shaft))) / STIFFNESS,
+            float(np.hypot(1.0, omega * DAMPING / STIFFNESS)),
+            "a sine: sqrt(K^2 + (w D)^2)",
+            1e-3,
+            "a band 6 % wide to either side",
+        ),
+        Found(
+            "Eq 5: inertia over damping [s]",
+            float(np.median(ratio_by_ranges(shaft))),
+            1.0 / omega,
+            "1 / w, whatever I and D",
+            0.02 / omega,
+            "a band 6 % wide to either side",
+        ),
+        *(
+            Found(
+                f"least squares on the {of}, largest error over the truth",
+                float(np.abs(least_squares(twist).values / factor / exact - 1.0).max()),
+                0.0,
+                "J* x'' + D x' + K x = reduced torque",
+                1e-8,
+            )
+            for of, twist, factor in (
+                ("reduced torque", Twist(STEP, torque, *x), 1.0),
+                ("aerodynamic torque over J_r / J*", Twist(STEP, driving, *x), FRONT / REDUCED),
+                ("low-speed side over n^2", low, 81.0),
+            )
+        ),
+    ]
+
+
+def captured() -> list[Found]:
+    """Windows and mean turbulence of the capture matrices."""
+    found = []
+    for of, mean in (
+        (published_campaigns.MONITORING, 9.73),
+        (published_campaigns.IDENTIFICATION, 7.30),
+    ):
+        matrix = capture_matrix(*of.each, *of.edges)
+        found += [
+            Found(
+                f"{of.where}: windows",
+                float(matrix.counts.sum()),
+                float(of.windows),
+                "printed",
+                0.0,
+                "a count",
+            ),
+            Found(
+                f"{of.where}: mean turbulence [%], {100 * of.turbulence:.2f} printed",
+                100.0 * matrix.mean_turbulence,
+                mean,
+                "middles of the printed classes",
+                5e-3,
+                "its last digit",
+            ),
+        ]
+    return found
+
+
+def counted() -> list[Found]:
+    """Rainflow, equivalent loads, load durations."""
+    example = rainflow_cycles(np.array([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]))
+    counts = {float(r): float(example.counts[example.ranges == r].sum()) for r in example.ranges}
+    expected = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
+    wave = rainflow_cycles(3.0 * np.cos(np.linspace(0.0, 20.0 * np.pi, 4001)))
+    signal = np.random.default_rng(1).standard_normal(5000)
+    one, two = (damage_equivalent_load([rainflow_cycles(s * signal)], 1.0, 4.0) for s in (1.0, 2.0))
+    durations = time_at_level(signal, 0.1, even_levels(-6.0, 6.0))
+    level = equivalent_level(np.abs(signal), 10.0 / 3.0)
+    inside = float(np.abs(signal).mean()) <= level <= float(np.abs(signal).max())
+    return [
+        Found(
+            "cycles of the example of ASTM E1049, largest difference",
+            max(abs(counts.get(r, 0.0) - expected.get(r, 0.0)) for r in {*counts, *expected}),
+            0.0,
+            "ASTM E1049: 3 x 0.5, 4 x 1.5, 6 x 0.5, 8 x 1, 9 x 0.5",
+            0.0,
+            "counts",
+        ),
+        Found(
+            "equivalent range of ten periods of a sine of range 6",
+            damage_equivalent_load([wave], 10.0, 4.0),
+            6.0,
+            "ten cycles",
+        ),
+        Found("equivalent load of twice the load, over it", two / one, 2.0, "m"),
+        Found("load durations [s]", float(durations.amount.sum()), 500.0, "T"),
+        Found("equivalent level from mean to maximum", float(inside), 1.0, "p > 1", 0.0, "a truth"),
+    ]
+
+
+def sampling() -> list[Found]:
+    """Sampling rates and aliases."""
+    f = 2.546
+    slow, good = sampling_rates(f)
+    return [
+        Found(
+            "rates over the frequency, difference from 3 and 5",
+            abs(slow / f - 3.0) + abs(good / f - 5.0),
+            0.0,
+            "3 to 5 x",
+        ),
+        Found("at 3 x it appears at itself, over it", alias(f, 1.0 / slow) / f, 1.0, "above 2 x"),
+        Found("at 1.5 x it appears at half of it", alias(f, 1.0 / (1.5 * f)) / f, 0.5, "|f - f_s|"),
+    ]
+
+
+def reduction() -> list[Found]:
+    """Springs locked above a threshold: the error falls as the threshold rises."""
+    parts = [Inertia(str(i), 10.0) for i in range(8)]
+    k = [1e4 * 4.0**i for i in (0, 3, 5, 1, 4, 6, 2)]
+    system = chain(parts, [(f"k{i}", value, 0.0) for i, value in enumerate(k)])
+    own = {f"k{i}": float(np.sqrt(2.0 * v / 10.0)) / (2.0 * np.pi) for i, v in enumerate(k)}
+    exact = natural_modes(system).frequencies[1]
+    errors = []
+    for threshold in sorted(own.values()):
+        locked = {n: 1e9 * v for (n, f), v in zip(own.items(), k, strict=True) if f > threshold}
+        errors.append(float(natural_modes(changed(system, locked)).frequencies[1] / exact - 1.0))
+    b = 50.0
+    two = chain(parts[:1], [], ("a", 1e4, 0.0)), chain(parts[:1], [], ("a", 1e4 * b / (1 + b), 0.0))
+    frequencies = [float(natural_modes(s).frequencies[0]) for s in two]
+    return [
+        Found(
+            "largest rise of the error of f1 as the threshold rises",
+            max(0.0, float(np.diff(errors).max())),
+            0.0,
+            "a constraint never lowers a frequency (Courant)",
+            1e-9,
+            "springs locked at 1e9 times their stiffness",
+        ),
+        Found(
+            "error of f1 with no spring locked", errors[-1], 0.0, "itself", 0.0, "the same model"
+        ),
+        Found(
+            "locking a spring 50 times as stiff changes f by, times 2 b",
+            (frequencies[0] / frequencies[1] - 1.0) * 2.0 * b,
+            1.0,
+            "1 / (2 b)",
+            0.02,
+            "terms of the order of 1 / b",
+        ),
+    ]
+
+
+def loops() -> list[Found]:
+    """No end with a step that was not visited."""
+    ended = 0
+    for missing in range(1, 7):
+        log = Procedure("drivetrain")
+        for step in (1, 2, 3, 4, 2, 3, 4, 5, 6, 5, 6):
+            if step != missing:
+                log = log.after(Visit(step, "done"))
+        try:
+            require_complete(log)
+            ended += 1
+        except InputError:
+            pass
+    return [
+        Found(
+            "procedures that end with a step left out, of 6",
+            float(ended),
+            0.0,
+            "six steps",
+            0.0,
+            "a count",
+        )
+    ]
+
+
+CHECKS: dict[str, Callable[[], list[Found]]] = {
+    "interface tables": interfaces,
+    "power": power,
+    "levels of models": levels,
+    "series and ratios": series,
+    "energy shares, Campbell": energies,
+    "sweep and stop": sweep,
+    "identification": identified,
+    "capture matrices": captured,
+    "cycles and durations": counted,
+    "misalignment": checks_of_parts.misaligned,
+    "pitch and yaw torque": checks_of_parts.slewing,
+    "friction": checks_of_parts.friction,
+    "ring": checks_of_parts.ring,
+    "teeth": checks_of_parts.teeth,
+    "thermal torque": checks_of_parts.thermal,
+    "transients": checks_of_parts.transients,
+    "tower shear": checks_of_parts.shear,
+    "sampling": sampling,
+    "reduction": reduction,
+    "steps": loops,
+}
+
+
+@case(
+    "Twenty checks of a drivetrain procedure that need no private data",
+    source="PROTEST 2010, ECN-E--10-100, sections 2 to 7; exact solutions named with each check",
+)
+def run(run: Run, page: Page) -> None:
+    """Each check, and a table of exact or printed values beside ours."""
+    rows: list[Record] = []
+    for number, (name, check) in enumerate(CHECKS.items(), start=1):
+        with run.step(name):
+            found = check()
+        for one in found:
+            page.equals(
+                f"{number}, {name}: {one.what}",
+                one.ours,
+                one.exact,
+                within=one.within,
+                relative=False,
+                why=one.why,
+                source=one.source,
+                measure="identity",
+            )
+            rows.append(
+                {
+                    "check": number,
+                    "of": name,
+                    "quantity": one.what,
+                    "exact or printed": one.exact,
+                    "ours": one.ours,
+                    "allowed difference": one.within,
+                    "from": one.source,
+                }
+            )
+    page.section("Values")
+    page.table("Exact or printed value, and ours", rows)
+    page.data("checks", rows)
+    page.answer(f"{len(CHECKS)} checks with {len(rows)} quantities, each with its exact value.")

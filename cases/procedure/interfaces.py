@@ -1,0 +1,200 @@
+"""Loads and motions at the interfaces of one drivetrain: statics, finite elements, dynamics."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import FORCES, Floats
+from fe_drivetrain.fidelity import shaft_level
+from fe_drivetrain.hub_loads import Condition, hub_loads
+from fe_drivetrain.procedure import (
+    LoadTable,
+    Mounts,
+    ThreePoints,
+    analysed,
+    imbalance,
+    level_loads,
+    moving_three_points,
+    three_point_loads,
+    write_load_csv,
+    write_load_json,
+)
+from fe_drivetrain.report import trace
+from fe_drivetrain.scene import Scene, library_scene
+from fe_drivetrain.suite import Page, Record, Run
+
+SCENE, ARMS = "three_point_suspension", 2.0  # m between the arms, as the scene's source has them
+MASSES = {"shaft": 8e3, "gearbox": 15e3, "generator": 7e3}  # kg
+RATIO, SECONDS = 100.0, 2e-4  # -, damping over stiffness [s]
+SHOWN = ("main bearing", "gearbox entrance")
+
+
+@case(
+    "Loads, displacements and accelerations at all interfaces: statics, finite elements, dynamics",
+    source="PROTEST 2010, ECN-E--10-100, Table 4.5; three-point suspension of 1.5 MW",
+)
+def run(run: Run, page: Page) -> None:
+    """One history of hub loads through three models; each in equilibrium in every row."""
+    scene = library_scene(SCENE)
+    places, mounts = drivetrain(scene)
+    made = hub_loads(Condition(16.0, "medium", 0.2, 1), duration=30.0 if run.quick else 600.0)
+    time, hub = made.time, made.loads
+    with run.step("dynamics"):
+        moving = moving_three_points(places, mounts, time, hub)
+        without = moving_three_points(places, mounts, time, hub, weight=False)
+    with run.step("finite elements"):
+        elements = level_loads(scene, shaft_level(scene, 2), time, hub)
+    static = three_point_loads(places, time, hub)
+    # of hub loads alone: the weights are those of the first row without any load
+    rest = three_point_loads(places, time[:1], np.zeros((1, 6)))
+    for name, table in (("dynamics", moving), ("finite elements", elements), ("statics", static)):
+        page.vanishes(
+            f"{name}: largest error of equilibrium of any body in any row",
+            max(float(np.abs(imbalance(table, body.name)).max()) for body in table.bodies),
+            within=1e-9,
+            why="rounding, relative to the largest load on the body",
+            source="forces and moments of all interfaces, weight and inertia",
+        )
+    entrance = moving.interface("gearbox entrance").loads[:, 3]
+    output = moving.interface("high-speed shaft").loads[:, 3]
+    page.vanishes(
+        "dynamics: torque of the entrance and ratio times that of the high-speed shaft, difference",
+        float(np.abs(entrance + RATIO * output).max() / np.abs(entrance).max()),
+        within=1e-12,
+        why="rounding: both come of one spring",
+        source="gearing, without losses",
+        basis="self-consistency",
+    )
+    determined = [
+        float(
+            np.abs(
+                sign * elements.interface(name).loads[:, 2]
+                - static.interface(name).loads[:, 2]
+                + rest.interface(name).loads[:, 2]
+            ).max()
+            / np.abs(hub[:, 2]).max()
+        )
+        for name, sign in (("main bearing", -1.0), ("gearbox entrance", 1.0))
+    ]
+    page.vanishes(
+        "vertical forces of finite elements and statics, largest difference over that of the hub",
+        max(determined),
+        within=1e-6,
+        why="the arms do not resist a turn about y: vertical forces follow from equilibrium",
+        source="statics",
+        measure="identity",
+    )
+    beside(page, hub, static, elements, without, rest)
+    motions(page, moving, elements)
+    write_load_csv(moving, run.folder / "interfaces.csv")
+    write_load_json(moving, run.folder / "interfaces.json")
+    write_load_csv(elements, run.folder / "interfaces_elements.csv")
+    write_load_json(elements, run.folder / "interfaces_elements.json")
+    page.section("All interfaces")
+    rows = [
+        {k: v for k, v in row.items() if not isinstance(v, list) and k != "source"}
+        for row in analysed(moving)
+        if max(abs(row["least"]), abs(row["largest"])) > 0.0
+    ]
+    page.table("Dynamics: mean, extremes and equivalent values at 1 Hz by slope", rows)
+    page.text(
+        "The files hold each row, and interfaces.json also the duration distribution and the "
+        "rainflow cycles of each component. Displacements are from steady turning."
+    )
+    for name, mass in MASSES.items():
+        page.assume(f"mass of the {name}", mass, "kg", "of such machines, round")
+    page.assume("ratio", RATIO, "", "of such machines, round")
+    page.assume("stiffness, inertia", "see the case", "", "all but the arms, which are the scene's")
+
+
+def drivetrain(scene: Scene) -> tuple[ThreePoints, Mounts]:
+    """The scene's places and arms; the rest is assumed."""
+    rear = scene.shaft.front + scene.shaft.length
+    places = ThreePoints(
+        hub=scene.shaft.front,
+        bearing=0.0,
+        entrance=rear,
+        arms=rear,
+        output=rear + 1.5,
+        generator=rear + 3.0,
+        between_arms=ARMS,
+        offset=0.5,
+        shaft_mass=MASSES["shaft"],
+        shaft_centre=0.3,
+        gearbox_mass=MASSES["gearbox"],
+        gearbox_centre=rear + 0.4,
+        generator_mass=MASSES["generator"],
+        ratio=RATIO,
+    )
+    k = [float(value) for value in scene.gearbox.stiffness]
+    mounts = Mounts(
+        bearing=(3e9, 3e9, 3e9),
+        entrance=(2e9, 2e9, 2e9, 2e8, 2e8),
+        arm=(k[0] / 2, k[1] / 2, k[2] / 2),
+        supports=(5e7, 5e7, 5e7, 5e7, 5e7),
+        torsion=1e4,
+        grid=3e4,
+        shaft=(3e3, 6e3),
+        gearbox=(9e3, 1e4),
+        generator=(60.0, 3e3),
+        seconds=SECONDS,
+    )
+    return places, mounts
+
+
+def beside(
+    page: Page,
+    hub: Floats,
+    static: LoadTable,
+    elements: LoadTable,
+    moving: LoadTable,
+    rest: LoadTable,
+) -> None:
+    """Statistics of loads that the hub's bring about, by model."""
+    rows: list[Record] = []
+    for name in SHOWN:
+        sign = -1.0 if name == "main bearing" else 1.0  # of the shaft on the bearing, by the levels
+        by_model = {
+            "statics": static.interface(name).loads - rest.interface(name).loads,
+            "finite elements": sign * elements.interface(name).loads,
+            "dynamics": moving.interface(name).loads,
+        }
+        for c, component in enumerate(FORCES):
+            unit, size = ("kN", 1e3) if c < 3 else ("kN m", 1e3)
+            deviations = {m: float(v[:, c].std()) / size for m, v in by_model.items()}
+            if max(deviations.values()) < 1e-3 * float(hub.std()) / size:
+                continue
+            row: Record = {"interface": name, "component": f"{component} [{unit}]"}
+            row |= {f"{m}: mean": float(v[:, c].mean()) / size for m, v in by_model.items()}
+            row |= {f"{m}: deviation": d for m, d in deviations.items()}
+            rows.append(row)
+    page.section("One load in three models")
+    page.table("Loads at main bearing and gearbox entrance of those at the hub", rows)
+    page.data("models", rows)
+    page.text(
+        "Statics takes the arms as vertical and lateral supports; the finite elements have their "
+        "axial stiffness and what it resists of a turn about z, too; in the dynamics gearbox and "
+        "shaft have inertia."
+    )
+
+
+def motions(page: Page, moving: LoadTable, elements: LoadTable) -> None:
+    """Displacements of the hub in both models, and accelerations of the gearbox."""
+    shown = slice(0, min(len(moving.time), 400))
+    page.section("Displacements and accelerations")
+    page.chart(
+        "Vertical displacement of the hub against its mean",
+        [
+            trace(name, moving.time[shown], 1e3 * (u - u.mean())[shown])
+            for name, table in (("finite elements", elements), ("dynamics", moving))
+            if (found := table.interface("hub").displacements) is not None
+            for u in (found[:, 2],)
+        ],
+        "time [s]",
+        "uz [mm]",
+    )
+    curves = []
+    for side in ("left", "right"):
+        a = moving.interface(f"{side} arm").accelerations
+        assert a is not None
+        curves.append(trace(f"{side} arm", moving.time[shown], a[shown, 2]))
+    page.chart("Vertical acceleration at the arms", curves, "time [s]", "az [m/s^2]")

@@ -1,0 +1,153 @@
+"""Tables 5.3, 6.3 and 6.4 of quantities at pitch and yaw interfaces, filled from simulations."""
+
+import json
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.pitch_and_yaw import (
+    AXIAL,
+    DIAMETER,
+    MOMENT,
+    PITCH,
+    RADIAL,
+    YAW,
+)
+from fe_drivetrain.common import Floats, wrench_transport
+from fe_drivetrain.hub_loads import (
+    Condition,
+    Rotor,
+    designed_controller,
+    similar_turbine,
+    turbine_histories,
+)
+from fe_drivetrain.procedure import (
+    drive_torque,
+    filled_table,
+    friction_torque,
+    listed_quantities,
+    ring_torque,
+)
+from fe_drivetrain.suite import Page, Record, Run
+
+OVERHANG, HEIGHT = 3.5, 2.0  # m, hub before the tower's axis and above its top
+NACELLE = 80e3 * 9.81, 0.8  # N without the rotor, m behind the tower's axis
+PINION, TORSION = 12.0, 8e3  # turns of the pinion for one of the blade; N m, held
+
+
+@case(
+    "Quantities to be measured at pitch and yaw interfaces, from simulations",
+    source="PROTEST 2010, ECN-E--10-100, Tables 5.3, 6.3, 6.4",
+)
+def run(run: Run, page: Page) -> None:
+    """One wind speed above rated: pitch system, and the tower's top while the nacelle yaws."""
+    turbine = similar_turbine(Rotor())
+    with run.step("turbine"):
+        (made,) = turbine_histories(
+            [Condition(17.0, "medium", 0.2, 1)],
+            turbine,
+            designed_controller(turbine),
+            duration=60.0 if run.quick else 600.0,
+        )
+    step = float(made.history.time[1] - made.history.time[0])
+    pitched, motor = pitch_channels(made.pitch, step)
+    channels = pitched | yaw_channels(made.history.loads, step)
+    listed = listed_quantities()
+    tables = {name: filled_table(listed.of(name), channels, step) for name in ("5.3", "6.3", "6.4")}
+    for name, rows in tables.items():
+        page.section(f"Table {name}")
+        shown: list[Record] = [
+            {key: value for key, value in row.items() if key not in ("levels", "seconds", "table")}
+            | {"given": "yes" if row["given"] else "no"}
+            for row in rows
+        ]
+        page.table("Channels that the table asks for; durations are in tables.json", shown)
+    with (run.folder / "tables.json").open("w", encoding="utf-8") as file:
+        json.dump(tables, file)
+    rows = [row for table in tables.values() for row in table]
+    given = [row for row in rows if row["given"]]
+    seconds = [sum(row["seconds"]) for row in given if row["seconds"]]
+    page.equals(
+        "load durations: shortest and longest sum [s]",
+        min(seconds) + max(seconds),
+        2.0 * step * len(made.pitch),
+        within=1e-9,
+        why="every sample is at one level",
+        source="duration of the simulation",
+        measure="identity",
+    )
+    by_name = {row["channel"]: row for row in reversed(given)}
+    page.equals(
+        "tower top: mean axial force [kN]",
+        by_name["tower top axial force"]["mean"] / 1e3,
+        (float(made.history.loads[:, 2].mean()) - NACELLE[0]) / 1e3,
+        within=1e-9,
+        why="rounding",
+        source="hub force and weight of the nacelle",
+    )
+    mandatory = [row for row in tables["6.4"] if row["rank"] == "mandatory"]
+    page.holds(
+        "Table 6.4: all that is mandatory is given",
+        all(row["given"] for row in mandatory),
+        why="tower top loads follow from those of the hub",
+        source="PROTEST 2010, Table 6.4",
+    )
+    missing = [str(row["channel"]) for row in rows if not row["given"]]
+    page.answer(
+        f"{len(given)} of {len(rows)} channels are given by the models of turbine and drives; the "
+        f"pitch motor's worst root mean square is {by_name['motor torque']['rms of 600 s']:.1f} "
+        f"N m, its peak {motor:.0f} N m."
+    )
+    page.text(
+        "Not given by these models: " + ", ".join(dict.fromkeys(missing)) + ". Loads of the pitch "
+        "bearing are held at constant values, so that only motion and inertia vary."
+    )
+    page.assume("nacelle: weight, place behind the tower's axis", "80, 0.8", "t, m", "assumed")
+    page.assume("hub: before the tower's axis, above its top", "3.5, 2", "m", "assumed")
+
+
+def pitch_channels(pitch: Floats, step: float) -> tuple[dict[str, Floats], float]:
+    """Motion and torques of the pitch drive, and its largest torque."""
+    speed = np.gradient(pitch, step)
+    acceleration = np.gradient(speed, step)
+    resists = np.full(len(speed), float(friction_torque(MOMENT, AXIAL, RADIAL, DIAMETER)))
+    load = np.full(len(speed), TORSION)
+    motor = drive_torque(PITCH, load, resists, speed, acceleration)
+    ring = ring_torque(PITCH, load, resists, speed, acceleration)
+    found = {
+        "pitch angle": pitch,
+        "pitch speed": speed,
+        "pinion torque": ring / PINION,
+        "motor torque": motor,
+        "motor speed": PITCH.ratio * speed,
+        "angle of pinion against ring": (PINION - 1.0) * pitch,
+        "reaction of the transmission": -ring / PINION,
+    }
+    return found, float(np.abs(motor).max())
+
+
+def yaw_channels(loads: Floats, step: float) -> dict[str, Floats]:
+    """Loads at the tower's top from those of the hub, and a steady motion of the nacelle."""
+    moved = loads @ wrench_transport(np.array([-OVERHANG, 0.0, HEIGHT])).T
+    weight, behind = NACELLE
+    time = np.arange(len(loads)) * step
+    rate = np.radians(5.0) / 12.0
+    bending = np.hypot(moved[:, 3], moved[:, 4] + weight * behind)
+    resists = friction_torque(
+        bending, moved[:, 2] - weight, np.hypot(moved[:, 0], moved[:, 1]), 2.2
+    )
+    speed = np.full(len(loads), rate)
+    torque = drive_torque(YAW, -moved[:, 5], resists, speed, 0.0 * speed)
+    return {
+        "tower top shear force x": moved[:, 0],
+        "tower top shear force y": moved[:, 1],
+        "tower top axial force": moved[:, 2] - weight,
+        "tower top bending x": moved[:, 3],
+        "tower top bending y": moved[:, 4] + weight * behind,
+        "tower top torsion": moved[:, 5],
+        "yaw angle": rate * time,
+        "yaw speed": speed,
+        "yaw command": rate * time,
+        "yaw gear torque": torque,
+        "yaw power": np.asarray(YAW.ratio * torque * rate),
+    }

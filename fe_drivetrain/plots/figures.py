@@ -1,0 +1,261 @@
+"""Figures of what the program computes: loads over time, reactions, stiffness, levels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import FORCES, MOTIONS
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.plots.style import LEGEND, PALETTE, styled
+
+LEAST = 1e-6
+"""Relative errors that are smaller are drawn here: a logarithmic axis has no zero."""
+
+_NOTHING = 1e-9  # share of the diagonal: round-off, of what symmetry makes zero
+_READABLE = 6  # rows of a matrix whose cells have room for a number
+
+
+def figure(traces: Sequence[Mapping[str, Any]], layout: Mapping[str, Any]) -> Any:
+    """A Plotly figure in the style of the pages.
+
+    Parameters
+    ----------
+    traces : sequence of mapping
+        As Plotly has them, "name", "x" and "y" in the first place.
+    layout : mapping
+        As of Plotly.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        ``show()`` draws it, ``write_html`` and ``write_image`` save it.
+    """
+    from plotly.graph_objects import Figure  # takes longer than most scripts that draw nothing
+
+    return Figure(styled(traces, layout))
+
+
+def load_lines(time: Floats, loads: Floats, title: str = "") -> Any:
+    """Forces and moments at a point over time, those at the hub as well as reactions.
+
+    Parameters
+    ----------
+    time : Floats
+        (n,) [s].
+    loads : Floats
+        (n, 6) Fx, Fy, Fz [N], Mx, My, Mz [N m].
+    title : str
+        What they are.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        Forces [kN] above moments [kN m].
+
+    Raises
+    ------
+    InputError
+        The shapes do not belong together.
+    """
+    time, loads = np.asarray(time, dtype=np.float64), np.asarray(loads, dtype=np.float64)
+    if time.ndim != 1 or loads.shape != (time.size, 6):
+        raise InputError(
+            f"time has shape {time.shape} and loads {loads.shape}: give (n,) and (n, 6) in the "
+            f"order {', '.join(FORCES)}"
+        )
+    traces = [
+        {"name": name, "x": time.tolist(), "y": (values / 1e3).tolist(), **_panel(number)}
+        for number, (name, values) in enumerate(zip(FORCES, loads.T, strict=True))
+    ]
+    below = {"anchor": "y2", "matches": "x", "title": {"text": "time [s]"}}
+    above = {"anchor": "y", "showticklabels": False}
+    return figure(traces, _two_panels(title, above, below))
+
+
+def load_bars(loads: Mapping[str, Floats], title: str = "") -> Any:
+    """Forces and moments at several places beside each other.
+
+    Parameters
+    ----------
+    loads : mapping
+        (6,) Fx, Fy, Fz [N], Mx, My, Mz [N m] by the name of the place.
+    title : str
+        What they are.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        Forces [kN] above moments [kN m], a colour for each place.
+    """
+    traces = []
+    for place, (name, values) in enumerate(loads.items()):
+        colour = PALETTE[place % len(PALETTE)]
+        for start in (0, 3):
+            traces.append(
+                {
+                    "type": "bar",
+                    "name": name,
+                    "x": list(FORCES[start : start + 3]),
+                    "y": (np.asarray(values, dtype=np.float64)[start : start + 3] / 1e3).tolist(),
+                    "legendgroup": name,
+                    "showlegend": start == 0,
+                    "marker": {"color": colour},
+                    **_panel(start),
+                }
+            )
+    return figure(traces, _two_panels(title, {"anchor": "y"}, {"anchor": "y2"}))
+
+
+def stiffness_map(points: Sequence[str], stiffness: Floats, title: str = "") -> Any:
+    """A stiffness matrix: how strongly its degrees of freedom are coupled, and its values.
+
+    Parameters
+    ----------
+    points : sequence of str
+        Names of n points.
+    stiffness : Floats
+        (6 n, 6 n) forces and moments of each point to its motions [N/m, N, N m/rad].
+    title : str
+        What it is.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        The colour is |K_ij| / sqrt(K_ii K_jj), at most 1 of a positive matrix; the value is in
+        the cell, or under the pointer where there are many.
+
+    Raises
+    ------
+    InputError
+        The shape is not that of so many points.
+    """
+    K, n = np.asarray(stiffness, dtype=np.float64), len(points)
+    if K.shape != (6 * n, 6 * n):
+        raise InputError(
+            f"the stiffness has shape {K.shape} for {n} points: give {6 * n} rows and columns"
+        )
+    before = [f"{point} " if n > 1 else "" for point in points]
+    rows = [f"{point}{force}" for point in before for force in FORCES]
+    columns = [f"{point}{motion}" for point in before for motion in MOTIONS]
+    roots = np.sqrt(np.clip(K.diagonal(), 0.0, None))
+    sizes = np.outer(roots, roots)
+    share = np.divide(np.abs(K), sizes, out=np.zeros_like(K), where=sizes > 0)
+    block = np.kron([[0, 1], [1, 2]], np.ones((3, 3), dtype=int))
+    units = np.array(["N/m", "N", "N m/rad"])[np.tile(block, (n, n))]
+    written = [
+        [
+            "0" if coupling < _NOTHING else f"{value:.3g}"
+            for value, coupling in zip(*row, strict=True)
+        ]
+        for row in zip(K, share, strict=True)
+    ]
+    trace: dict[str, Any] = {
+        "type": "heatmap",
+        "x": columns,
+        "y": rows,
+        "z": share.tolist(),
+        "zmin": 0.0,
+        "zmax": 1.0,
+        "text": written,
+        "customdata": units.tolist(),
+        "hovertemplate": "%{y} to %{x}: %{text} %{customdata}<extra></extra>",
+        "colorbar": {"title": {"text": "coupling", "side": "right"}, "thickness": 12},
+    }
+    if 6 * n <= _READABLE:
+        trace["texttemplate"] = "%{text}"
+    layout = {
+        **_titled(title),
+        "xaxis": {"title": {"text": "motion"}, "constrain": "domain"},
+        "yaxis": {
+            "title": {"text": "force"},
+            "autorange": "reversed",
+            "scaleanchor": "x",
+            "constrain": "domain",
+        },
+        "height": 560,
+    }
+    return figure([trace], layout)
+
+
+def error_against_time(
+    names: Sequence[str],
+    seconds: Sequence[float],
+    errors: Sequence[float],
+    tolerance: float,
+    chosen: int | None = None,
+    title: str = "",
+) -> Any:
+    """Models by what they take and how far they are from the best of them.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the models.
+    seconds : sequence of float
+        Wall time of each [s].
+    errors : sequence of float
+        Relative; a model whose error is not known is left out, and less than `LEAST` drawn there.
+    tolerance : float
+        What is allowed, relative.
+    chosen : int, optional
+        The model that is good enough, drawn larger.
+    title : str
+        Of what quantity.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        Both axes logarithmic, the tolerance as a line.
+    """
+    known = [k for k, error in enumerate(errors) if np.isfinite(error)]
+    traces: list[dict[str, Any]] = [
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "name": names[k],
+            "x": [seconds[k]],
+            "y": [100.0 * max(errors[k], LEAST)],
+            "marker": {"size": 14 if k == chosen else 9},
+        }
+        for k in known
+    ]
+    reach = [seconds[k] for k in known] or [1.0]
+    limit = {"x": [min(reach), max(reach)], "y": [100.0 * tolerance] * 2, "line": {"dash": "dash"}}
+    traces.append({"type": "scatter", "mode": "lines", "name": "tolerance", **limit})
+    axes = {
+        "xaxis": {"title": {"text": "time [s]"}, "type": "log"},
+        "yaxis": {"title": {"text": "error [%]"}, "type": "log"},
+    }
+    return figure(traces, {**_titled(title), **axes})
+
+
+def _titled(title: str) -> dict[str, Any]:
+    """A title on top, the legend between it and the plot."""
+    if not title:
+        return {}
+    place = {"x": 0, "xref": "paper", "y": 1, "yref": "container", "yanchor": "top"}
+    return {
+        "title": {"text": title, "pad": {"t": 12}, **place},
+        "legend": LEGEND,
+        "margin": {"t": 90},
+    }
+
+
+def _panel(component: int) -> dict[str, str]:
+    """Forces above, moments below."""
+    return {} if component < 3 else {"xaxis": "x2", "yaxis": "y2"}
+
+
+def _two_panels(title: str, above: Mapping[str, Any], below: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        **_titled(title),
+        "height": 560,
+        "xaxis": dict(above),
+        "xaxis2": dict(below),
+        "yaxis": {"title": {"text": "force [kN]"}, "domain": [0.55, 1.0]},
+        "yaxis2": {"title": {"text": "moment [kN m]"}, "domain": [0.0, 0.45]},
+    }

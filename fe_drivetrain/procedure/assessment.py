@@ -1,0 +1,347 @@
+"""What each of the six steps of a project lacks before it is complete: rules, and nothing else.
+
+A step is complete when it has a decision, all of its evidence counts, and its own rules hold:
+PROTEST 2010, section 3, with Tables 4.1 to 4.10 behind them. What it lacks stands in sentences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import Any
+
+from fe_drivetrain.procedure.evidence import Found
+from fe_drivetrain.procedure.failure_modes import Catalogue, DesignLoad
+from fe_drivetrain.procedure.project import (
+    SECTIONS,
+    EvidenceLink,
+    Need,
+    Project,
+)
+from fe_drivetrain.procedure.sensors import sampling_rates
+from fe_drivetrain.report.results import Results, Verdict
+
+TABLE_4_7 = (
+    "mass of drivetrain parts",
+    "inertia of drivetrain parts",
+    "stiffness of shafts",
+    "stiffness of meshes",
+    "stiffness of gearbox mount",
+    "damping of shafts",
+    "damping of meshes",
+)
+"""Inputs of a drivetrain in Table 4.7; of the masses alone is the certainty known, 3 %."""
+
+Evidence = Mapping[EvidenceLink, Found]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What files of channels gave.
+
+    Attributes
+    ----------
+    windows : Mapping[int, int] or None
+        Windows by mean wind in whole m/s, of those that are wanted; None without a capture matrix.
+    verdicts : tuple of Verdict
+        Comparisons of step 6.
+    missing : Mapping[int, str]
+        Files that are not there, in a sentence, by the step that needs them.
+    """
+
+    windows: Mapping[int, int] | None = None
+    verdicts: tuple[Verdict, ...] = ()
+    missing: Mapping[int, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class StepState:
+    """A step of a project.
+
+    Attributes
+    ----------
+    number : int
+        From 1 to 6.
+    decision : str
+        As the project has it; empty where it was not begun.
+    lacks : tuple of str
+        What is missing, in sentences.
+    evidence : tuple of Found
+        All of it.
+    """
+
+    number: int
+    decision: str
+    lacks: tuple[str, ...]
+    evidence: tuple[Found, ...]
+
+    @property
+    def begun(self) -> bool:
+        """Whether the project has it."""
+        return bool(self.decision)
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing is missing."""
+        return not self.lacks
+
+
+def links_of(project: Project) -> tuple[tuple[EvidenceLink, ...], ...]:
+    """All links of each step, each once.
+
+    Parameters
+    ----------
+    project : Project
+        With steps begun or not.
+    """
+    found = []
+    for step, key in zip(project.steps, SECTIONS, strict=True):
+        rows: Sequence[object] = ()
+        if key == "failure_modes" and project.failure_modes:
+            rows = project.failure_modes.gaps
+        if key == "load_cases" and project.load_cases:
+            rows = project.load_cases.cases
+        inner = chain.from_iterable(getattr(row, "evidence", ()) for row in rows)
+        found.append(tuple(dict.fromkeys([*(step.evidence if step else ()), *inner])))
+    return tuple(found)
+
+
+def assessed(
+    project: Project, catalogue: Catalogue, evidence: Evidence, measured: Measured
+) -> tuple[StepState, ...]:
+    """The six steps, and what each lacks.
+
+    Parameters
+    ----------
+    project : Project
+        As read.
+    catalogue : Catalogue
+        Design loads.
+    evidence : mapping of EvidenceLink to Found
+        Of all `links_of` the project.
+    measured : Measured
+        Of its files.
+
+    Returns
+    -------
+    tuple of StepState
+
+    Raises
+    ------
+    InputError
+        The project names a system that the catalogue does not have.
+    """
+    loads = {load.name: load for system in project.systems for load in catalogue.of(system)}
+    rules: Sequence[Callable[[], list[str]]] = (
+        lambda: _failure_modes(project, loads),
+        lambda: _model(project, evidence),
+        lambda: _load_cases(project, loads),
+        lambda: _inputs(project),
+        lambda: _campaign(project, measured),
+        lambda: _comparison(project, measured),
+    )
+    states = []
+    for number, (step, links, rule) in enumerate(
+        zip(project.steps, links_of(project), rules, strict=True), start=1
+    ):
+        found = tuple(evidence[link] for link in links)
+        if step is None:
+            key = SECTIONS[number - 1]
+            states.append(StepState(number, "", (f"it was not begun: add the section {key}",), ()))
+            continue
+        files = [measured.missing[number]] if number in measured.missing else []
+        lacks = [*rule(), *files, *(f"{one.name}: {one.why}" for one in found if not one.counts)]
+        states.append(StepState(number, step.decision, tuple(lacks), found))
+    return tuple(states)
+
+
+def _failure_modes(project: Project, loads: Mapping[str, DesignLoad]) -> list[str]:
+    step = project.failure_modes
+    assert step is not None
+    lacks = []
+    if not step.critical:
+        lacks.append("no design load is critical: name those that matter under critical")
+    for one in step.critical:
+        if one.load not in loads:
+            lacks.append(_unknown(one.load, loads))
+        elif not (one.variables or loads[one.load].variables):
+            lacks.append(f"{one.load!r} has no critical design variable: name one under variables")
+    answered = {gap.load: gap for gap in step.gaps}
+    for name in answered:
+        if name not in loads:
+            lacks.append(_unknown(name, loads))
+    for load in loads.values():
+        gap = answered.get(load.name)
+        if load.covered != "yes" and (gap is None or not (gap.evidence or gap.dismissed)):
+            lacks.append(
+                f"{load.name!r} is covered by no load case: run {load.remedy} and link it under "
+                "gaps, or state there why it is dismissed"
+            )
+    return lacks
+
+
+def _unknown(name: str, loads: Mapping[str, DesignLoad]) -> str:
+    return f"{name!r} is no design load of these systems: use one of {', '.join(loads)}"
+
+
+def _model(project: Project, evidence: Evidence) -> list[str]:
+    step = project.model
+    assert step is not None
+    lacks = [] if step.needs else ["no quantity decides the level: name one under needs"]
+    results = [f.results for link in step.evidence if (f := evidence[link]).results is not None]
+    for need in step.needs:
+        found = [n for r in results if (n := needed_of(r, step.machine, need)) is not None]
+        wanted = f"{need.quantity} within {100 * need.tolerance:g} %"
+        if not found:
+            lacks.append(
+                f"no evidence says which level {wanted} needs: link dynamics/drivetrain_levels for "
+                "a machine, fe-drivetrain advise for a scene"
+            )
+            continue
+        levels, least = found[-1]
+        chosen = _place(step.level, levels)
+        if chosen is None:
+            names = ", ".join(name for _, name in levels)
+            lacks.append(f"level {step.level!r} is not on the ladder: use one of {names}")
+        elif least is None:
+            lacks.append(f"no level is known to give {wanted}: refine the model, or ask for less")
+        elif chosen < least:
+            lacks.append(f"level {step.level!r} is too simple: {wanted} needs {levels[least][1]!r}")
+    return lacks
+
+
+def _place(level: str, levels: Sequence[tuple[str, str]]) -> int | None:
+    return next((k for k, names in enumerate(levels) if level in names), None)
+
+
+def needed_of(
+    results: Results, machine: str, need: Need
+) -> tuple[list[tuple[str, str]], int | None] | None:
+    """Which level a quantity needs, by the adviser's or the ladder's results.
+
+    Parameters
+    ----------
+    results : Results
+        Of ``fe-drivetrain advise``, or of the case of levels of a machine.
+    machine : str
+        Name of its ladder; empty for a scene.
+    need : Need
+        Quantity and tolerance.
+
+    Returns
+    -------
+    levels : list of tuple
+        Number and name of each, from the simplest.
+    needed : int or None
+        Place of the simplest that is good enough; None where none is known to be. All of it is None
+        where the results say nothing of the quantity.
+    """
+    figures = results.figures
+    rows = figures.get(f"ladder_{machine}") if machine else figures.get("levels")
+    if not rows or (not machine and figures.get("quantity") != need.quantity):
+        return None
+    if machine:
+        levels = [(str(k), str(row["level"])) for k, row in enumerate(rows)]
+        return levels, _of_ladder([row.get(need.quantity) for row in rows], need.tolerance)
+    levels = [(str(row["level"]), str(row["title"])) for row in rows]
+    return levels, _of_advice(rows, need.tolerance)
+
+
+def _of_ladder(values: Sequence[float | None], tolerance: float) -> int | None:
+    """As `dynamics.needed_level`: all finer levels are good enough, too."""
+    finest, least = values[-1], None
+    for k in range(len(values) - 1, -1, -1):
+        value = values[k]
+        if finest is None or value is None or abs(value - finest) > tolerance * abs(finest):
+            break
+        least = k
+    return least
+
+
+def _of_advice(rows: Sequence[Mapping[str, Any]], tolerance: float) -> int | None:
+    """As the adviser chooses: statics decides, or difference and band of the last are small."""
+    top = rows[-1]["estimate"]
+    for k, row in enumerate(rows):
+        if row["estimate"] == 0.0:
+            return k
+        difference = 0.0 if row is rows[-1] else row["error"]
+        if None not in (difference, top) and difference + top <= tolerance:
+            return k
+    return None
+
+
+def _load_cases(project: Project, loads: Mapping[str, DesignLoad]) -> list[str]:
+    step = project.load_cases
+    assert step is not None
+    lacks = [] if step.cases else ["no load case is named: add some under cases"]
+    for case in step.cases:
+        name = f"{case.standard} {case.edition} {case.number}"
+        if not case.loads:
+            lacks.append(f"{name} brings no design load about: name some under loads")
+        if not case.evidence:
+            lacks.append(f"{name} was not run: link where it was under evidence")
+        lacks += [f"{name}: {_unknown(one, loads)}" for one in case.loads if one not in loads]
+    modes = project.failure_modes
+    brought = {load for case in step.cases for load in case.loads}
+    brought |= {gap.load for gap in modes.gaps} if modes else set()
+    for one in modes.critical if modes else ():
+        if one.load not in brought:
+            lacks.append(f"no load case brings {one.load!r} about, which step 1 calls critical")
+    return lacks
+
+
+def _inputs(project: Project) -> list[str]:
+    step = project.inputs
+    assert step is not None
+    lacks = [] if step.values else ["no input is named: add some under values"]
+    signals = {signal.name for signal in project.campaign.signals} if project.campaign else set()
+    for value in step.values:
+        if value.band is None and not value.measured_by:
+            lacks.append(
+                f"{value.name!r} has no band, and no signal measures it: state either, or go back "
+                "to step 2 for a model that does not need it"
+            )
+        if value.measured_by and project.campaign and value.measured_by not in signals:
+            lacks.append(
+                f"{value.name!r} is measured by {value.measured_by!r}, which is no signal of the "
+                "campaign: add it there"
+            )
+    return lacks
+
+
+def _campaign(project: Project, measured: Measured) -> list[str]:
+    step = project.campaign
+    assert step is not None
+    lacks = [] if step.signals else ["no signal is recorded: add some under signals"]
+    for signal in step.signals:
+        least, _ = sampling_rates(signal.highest)
+        if signal.rate < least:
+            lacks.append(
+                f"{signal.name!r} is sampled at {signal.rate:g} Hz, but {signal.highest:g} Hz need "
+                f"{least:g} Hz or more"
+            )
+    if step.capture is None:
+        lacks.append("there is no capture matrix: add capture")
+    elif measured.windows is not None:
+        for wind, count in measured.windows.items():
+            if count < step.capture.target:
+                lacks.append(
+                    f"{wind} m/s has {count} of {step.capture.target} windows of ten minutes"
+                )
+    return lacks
+
+
+def _comparison(project: Project, measured: Measured) -> list[str]:
+    step = project.comparison
+    assert step is not None
+    lacks = []
+    if not (step.quantities or step.identified):
+        lacks.append("nothing is compared: add quantities or identified")
+    lacks += [
+        f"{v.quantity} is {v.computed:.4g} {v.unit} in the model and {v.reference:.4g} {v.unit} "
+        f"as measured, {100 * v.tolerance:g} % are allowed: improve model or campaign"
+        for v in measured.verdicts
+        if not v.passed
+    ]
+    return lacks

@@ -1,0 +1,172 @@
+"""Step 5 and 6 on channels: windows of a campaign by wind, and measured against computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.histories.cycles import rainflow_cycles
+from fe_drivetrain.histories.damage import damage_equivalent_load
+from fe_drivetrain.histories.windows import CaptureMatrix, capture_matrix, window_statistics
+from fe_drivetrain.procedure.channels import Channels, read_channels
+from fe_drivetrain.procedure.project import Capture, Compared, Comparison, Identified
+from fe_drivetrain.procedure.spectral_fit import spectral_fit
+from fe_drivetrain.report.results import Verdict, judge
+
+WIND = "wind speed"
+"""Channel of a capture matrix."""
+
+_TURBULENCE = np.arange(0.0, 0.52, 0.02)
+
+
+def captured(capture: Capture, folder: Path) -> CaptureMatrix:
+    """Windows of ten minutes by mean wind, in bins of 1 m/s about whole numbers, and turbulence.
+
+    Parameters
+    ----------
+    capture : Capture
+        File and range of winds.
+    folder : Path
+        What the file's name is relative to.
+
+    Returns
+    -------
+    CaptureMatrix
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or has no wind in m/s.
+    """
+    channels = read_channels(capture.files, folder, frozenset({WIND}))
+    if channels.units[WIND] != "m/s":
+        raise InputError(f"{channels.source}: {WIND} must be in m/s: correct it under units")
+    wind = channels.of(WIND)
+    windows = window_statistics(np.arange(len(wind)) * channels.step, wind[:, None])
+    low, high = round(capture.winds[0]), round(capture.winds[1])
+    return capture_matrix(
+        windows.values[:, 0, 1],
+        windows.values[:, 0, 3],
+        np.arange(low - 0.5, high + 1.0),
+        _TURBULENCE,
+    )
+
+
+def windows_by_wind(matrix: CaptureMatrix) -> Mapping[int, int]:
+    """Windows for each mean wind in whole m/s, over all turbulence.
+
+    Parameters
+    ----------
+    matrix : CaptureMatrix
+        With bins of 1 m/s about whole numbers.
+    """
+    winds = 0.5 * (matrix.wind[1:] + matrix.wind[:-1])
+    counts = matrix.counts.sum(axis=0)
+    return {round(float(v)): int(n) for v, n in zip(winds, counts, strict=True)}
+
+
+def statistic(values: Floats, step: float, which: Compared) -> float:
+    """One statistic of a channel, in its unit.
+
+    Parameters
+    ----------
+    values : ndarray, (n,)
+        The channel.
+    step : float
+        Between two samples [s].
+    which : Compared
+        Mean, standard deviation, least, largest, or damage-equivalent load at 1 Hz.
+    """
+    if which.statistic == "equivalent load":
+        cycles = [rainflow_cycles(values)]
+        return damage_equivalent_load(cycles, len(values) * step, which.slope)
+    found = {
+        "mean": values.mean(),
+        "standard deviation": values.std(),
+        "least": values.min(),
+        "largest": values.max(),
+    }
+    return float(found[which.statistic])
+
+
+def compared(comparison: Comparison, folder: Path) -> tuple[Verdict, ...]:
+    """Statistics of the model against those measured, and what signals determine.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Files, channels and tolerances.
+    folder : Path
+        What names of files are relative to.
+
+    Returns
+    -------
+    tuple of Verdict
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, has no such channel, or units differ.
+    """
+    names = frozenset(q.channel for q in comparison.quantities)
+    angles = {n for one in comparison.identified for n in (one.torque, one.front, one.rear)}
+    measured = read_channels(comparison.measured, folder, names | angles)
+    verdicts = []
+    if comparison.quantities and comparison.computed is not None:
+        computed = read_channels(comparison.computed, folder, names)
+        verdicts = [_judged(q, measured, computed) for q in comparison.quantities]
+    for one in comparison.identified:
+        verdicts += _identified(one, measured)
+    return tuple(verdicts)
+
+
+def _judged(which: Compared, measured: Channels, computed: Channels) -> Verdict:
+    units = measured.units[which.channel], computed.units[which.channel]
+    if units[0] != units[1]:
+        raise InputError(
+            f"channel {which.channel!r} is in {units[0]} in {measured.source} and in {units[1]} in "
+            f"{computed.source}: map the same quantity"
+        )
+    slope = f", m {which.slope:g}" if which.statistic == "equivalent load" else ""
+    return judge(
+        f"{which.channel}: {which.statistic}{slope}",
+        statistic(computed.of(which.channel), computed.step, which),
+        statistic(measured.of(which.channel), measured.step, which),
+        tolerance=which.tolerance,
+        reason="the project's tolerance",
+        source=f"measured: {Path(measured.source).name}",
+        unit=units[0],
+    )
+
+
+def _identified(one: Identified, measured: Channels) -> list[Verdict]:
+    """K and D of ``T = K x + D x'``: the torque is that in the shaft, so that I comes out as 0."""
+    for name, unit in ((one.torque, "N m"), (one.front, "rad"), (one.rear, "rad")):
+        if measured.units[name] != unit:
+            raise InputError(
+                f"{measured.source}: channel {name!r} is in {measured.units[name]!r} but must be "
+                f"in {unit} or a multiple: map another column"
+            )
+    twist = measured.of(one.front) - measured.of(one.rear) / one.ratio
+    fit = spectral_fit(measured.of(one.torque), twist, measured.step, one.band)
+    wanted = [("stiffness", one.stiffness, 2, "N m/rad")]
+    if one.damping is not None:
+        wanted.append(("damping", one.damping, 1, "N m s/rad"))
+    return [
+        judge(
+            f"{name} from {one.torque}, {one.front}, {one.rear}",
+            model,
+            float(fit.values[place]),
+            tolerance=one.tolerance,
+            reason=f"the project's tolerance; the signals determine it within "
+            f"{fit.bands[place]:.3g} {unit}",
+            source=f"identified from lines of the spectra of {Path(measured.source).name}, "
+            f"{one.band[0]:g} to {one.band[1]:g} Hz",
+            unit=unit,
+        )
+        for name, model, place, unit in wanted
+    ]

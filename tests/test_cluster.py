@@ -1,0 +1,264 @@
+"""Studies on a cluster of Dask, one scheduler and two workers on this machine, one being killed."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import cluster_jobs
+import numpy as np
+import pytest
+from cluster_jobs import WAIT
+from conftest import coarse_scene
+from test_commands_life import write_history
+from tiny_case import Result
+
+from fe_drivetrain.commands.loads_digest import Options
+from fe_drivetrain.common import pool as pool_module
+from fe_drivetrain.common.cache import CACHE_VARIABLE
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.pool import mapped, pool, scheduled_by
+from fe_drivetrain.common.progress import silent
+from fe_drivetrain.common.threads import CORES_VARIABLE
+from fe_drivetrain.fidelity.adviser import Quantity
+from fe_drivetrain.fidelity.designs import compare_designs
+from fe_drivetrain.report.results import read_results
+from fe_drivetrain.suite.case import Case
+from fe_drivetrain.suite.suite import _run, run_cases
+from fe_drivetrain.uncertainty.input_study import study
+
+pytestmark = pytest.mark.needs("distributed")
+
+OPTIONS = Options({}, 0.0, (4.0,), "half", 0.0, None)
+
+
+def _python(*words: str) -> subprocess.Popen[bytes]:
+    folders = [str(Path(__file__).parent), *(folder for folder in sys.path if folder)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(folders)}
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", *words],
+        env=environment,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+class Cluster:
+    """A scheduler and its workers, each a process."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file, self._folder = folder / "scheduler.json", folder
+        address = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+        file = ("--scheduler-file", str(self._file))
+        self._processes = [_python("distributed.cli.dask_scheduler", *address, *file)]
+        self.add_worker()
+        self.add_worker()
+        until(self._file.exists)
+        self.address = str(json.loads(self._file.read_text())["address"])
+
+    def add_worker(self) -> None:
+        until(self._file.exists)
+        one = ("--no-nanny", "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1")
+        file = ("--scheduler-file", str(self._file), "--local-directory", str(self._folder))
+        self._processes.append(_python("distributed.cli.dask_worker", *one, *file))
+
+    @property
+    def pids(self) -> set[int]:
+        return {process.pid for process in self._processes[1:]}
+
+    def end(self) -> None:
+        for process in self._processes:
+            process.kill()
+            process.wait()
+
+
+def until(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + WAIT
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    found = Cluster(tmp_path_factory.mktemp("cluster"))
+    yield found
+    found.end()
+
+
+@pytest.fixture(autouse=True)
+def one_core(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """As a process that uses a cluster sets it, to be set back here."""
+    monkeypatch.setenv(CORES_VARIABLE, "1")
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+
+
+@pytest.fixture
+def killed(tmp_path: Path) -> Iterator[Path]:
+    """The process that writes its number into this file is killed."""
+    mark = tmp_path / "mark"
+
+    def kill() -> None:
+        until(lambda: mark.exists() and bool(mark.read_text()))
+        os.kill(int(mark.read_text()), signal.SIGKILL)
+
+    thread = threading.Thread(target=kill, daemon=True)
+    thread.start()
+    yield mark
+    thread.join(WAIT)
+    assert not thread.is_alive()
+
+
+@pytest.fixture
+def histories(tmp_path: Path) -> list[Path]:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    files = [folder / f"{number}.csv" for number in range(12)]
+    for number, file in enumerate(files):
+        write_history(file, (8.0, 14.0)[number % 2])
+    return files
+
+
+def test_a_stopped_study_goes_on_where_it_was(
+    cluster: Cluster, histories: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At most so many files are handed in as may be at once, and those that are done stay done."""
+    monkeypatch.setattr(pool_module, "AT_ONCE", 4)
+    items = [(file, OPTIONS, tmp_path, False) for file in histories]
+    with scheduled_by(cluster.address):
+        stopped = mapped(cluster_jobs.digest_with_death, items, 1)
+        first = [next(stopped) for _ in range(3)]
+        stopped.close()
+        assert len((tmp_path / "log").read_text().split()) <= 3 + 4
+        done = len(list((tmp_path / "cache" / "load-digests").glob("*.npz")))
+        assert done >= 3
+        again = list(mapped(cluster_jobs.digest_with_death, items, 1))
+    for one, other in zip(first, again, strict=False):
+        assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+    assert len(again) == len(histories)
+
+
+def test_uncertain_values_have_the_same_bands_to_the_last_digit(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keys = ("gearbox.stiffness.2", "shaft.front")
+    scene = coarse_scene("bonded", uncertainty={key: {"uniform": 0.01} for key in keys})
+    here = study(scene, level=1, count=40)
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "other"))
+    with scheduled_by(cluster.address):
+        there = study(scene, level=1, count=40)
+    assert here.slopes == there.slopes
+    assert np.ptp(here.samples["hub.stiffness.uz"].values) > 0.0
+    assert here.samples.keys() == there.samples.keys()
+    for name, samples in here.samples.items():
+        assert samples.values.tobytes() == there.samples[name].values.tobytes()
+
+
+def test_designs_have_the_same_differences_to_the_last_digit(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    designs = {
+        f"{front:g}": coarse_scene("bonded", **{"shaft.front": front}) for front in (-1.2, -1.0)
+    }
+    asked = [Quantity("hub.stiffness.uz"), Quantity("main_bearing.Fz")]
+    here = compare_designs(designs, asked, tolerance=0.9)
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "other"))
+    with scheduled_by(cluster.address):
+        there = compare_designs(designs, asked, tolerance=0.9)
+    for one, other in zip(here, there, strict=True):
+        assert one.quantity.name == other.quantity.name
+        assert one.changes.tobytes() == other.changes.tobytes()
+        assert one.bands.tobytes() == other.bands.tobytes()
+
+
+def test_the_commands_write_the_same_tables(
+    cluster: Cluster, invoke: Callable[..., Result], histories: list[Path], tmp_path: Path
+) -> None:
+    files = [str(file) for file in histories[:2]]
+    loads = ("loads", *files)
+    life = ("life", "main_bearing_bonded", "--bearing", "main_bearing=bearing_s_o20")
+    life += ("--loads", files[0], "--loads", files[1])
+    for name, words in (("loads", loads), ("life", life)):
+        for where in ((), ("--scheduler", cluster.address)):
+            out = tmp_path / name / ("there" if where else "here")
+            status, printed, error = invoke(*words, "--out", str(out), *where)
+            assert status == 0, printed + error
+        tables = sorted(file.name for file in (tmp_path / name / "here").glob("*.csv"))
+        assert len(tables) >= 4
+        for table in tables:
+            one, other = (tmp_path / name / where / table for where in ("here", "there"))
+            assert one.read_bytes() == other.read_bytes(), table
+
+
+def test_mistakes_come_back_in_their_own_words(cluster: Cluster) -> None:
+    with scheduled_by(cluster.address):
+        with pytest.raises(InputError, match="length is -1"), pool(1) as workers:
+            workers.start(cluster_jobs.mistake)
+        with pool(1, each_for_itself=True) as workers:
+            job = workers.start(cluster_jobs.mistake)
+        with pytest.raises(InputError, match="length is -1"):
+            job.result()
+
+
+def test_a_scheduler_that_is_not_there_is_a_mistake(monkeypatch: pytest.MonkeyPatch) -> None:
+    from fe_drivetrain.common import cluster as cluster_module
+
+    monkeypatch.setattr(cluster_module, "_CONNECT", 0.2)
+    for address in ("tcp://127.0.0.1:1", "nowhere"):
+        with pytest.raises(InputError, match="dask scheduler"), scheduled_by(address):
+            pass
+
+
+def test_cases_run_on_workers_but_those_that_measure(cluster: Cluster, tmp_path: Path) -> None:
+    cases = [
+        Case("group/one", "T", "s", cluster_jobs.pid),
+        Case("group/other", "T", "s", cluster_jobs.pid),
+        Case("group/measures", "T", "s", cluster_jobs.pid, alone=True),
+    ]
+    out = tmp_path / "reports"
+    with scheduled_by(cluster.address):
+        assert run_cases(cases, out) == {}
+    pids = [read_results(out / case.name / "results.json").figures["pid"] for case in cases]
+    assert set(pids[:2]) <= cluster.pids
+    assert pids[2] not in cluster.pids
+
+
+def test_a_case_of_a_worker_that_died_half_way_begins_in_an_empty_folder(tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    for left in ("half.txt", "sub/half.txt"):
+        (tmp_path / left).write_text("half")
+    case = Case("group/one", "T", "s", cluster_jobs.pid)
+    assert _run(silent, case, tmp_path, {}, True, tmp_path) is None
+    assert "sub" not in {entry.name for entry in tmp_path.iterdir()}
+    assert not (tmp_path / "half.txt").exists()
+    problem = _run(silent, case, tmp_path / "elsewhere", {}, True, tmp_path)
+    assert problem is not None
+    assert "all workers share" in problem.message
+
+
+def test_no_file_is_lost_or_counted_twice_when_a_worker_is_killed(
+    cluster: Cluster, killed: Path, histories: list[Path], tmp_path: Path
+) -> None:
+    steps: list[tuple[str, int]] = []
+    items = [(file, OPTIONS, tmp_path, file.stem == "5") for file in histories]
+    with scheduled_by(cluster.address):
+        shown = lambda step, lane=0: steps.append((step, lane))  # noqa: E731
+        found = list(mapped(cluster_jobs.digest_with_death, items, 1, shown))
+    log = (tmp_path / "log").read_text().split()
+    assert set(log) == {file.stem for file in histories}
+    assert log.count("5") == 2
+    assert {lane for step, lane in steps if step} == {1, 2}
+    kept = list((tmp_path / "cache" / "load-digests").glob("*.npz"))
+    assert len(kept) == len(histories)
+    for path in kept:
+        path.unlink()
+    here = list(mapped(cluster_jobs.digest_with_death, items, 1))
+    assert len(found) == len(here) == len(histories)
+    for one, other in zip(found, here, strict=True):
+        assert one.keys() == other.keys()
+        assert all(one[name].tobytes() == other[name].tobytes() for name in one)

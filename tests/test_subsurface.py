@@ -1,0 +1,72 @@
+"""Stresses below contacts, and races with a hard case over a softer core."""
+
+import numpy as np
+import pytest
+
+from fe_drivetrain.bearing.contact import point_contact
+from fe_drivetrain.bearing.subsurface import (
+    HardenedCase,
+    exposure,
+    largest_shear,
+    stresses_below_ellipse,
+    stresses_below_line,
+)
+from fe_drivetrain.common.errors import InputError
+
+DEPTHS = np.linspace(0.1, 5.0, 100)
+
+
+def test_a_line_has_its_largest_shear_at_0_786_of_the_half_width() -> None:
+    shear = largest_shear(stresses_below_line(DEPTHS, 1.0, 1.0))
+    assert shear.max() == pytest.approx(0.300, abs=5e-4)
+    assert DEPTHS[shear.argmax()] == pytest.approx(0.786, abs=0.03)
+
+
+def test_a_circle_is_that_of_the_textbook() -> None:
+    found = stresses_below_ellipse(DEPTHS, (1.0, 1.0), 1.0)
+    normal = -1.0 / (1.0 + DEPTHS**2)
+    # Johnson 1985, Eq 3.45
+    radial = -1.3 * (1.0 - DEPTHS * np.arctan(1.0 / DEPTHS)) + 0.5 / (1.0 + DEPTHS**2)
+    assert found == pytest.approx(np.column_stack([radial, radial, normal]), abs=1e-6)
+
+
+def test_a_long_ellipse_is_a_line() -> None:
+    depths = np.linspace(0.2, 3.0, 30)
+    long = stresses_below_ellipse(depths, (40.0, 1.0), 1.0)
+    line = stresses_below_line(depths, 1.0, 1.0)
+    assert long[:, [1, 2]] == pytest.approx(line[:, [0, 2]], abs=0.01)
+
+
+def test_the_normal_stress_balances_the_load_far_below() -> None:
+    far = 1e3
+    contact = point_contact((10.0, 120.0))
+    a, b = contact.half_axes
+    pressure = float(contact.pressure(np.array(1.0)))
+    found = stresses_below_ellipse([far * a], (a, b), pressure)[0, 2]
+    assert found * (far * a) ** 2 * 2.0 * np.pi / 3.0 == pytest.approx(-1.0, rel=1e-5)
+
+
+def test_a_thin_case_crushes_its_core_and_a_thick_one_does_not() -> None:
+    stresses = stresses_below_ellipse(DEPTHS, (4.0, 1.0), 1.0)
+    thin, thick = (
+        exposure(DEPTHS, stresses, HardenedCase(1.0, 0.6, depth, 0.2)) for depth in (0.8, 3.0)
+    )
+    assert thin.crushes
+    assert not thick.crushes
+    assert thin.core_depth > 0.8
+    # stress grows with the pressure, and the margin falls as it does
+    double = exposure(DEPTHS, 2.0 * stresses, HardenedCase(1.0, 0.6, 0.8, 0.2))
+    assert double.core == pytest.approx(2.0 * thin.core)
+    uniform = exposure(DEPTHS, stresses, HardenedCase(0.5, 0.5, 3.0, 0.0))
+    assert uniform.case == pytest.approx(2.0 * largest_shear(stresses).max())
+
+
+def test_faults_are_sentences() -> None:
+    with pytest.raises(InputError, match="above 0"):
+        stresses_below_ellipse([0.0], (1.0, 1.0), 1.0)
+    with pytest.raises(InputError, match="half width"):
+        stresses_below_line([1.0], 0.0, 1.0)
+    with pytest.raises(InputError, match="core above 0"):
+        HardenedCase(1.0, 2.0, 1.0, 0.0)
+    with pytest.raises(InputError, match="both sides"):
+        exposure(DEPTHS, np.zeros((100, 3)), HardenedCase(1.0, 0.5, 9.0, 0.0))

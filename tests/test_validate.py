@@ -1,0 +1,446 @@
+"""Projects in six steps: what each lacks, stale evidence, loops, and one that is complete."""
+
+import json
+import re
+import shlex
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+import yaml
+from conftest import QuickRun
+from tiny_case import Result
+
+from fe_drivetrain.commands.validate import standing_of
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import parse_mapping
+from fe_drivetrain.procedure.channels import ChannelFile, read_channels, write_channels
+from fe_drivetrain.procedure.iteration_log import log_file, procedure_of, read_log
+from fe_drivetrain.procedure.motions import band_torque
+from fe_drivetrain.procedure.project import (
+    PROJECT_SCHEMA_FILE,
+    SECTIONS,
+    Project,
+    parse_project,
+    project_schema,
+    starting_project,
+)
+from fe_drivetrain.procedure.steps import require_complete
+from fe_drivetrain.report.environment import environment
+from fe_drivetrain.report.results import Results, Table, judge, read_results
+from fe_drivetrain.scene.reading import change_scene, library_scene, scene_text
+
+ROOT = Path(__file__).parents[1]
+EVIDENCE = (
+    "procedure/gaps",
+    "procedure/identification",
+    "procedure/campaign",
+    "drivetrain/from_table",
+    "dynamics/drivetrain_levels",
+    "histories/counting",
+)
+Content = dict[str, Any]
+Invoke = Callable[..., Result]
+
+
+def write_case(reports: Path, name: str, passed: bool = True, **more: Any) -> None:
+    """Results of a case, as a run of this program leaves them."""
+    quick = more.pop("quick", False)
+    code = more.pop("code", None)
+    made = environment({}, quick=quick)
+    verdict = judge(
+        "load",
+        1.0 if passed else 2.0,
+        1.0,
+        tolerance=0.1,
+        reason="r",
+        source="s",
+        unit="N",
+        band=0.01,
+    )
+    results = Results(
+        case=name,
+        title="t",
+        source="s",
+        summary=[],
+        verdicts=[verdict],
+        sections=[],
+        environment=made if code is None else made.model_copy(update={"code": code}),
+        **more,
+    )
+    folder = reports.joinpath(*name.split("/"))
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "results.json").write_text(results.model_dump_json())
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Content:
+    """A project that is complete, on evidence made here."""
+    reports = tmp_path / "reports"
+    write_case(reports, "group/run")
+    ladder = [
+        {"level": "torsional", "frequency [Hz]": 1.1},
+        {"level": "rigid bodies", "frequency [Hz]": 1.01},
+        {"level": "flexible shafts", "frequency [Hz]": 1.0},
+    ]
+    write_case(reports, "group/levels", figures={"ladder_mine": ladder})
+    wind = np.concatenate([v + band_torque(600, 1.0, (0.01, 0.2), 0.5, v) for v in (6, 7)])
+    write_channels(tmp_path / "wind.csv", 1.0, {"wind speed [m/s]": wind})
+    torque = 300.0 + band_torque(500, 0.1, (0.1, 1.0), 10.0, 1)
+    write_channels(tmp_path / "mine.csv", 0.1, {"gauge [kN m]": -torque})
+    write_channels(tmp_path / "model.csv", 0.1, {"torque [N m]": 1.01e3 * torque})
+    run = [{"case": "group/run"}]
+    return {
+        "subject": "mine",
+        "systems": ["drivetrain"],
+        "failure_modes": {
+            "decision": "torque",
+            "critical": [
+                {"load": "torque oscillation with reversals of the high-speed shaft"},
+                {"load": "resonance", "variables": ["torque"]},
+            ],
+            "gaps": [{"load": "resonance", "evidence": run}],
+        },
+        "model": {
+            "decision": "rigid",
+            "machine": "mine",
+            "level": "rigid bodies",
+            "needs": [{"quantity": "frequency [Hz]", "tolerance": 0.05}],
+            "evidence": [{"case": "group/levels"}],
+        },
+        "load_cases": {
+            "decision": "production",
+            "cases": [
+                {
+                    "standard": "IEC 61400-1",
+                    "edition": "3",
+                    "number": "1.2",
+                    "loads": ["torque oscillation with reversals of the high-speed shaft"],
+                    "evidence": [{"case": "group/run", "check": "load"}],
+                }
+            ],
+        },
+        "inputs": {
+            "decision": "as stated",
+            "values": [{"name": "damping of shafts", "source": "guess", "measured_by": "torque"}],
+        },
+        "campaign": {
+            "decision": "torque",
+            "signals": [
+                {"name": "torque", "interface": "hub", "rate": 10, "highest": 1, "accuracy": 0.05}
+            ],
+            "capture": {"files": {"file": "wind.csv"}, "winds": [6, 7], "target": 1},
+        },
+        "comparison": {
+            "decision": "the model holds",
+            "measured": {"file": "mine.csv", "channels": {"torque": "-gauge"}},
+            "computed": {"file": "model.csv"},
+            "quantities": [
+                {"channel": "torque", "statistic": kind, "tolerance": 0.02}
+                for kind in ("mean", "standard deviation", "least", "largest", "equivalent load")
+            ],
+        },
+    }
+
+
+@pytest.fixture
+def validate(invoke: Invoke, tmp_path: Path) -> Callable[[Content], tuple[int, Results]]:
+    """Validate a project; exit status and results."""
+
+    def run(content: Content) -> tuple[int, Results]:
+        (tmp_path / "p.yaml").write_text(yaml.safe_dump(content), "utf-8")
+        status, _, error = invoke("validate", "p.yaml")
+        assert status in (0, 1), error
+        return status, read_results(tmp_path / "reports/validate/p/results.json")
+
+    return run
+
+
+Validate = Callable[[Content], tuple[int, Results]]
+
+
+def lacks(results: Results) -> dict[int, list[str]]:
+    return {row["step"]: row["lacks"] for row in results.figures["steps"] if row["lacks"]}
+
+
+def test_a_project_is_complete_with_all_six_steps(
+    small: Content, validate: Validate, tmp_path: Path
+) -> None:
+    status, results = validate(small)
+    assert lacks(results) == {}
+    assert status == 0
+    assert results.summary[0].startswith("Complete: all six steps were taken")
+    require_complete(procedure_of("mine", read_log(tmp_path / "p.log.jsonl")))
+    # the page leads to the page of each case
+    tables = [i for s in results.sections for i in s.items if isinstance(i, Table) and i.links]
+    assert {link for table in tables for link in table.links} == {
+        "../../group/run/report.html",
+        "../../group/levels/report.html",
+    }
+    assert 'href="../../group/run/report.html"' in (
+        tmp_path / "reports/validate/p/report.html"
+    ).read_text("utf-8")
+    by_name = {v.quantity: v for v in results.verdicts}
+    assert by_name["torque: mean"].computed / by_name["torque: mean"].reference == pytest.approx(
+        1.01
+    )
+
+
+@pytest.mark.parametrize("number", range(1, 7))
+def test_it_is_not_complete_without_any_one_step(
+    number: int, small: Content, tmp_path: Path
+) -> None:
+    key = SECTIONS[number - 1]
+    del small[key]
+    found = standing_of(Project.model_validate(small), tmp_path)
+    assert found.states[number - 1].lacks == (f"it was not begun: add the section {key}",)
+
+
+def change(content: Content, key: str, value: Any) -> None:
+    *path, last = key.split(".")
+    target: Any = content
+    for part in path:
+        target = target[int(part) if part.isdigit() else part]
+    target[int(last) if last.isdigit() else last] = value
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "step", "words"),
+    [
+        ("failure_modes.gaps", [], 1, "'resonance' is covered by no load case"),
+        ("failure_modes.critical", [], 1, "no design load is critical"),
+        ("failure_modes.critical.0.load", "rust", 1, "'rust' is no design load"),
+        ("failure_modes.critical.1.variables", [], 1, "no critical design variable"),
+        ("model.level", "torsional", 2, "'torsional' is too simple"),
+        ("model.level", "solid", 2, "not on the ladder"),
+        ("model.machine", "other", 2, "no evidence says which level"),
+        ("load_cases.cases.0.loads", [], 3, "brings no design load about"),
+        ("load_cases.cases.0.evidence", [], 3, "was not run"),
+        ("load_cases.cases", [], 3, "no load case brings 'torque oscillation"),
+        ("inputs.values.0.measured_by", "", 4, "has no band, and no signal"),
+        ("inputs.values.0.measured_by", "speed", 4, "no signal of the campaign"),
+        ("campaign.signals.0.rate", 2, 5, "sampled at 2 Hz, but 1 Hz need 3 Hz"),
+        ("campaign.capture.target", 2, 5, "6 m/s has 1 of 2 windows"),
+        ("campaign.capture", None, 5, "no capture matrix"),
+        ("campaign.capture.files.file", "none.csv", 5, "there is no file"),
+        (
+            "comparison.quantities.0.tolerance",
+            0.001,
+            6,
+            "torque: mean is 3.03e+05 N m",
+        ),
+        ("comparison.measured.file", "none.csv", 6, "there is no file"),
+        ("comparison.evidence", [{"case": "group/none"}], 6, "run the case"),
+        ("comparison.evidence", [{"case": "group/run", "check": "laod"}], 6, "did you mean 'load'"),
+    ],
+)
+def test_a_step_says_what_it_lacks(
+    key: str, value: Any, step: int, words: str, small: Content, tmp_path: Path
+) -> None:
+    change(small, key, value)
+    states = standing_of(Project.model_validate(small), tmp_path).states
+    assert words in " ".join(states[step - 1].lacks)
+
+
+def test_evidence_that_fails_is_quick_or_stale_does_not_count(
+    small: Content, validate: Validate, tmp_path: Path
+) -> None:
+    reports = tmp_path / "reports"
+    for more, words, accept in (
+        ({"passed": False}, "'load' does not pass", ["quick", "other version"]),
+        ({"quick": True}, "of a quick run", ["other version"]),
+        ({"code": "0" * 64}, "of another version of the program", ["quick"]),
+    ):
+        write_case(reports, "group/run", **more)
+        found = standing_of(Project.model_validate(small | {"accept": accept}), tmp_path)
+        assert words in found.states[0].lacks[0]
+    write_case(reports, "group/run", quick=True)
+    status, results = validate(small | {"accept": ["quick"]})
+    assert status == 0
+    assert results.notes == ["Evidence quick, of a quick run: group/run."]  # named all the same
+    write_case(reports, "group/run", code="0" * 64)
+    accepted = Project.model_validate(small | {"accept": ["other version"]})
+    assert standing_of(accepted, tmp_path).states[0].complete
+
+
+def test_evidence_of_another_scene_is_stale(small: Content, tmp_path: Path) -> None:
+    scene = library_scene("two_bearings")
+    levels = [
+        {"level": 0, "title": "statics", "estimate": None, "error": 0.5},
+        {"level": 1, "title": "beam", "estimate": 0.01, "error": 0.02},
+        {"level": 2, "title": "meridian", "estimate": 0.001, "error": 0.0},
+    ]
+    figures = {"quantity": "main_bearing.Fz", "levels": levels}
+    small["model"] |= {
+        "scene": "two_bearings",
+        "machine": "",
+        "level": 1,
+        "needs": [{"quantity": "main_bearing.Fz", "tolerance": 0.05}],
+        "evidence": [{"case": "advise/two_bearings"}],
+    }
+
+    def missing() -> tuple[str, ...]:
+        return standing_of(Project.model_validate(small), tmp_path).states[1].lacks
+
+    def advised(changes: dict[str, float]) -> None:
+        text = scene_text(change_scene(scene, changes))
+        write_case(tmp_path / "reports", "advise/two_bearings", scene=text, figures=figures)
+
+    advised({})
+    assert missing() == ()
+    change(small, "model.needs.0.tolerance", 0.01)
+    assert "needs 'meridian'" in missing()[0]
+    change(small, "model.needs.0.tolerance", 0.05)
+    advised({"mesh.shaft": 0.77})
+    assert "of another scene: mesh.shaft was 0.77 and is" in missing()[0]
+
+
+def test_each_run_that_changes_something_is_logged_and_loops_are_shown(
+    small: Content, validate: Validate, tmp_path: Path
+) -> None:
+    validate({k: v for k, v in small.items() if k not in ("campaign", "comparison")})
+    validate(small)
+    validate(small)  # nothing has changed
+    log = log_file(tmp_path / "p.yaml")
+    assert len(read_log(log)) == 2
+    assert "step 6: begun" in read_log(log)[1].changes
+    change(small, "model.level", "torsional")
+    change(small, "model.decision", "torsion is enough")
+    assert validate(small)[0] == 1
+    entry = read_log(log)[2]
+    assert "step 2: level: rigid bodies -> torsional" in entry.changes
+    assert "step 2: no longer complete" in entry.changes
+    change(small, "model.level", "rigid bodies")
+    change(small, "model.decision", "it is not")
+    write_case(tmp_path / "reports", "group/run", quick=True)  # no step is taken again for that
+    _, results = validate(small | {"accept": ["quick"]})
+    procedure = procedure_of("mine", read_log(log))
+    assert procedure.loops == ((6, 2, "torsion is enough"), (2, 2, "it is not"))
+    require_complete(procedure)
+    assert len(results.figures["log"]) == 4
+    assert "group/run: passed -> quick" in results.figures["log"][3]["changes"][0]
+    log.write_text("{}\n")
+    with pytest.raises(InputError, match="line 1 of the log"):
+        read_log(log)
+
+
+@pytest.mark.parametrize(
+    ("change_to", "words"),
+    [
+        ({"subject": None}, "subject"),
+        ({"sistems": ["gearbox"]}, "did you mean 'systems'"),
+        ({"systems": ["tower"]}, "no system 'tower'"),
+        ({"model": {"decision": "d", "level": "1", "needs": []}}, "one of scene and machine"),
+        ({"inputs": {"decision": "", "values": []}}, "decision"),
+    ],
+)
+def test_faults_of_a_project_are_sentences_and_status_2(
+    change_to: Content, words: str, small: Content, invoke: Invoke, tmp_path: Path
+) -> None:
+    (tmp_path / "p.yaml").write_text(yaml.safe_dump(small | change_to), "utf-8")
+    status, _, error = invoke("validate", "p.yaml")
+    assert status == 2
+    assert words in error
+    assert error.count("\n") == 1
+
+
+def test_the_published_schema_is_that_of_the_program_and_the_example_follows_it() -> None:
+    assert (ROOT / "docs" / PROJECT_SCHEMA_FILE).read_text("utf-8") == project_schema()
+    validator = jsonschema.Draft202012Validator(json.loads(project_schema()))
+    text = starting_project()
+    assert text.startswith(f"# yaml-language-server: $schema={PROJECT_SCHEMA_FILE}\n")
+    assert isinstance(parse_project(text), Project)
+    assert not list(validator.iter_errors(parse_mapping(text, "project")))
+    assert list(validator.iter_errors(parse_mapping(text.replace("level:", "levle:"), "")))
+
+
+def test_every_key_of_a_project_is_documented() -> None:
+    text = (ROOT / "docs/procedure.md").read_text("utf-8")
+    for name, model in json.loads(project_schema())["$defs"].items():
+        for key in model["properties"]:
+            assert f"`{key}`" in text, f"{name}.{key}"
+    for key in Project.model_fields:
+        assert f"`{key}`" in text, key
+
+
+@pytest.mark.quick(*EVIDENCE)
+def test_the_tutorial_validates_the_reference_turbine_and_goes_back_once(
+    quick_run: QuickRun, invoke: Invoke, tmp_path: Path
+) -> None:
+    text = (ROOT / "docs/procedure.md").read_text("utf-8")
+    for name in EVIDENCE:
+        quick_run(name)
+    blocks = re.findall(r"^```sh\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    for line in "".join(blocks).replace("\\\n", " ").splitlines():
+        words = shlex.split(line, comments=True)
+        if words[:2] == ["fe-drivetrain", "run"]:
+            assert tuple(words[-len(EVIDENCE) :]) == EVIDENCE
+            for name in EVIDENCE:
+                shutil.copytree(quick_run.folder / name, tmp_path / "reports" / name)
+        elif words[:1] == ["fe-drivetrain"]:
+            status, out, error = invoke(*words[1:])
+            assert status == int("# ends with 1" in line), out + error
+        else:
+            subprocess.run(["sh", "-euc", line], check=True)
+    results = read_results(tmp_path / "reports/validate/project/results.json")
+    assert [row["complete"] for row in results.figures["steps"]] == [True] * 6
+    procedure = procedure_of("750 kW", read_log(tmp_path / "project.log.jsonl"))
+    assert [loop[:2] for loop in procedure.loops] == [(6, 2), (2, 2)]
+    # the identified shaft is that of the gear table
+    stiffness = next(v for v in results.verdicts if v.quantity.startswith("stiffness"))
+    assert stiffness.reference == pytest.approx(3.69e7, rel=0.02)
+
+
+def test_own_channels_of_the_documentation_are_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (ROOT / "docs/procedure.md").read_text("utf-8")
+    (code,) = re.findall(
+        r"^```python\n([^`]*?read_channels.*?)^```", text, re.DOTALL | re.MULTILINE
+    )
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    assert names["largest"] == pytest.approx(320e3, rel=1e-4)
+
+
+def test_channels_come_back_as_written_with_their_mapping(tmp_path: Path) -> None:
+    values = np.array([1.0, 2.0, -3.5, 1e-300])
+    write_channels(tmp_path / "a.csv", 0.02, {"a [kN]": values, "speed [rpm]": values})
+    given = ChannelFile(file="a.csv", channels={"force": "-a", "v": "speed"})
+    found = read_channels(given, tmp_path, frozenset({"force", "v"}))
+    assert found.step == pytest.approx(0.02)
+    assert (found.of("force") == -1e3 * values).all()
+    assert found.units == {"force": "N", "v": "rad/s"}
+    assert found.of("v") == pytest.approx(values * np.pi / 30.0)
+    with pytest.raises(InputError, match="no channel 'x'"):
+        found.of("x")
+
+
+@pytest.mark.parametrize(
+    ("text", "units", "words"),
+    [
+        ("time [s],a [furlong]\n0,1\n1,2\n", {}, "furlong"),
+        ("time [s],b [N]\n0,1\n1,2\n", {}, "no column 'a'"),
+        ("time [s],a [N]\n0,1\n1,nan\n", {}, "not finite"),
+        ("time [s],a [N]\n0,1\n1,2\n3,2\n", {}, "not uniform"),
+        ("time [s],a [N]\n0,1\n", {}, "two are needed"),
+        ("time [N],a [N]\n0,1\n1,2\n", {}, "no unit of time"),
+        ("time [s],a\n0,1\n1,2\n", {"a": "kN"}, ""),
+    ],
+)
+def test_faults_of_channels_are_sentences(
+    text: str, units: dict[str, str], words: str, tmp_path: Path
+) -> None:
+    (tmp_path / "a.csv").write_text(text)
+    given = ChannelFile(file="a.csv", units=units)
+    if not words:
+        assert read_channels(given, tmp_path, frozenset({"a"})).of("a").tolist() == [1e3, 2e3]
+        return
+    with pytest.raises(InputError, match=words):
+        read_channels(given, tmp_path, frozenset({"a"}))
