@@ -15,6 +15,8 @@ import pytest
 from test_report import limit, results
 from tiny_case import Result
 
+from fe_drivetrain.mesh.measures import volume
+
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 sys.path.insert(0, str(DOCS))
@@ -93,6 +95,14 @@ def test_an_own_drivetrain_is_changed_without_editing(run_page: Runner, tmp_path
     bores = [names[scene].shaft.sections[0].inner_diameter for scene in ("scene", "bored")]
     assert bores == [0.0, 0.1]
     assert (tmp_path / "bored.csv").is_file()
+
+
+def test_a_housing_from_step_stands_in_a_scene(run_page: Runner, tmp_path: Path) -> None:
+    names = run_page("how-to/own-housing-from-step.md")
+    assert (tmp_path / "reports/check/mine/report.html").is_file()
+    again = names["mesh_scene"](names["again"])
+    own = names["mesh_scene"](names["scene"])
+    assert volume(again) == pytest.approx(volume(own), rel=1e-12)
 
 
 def test_reactions_moved_to_the_hub_are_the_hub_loads(run_page: Runner) -> None:
