@@ -107,7 +107,7 @@ def a_turn(machine: Machine, count: int) -> Turn:
         4 * np.pi / SPEED,
         2 * np.pi / SPEED / (10 * count),
         generalised_alpha(0.3),
-        State(np.linalg.solve(carriers.system.K, load), zero, zero),
+        State(np.asarray(np.linalg.solve(carriers.system.K, load), dtype=np.float64), zero, zero),
         every=10,
     )
     assert found.motion.converged
@@ -147,7 +147,7 @@ def ring_lines(machine: Machine, steps: int) -> Floats:
         1.2 * turn,
         turn / count,
         generalised_alpha(0.2),
-        State(np.linalg.solve(system.K, load), zero, zero),
+        State(np.asarray(np.linalg.solve(system.K, load), dtype=np.float64), zero, zero),
     )
     last = found.motion.q[-count - 1 : -1, system.place("stage 1 rim 3 cos ux")]
     return np.asarray(np.abs(np.fft.rfft(last)) * 2 / count)
