@@ -86,10 +86,8 @@ from .planetary import excited_motion as excited_motion
 from .planetary import springs_of as springs_of
 from .response import Crossing as Crossing
 from .response import MeshResponse as MeshResponse
-from .response import absolute_sun_orders as absolute_sun_orders
 from .response import crossings as crossings
 from .response import frequency_response as frequency_response
-from .response import mesh_orders as mesh_orders
 from .response import mesh_response as mesh_response
 from .response import modal_response as modal_response
 from .response import speed_diagram as speed_diagram
