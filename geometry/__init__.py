@@ -5,13 +5,14 @@ from .bearing import Bearing
 from .body import BodySizes
 from .element_sizes import MeshSizes, size_name
 from .fits import WIDEST, Band, check_bands, check_parts, refuse_millimetres
-from .foreign_housing import AnyHousing, Bolts, ForeignHousing, Pick
+from .foreign_housing import AnyHousing, Bolts, CondensedHousing, ForeignHousing, Pick
 from .gearbox_housing import GearboxHousing
 from .housing import Housing
 from .local_sizes import LocalSizes, apply_local_sizes
 from .masses import Solid, bearing_solid, unit_solids
 from .part import LENGTH_TOLERANCE, Assumption, Part
 from .planet_carrier import PlanetCarrier
+from .sample_parts import write_sample
 from .session import gmsh_session
 from .shaft import Flange, Section, Shaft
 from .step_files import write_step
@@ -27,6 +28,7 @@ __all__ = [
     "Bearing",
     "BodySizes",
     "Bolts",
+    "CondensedHousing",
     "Flange",
     "ForeignHousing",
     "GearboxHousing",
@@ -49,5 +51,6 @@ __all__ = [
     "size_name",
     "unit_solids",
     "within_walls",
+    "write_sample",
     "write_step",
 ]

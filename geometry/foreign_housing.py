@@ -95,7 +95,6 @@ class Bolts(Part):
     diameter: float | None = Field(
         default=None, gt=0, description="of the bolts, in the file's unit (hold 'beams' only)"
     )
-    preload: float | None = Field(default=None, gt=0, le=1e8, description="of each bolt [N]")
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -212,6 +211,54 @@ class ForeignHousing(Part):
             )
 
 
+Row = tuple[float, float, float, float, float, float]
+
+
+class CondensedHousing(Part):
+    """A housing known as a stiffness alone: no solid, no mass, on the ground.
+
+    Its six rows are forces and moments on the housing at the bearing's centre, of unit
+    displacements and rotations of its bore there, in the scene's frame.
+    """
+
+    stiffness: tuple[Row, Row, Row, Row, Row, Row] = Field(
+        description="six rows along and about x, y, z at the bearing's centre [N/m, N, N m/rad]"
+    )
+    source: str = Field(default="", max_length=1000, description="where it comes from, in words")
+
+    @model_validator(mode="after")
+    def _holds_every_motion(self) -> Self:
+        K = self.matrix
+        if K.diagonal().min() <= 0:
+            raise InputError(
+                f"a housing's stiffness has {K.diagonal().min():.3g} on its diagonal, but must "
+                "hold every motion, with more than 0 there: check its rows"
+            )
+        roots = np.sqrt(np.maximum(K.diagonal(), np.finfo(float).tiny))
+        scaled = K / np.outer(roots, roots)
+        if np.abs(scaled - scaled.T).max() > _SYMMETRIC:
+            raise InputError(
+                "a housing's stiffness differs from its transpose by "
+                f"{np.abs(scaled - scaled.T).max():.2g} of its diagonal, but must be symmetric: "
+                "check its rows"
+            )
+        least = float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T))[0])
+        if least < _LEAST or K.diagonal().max() > _STIFFEST:
+            raise InputError(
+                f"a housing's stiffness has a least eigenvalue of {least:.2g} of its diagonal and "
+                f"a largest entry of {K.diagonal().max():.2g}, but must hold every motion (at "
+                f"least {_LEAST:g}) with at most {_STIFFEST:g} [N/m, N m/rad]: check its units"
+            )
+        return self
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """(6, 6) stiffness at the bearing's centre [N/m, N, N m/rad]."""
+        return np.array(self.stiffness, dtype=np.float64)
+
+
+_SYMMETRIC, _LEAST, _STIFFEST = 1e-6, 1e-9, 1e16
+
 SEAT_TOLERANCE = 1e-4
 """Of the radius of a seat: it may differ so much from the bearing's raceway."""
 
@@ -219,11 +266,16 @@ SEAT_TOLERANCE = 1e-4
 def _kind(value: Any) -> str:
     if isinstance(value, ForeignHousing):
         return "file"
+    if isinstance(value, CondensedHousing) or (isinstance(value, dict) and "stiffness" in value):
+        return "matrix"
     from_file = isinstance(value, dict) and ("step" in value or "mesh" in value)
     return "file" if from_file else "block"
 
 
 AnyHousing = Annotated[
-    Annotated[Housing, Tag("block")] | Annotated[ForeignHousing, Tag("file")], Discriminator(_kind)
+    Annotated[Housing, Tag("block")]
+    | Annotated[ForeignHousing, Tag("file")]
+    | Annotated[CondensedHousing, Tag("matrix")],
+    Discriminator(_kind),
 ]
-"""A parametric block, or a housing from a file."""
+"""A parametric block, a housing from a file, or a stiffness alone."""

@@ -134,6 +134,7 @@ def test_the_share_of_a_tolerance_passes_one_where_the_check_fails(
         (1.0, 0.5, "1 ± 0.5\u00a0N"),
         (0.0, 0.5, "0 ± 0.5\u00a0N"),
         (math.nan, 0.5, "not a number\u00a0N"),
+        (5.06219, 1e-7, "5.06219\u00a0N ± 2\u00a0×\u00a010⁻⁶\u00a0%"),
     ],
 )
 def test_a_value_has_the_digits_that_its_band_leaves(

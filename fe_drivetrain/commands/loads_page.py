@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 
 from fe_drivetrain.commands.loads_against import beside
-from fe_drivetrain.commands.loads_counts import counts
+from fe_drivetrain.commands.loads_counts import answer_of_counts, counts
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options
 from fe_drivetrain.commands.loads_faults import faults
 from fe_drivetrain.commands.loads_lifetime import Event, lifetime
@@ -134,8 +134,9 @@ def loaded(
             f"; cycles of a range below {100 * options.gate:g} % of the largest of the channel in "
             "its file are left out"
         )
+    said = answer_of_counts(page, found, options)
     page.answer(
-        f"{len(files)} file{'s' * (len(files) > 1)}, {found.samples:,} samples over "
+        f"{said}{len(files)} file{'s' * (len(files) > 1)}, {found.samples:,} samples over "
         f"{found.seconds:,.6g} s; {rule}."
     )
     tables: dict[str, list[Record]] = {"files": found.files}

@@ -11,14 +11,25 @@ import typer
 from fe_drivetrain.commands.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 
+_SUPERELEMENTS = {".json": "json", ".csv": "csv", ".bdf": "dmig", ".op4": "op4", ".h5": "hdf5"}
+
 
 def part_command(
     file: Annotated[
         Path,
         typer.Argument(
-            metavar="FILE", help="A STEP file (.step, .stp), or a mesh (.msh, .vtu, .inp)."
+            metavar="FILE",
+            help="STEP (.step, .stp), mesh (.msh, .vtu, .inp), or superelement (.json, .csv, .bdf, "
+            ".op4, .h5) as fe-drivetrain export writes it.",
         ),
     ],
+    bore: Annotated[
+        str, typer.Option("--bore", help="Of a superelement: the point in the middle of its bore.")
+    ] = "",
+    held: Annotated[
+        str,
+        typer.Option("--held", help="Of a superelement: points on the ground, as in left,right."),
+    ] = "",
     picture: Annotated[
         Path | None,
         typer.Option("--picture", metavar="PNG", help="Write a picture with the names of faces."),
@@ -26,10 +37,14 @@ def part_command(
 ) -> None:
     """Show what is in a STEP or mesh file: volume, bores that may be seats, planes, labels.
 
-    The last lines are a housing for a scene, with the widest bore as its seat.
+    The last lines are a housing for a scene, with the widest bore as its seat. Of a superelement
+    they are its stiffness at the bore.
     """
 
     def work() -> int:
+        if file.suffix.lower() in _SUPERELEMENTS:
+            write(sys.stdout, _superelement(file, bore, [p for p in held.split(",") if p]))
+            return PASSED
         from fe_drivetrain.foreign.survey import surveyed
 
         if picture is not None and (
@@ -50,3 +65,24 @@ def part_command(
         return PASSED
 
     raise typer.Exit(guarded(work, "nothing is changed"))
+
+
+def _superelement(file: Path, bore: str, held: list[str]) -> str:
+    """Points of a superelement, and the housing that it is in a scene."""
+    from fe_drivetrain.export.condensed_housing import condensed_housing
+    from fe_drivetrain.export.files import read
+
+    if not file.is_file():
+        raise InputError(f"cannot read {file}: there is no such file: give a superelement")
+    element = read(file, _SUPERELEMENTS[file.suffix.lower()])
+    lines = [f"{file.name}: superelement {element.name}, its points [m]:"]
+    lines += [
+        f"  {name}  ({x:.6g}, {y:.6g}, {z:.6g})"
+        for name, (x, y, z) in zip(element.points, element.positions.tolist(), strict=True)
+    ]
+    lines.append("on its supports" if element.supported else "free")
+    housing = condensed_housing(element, bore, held)
+    lines += ["", "In a scene, for a bearing whose centre is the bore's point:", "    housing:"]
+    lines += [f"      source: {housing.source}", "      stiffness:"]
+    lines += [f"        - [{', '.join(f'{k:.15e}' for k in row)}]" for row in housing.stiffness]
+    return "\n".join(lines) + "\n"

@@ -5,6 +5,7 @@ from .calculix_results import ROUNDING as ROUNDING
 from .calculix_results import DeckResponse as DeckResponse
 from .calculix_results import read_dat as read_dat
 from .calculix_results import read_response as read_response
+from .condensed_housing import condensed_housing as condensed_housing
 from .craig_bampton import CraigBampton as CraigBampton
 from .craig_bampton import craig_bampton_shaft as craig_bampton_shaft
 from .craig_bampton import free_frequencies as free_frequencies

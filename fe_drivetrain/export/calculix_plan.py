@@ -158,7 +158,7 @@ def fixed_bases(model: Model) -> list[str]:
     return [
         f"{unit.bearing.name}.housing.base"
         for unit in model.scene.bearing_units
-        if unit.bedplate is None
+        if not model.standing(unit.bearing.name)
     ]
 
 

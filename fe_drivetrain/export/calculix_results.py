@@ -155,14 +155,17 @@ def read_response(
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         centre = model.points[f"{name}.seat"].position
-        if unit.bedplate is None:
+        standing = model.standing(name)
+        if not standing:
             base = model.mesh.face_nodes(f"{name}.housing.base")
             base_forces[name] = forces[base]
             reactions[name] = -resultant(model.mesh.points[base], forces[base], centre)
         else:
-            arm = model.points[f"{name}.base"].position - centre
-            carried = _carried_at(model, plan, f"{name}.base", motions, flat)
-            reactions[name] = wrench_transport(arm) @ carried
+            reactions[name] = np.zeros((6, n_loads))
+            for key in standing:
+                arm = model.points[key].position - centre
+                carried = _carried_at(model, plan, key, motions, flat)
+                reactions[name] += wrench_transport(arm) @ carried
     for bearing in model.scene.nose_bearings:
         reactions[bearing.name] = _carried_at(model, plan, f"{bearing.name}.joint", motions, flat)
     reactions["gearbox"] = _carried_at(model, plan, "gearbox", motions, flat)

@@ -72,6 +72,8 @@ def unit_stiffness(
     -------
     (6, 6) at the bearing's centre, of joint, housing and bedplate in series [N/m, N, N m/rad].
     """
+    if (given := _given(scene, name)) is not None:
+        return given
     content = {"stiffness of": name, "coupling": coupling, "method": method, "ring": ring}
     (found,) = _kept(
         scene,
@@ -142,6 +144,9 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         See there.
     """
 
+    if (given := _given(scene, name)) is not None:
+        return UnitBounds(given, given, 0.0)
+
     def solved() -> tuple[Floats, ...]:
         stiff = _solved_unit(scene, name, "rigid")
         soft = _solved_unit(scene, name, "averaged").stiffness
@@ -149,6 +154,14 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
 
     soft, stiff, mesh = _kept(scene, {"bounds of": name}, cache, solved)
     return UnitBounds(soft, stiff, float(mesh))
+
+
+def _given(scene: Scene, name: str) -> Floats | None:
+    """A housing that is a stiffness alone, behind its joint; None of a solid one."""
+    unit = scene.bearing_unit(name)
+    if unit.condensed is None:
+        return None
+    return in_series(unit.condensed.matrix, joint_stiffness(unit))
 
 
 def _kept(

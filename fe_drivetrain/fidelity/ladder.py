@@ -291,7 +291,7 @@ def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozen
         bearing = unit.bearing
         bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
         ring, housing = solids_of_unit(unit, bore, scene.mesh)
-        solids = {f"{bearing.name}.housing": housing}
+        solids = {} if unit.condensed is not None else {f"{bearing.name}.housing": housing}
         if bearing.name not in on_shaft:
             solids[bearing.name] = ring
         for part, solid in solids.items():

@@ -84,6 +84,8 @@ def forecast(model: Model) -> list[Forecast]:
     units = []
     for unit in scene.bearing_units:
         name = unit.bearing.name
+        if unit.condensed is not None:
+            continue
         parts = [name, f"{name}.housing"] if unit.ring_on_housing else [f"{name}.housing"]
         system = _of_parts(model, parts, model.mesh.face_nodes(f"{name}.housing.base"))
         units.append(_predicted(1, TITLES[1], system, _OF_A_POINT))

@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.foreign.housing import placed_housing
 from fe_drivetrain.geometry import (
     NO_BANDS,
     Band,
+    Housing,
     MeshSizes,
     Shaft,
     Solid,
@@ -22,7 +23,7 @@ from fe_drivetrain.geometry import (
     unit_solids,
 )
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint, averaged_point
-from fe_drivetrain.interfaces.mortar import Multipliers, mortar_tie, settled
+from fe_drivetrain.interfaces.mortar import mortar_tie, settled
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.measures import mass_moments
@@ -31,8 +32,8 @@ from fe_drivetrain.mesh.side_by_side import beside
 from fe_drivetrain.scene.bearing_unit import BearingUnit
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
+_BESIDE = 1e-6  # of the width: facets further out are beside the bearing
 _BOLT = MATERIALS["steel"]
-_LARGE = 500  # nodes of a face: a standard tie of more fills the matrix
 
 
 def mesh_parts(
@@ -62,7 +63,7 @@ def mesh_parts(
     Mesh
         Housings from files share no nodes with their bearings, see `tied`.
     """
-    blocks = {unit.bearing.name: unit.block for unit in units if unit.foreign is None}
+    blocks = {u.bearing.name: u.housing for u in units if isinstance(u.housing, Housing)}
     bonded = frozenset(u.bearing.name for u in units if u.interface == "bonded")
     mesh = cached_mesh(
         shaft,
@@ -125,12 +126,24 @@ def tied(units: Sequence[BearingUnit], mesh: Mesh) -> Tied:
         if unit.foreign is None or unit.interface != "bonded":
             continue
         name = unit.bearing.name
-        outer, seat = (mesh.faces[f"{name}.{key}"] for key in ("outer", "housing.seat"))
-        kind: Multipliers = "dual" if len(np.unique(outer)) > _LARGE else "standard"
-        ties.append(mortar_tie(f"{name} tie", mesh.points, outer, seat, mesh.points.size, kind))
+        slave, master = _finer_first(unit, mesh)
+        # standard multipliers would couple each node of the face with each
+        ties.append(mortar_tie(f"{name} tie", mesh.points, slave, master, mesh.points.size, "dual"))
     if not ties:
         return Tied(mesh, ())
     return Tied(replace(mesh, points=settled(mesh.points, *ties)), tuple(ties))
+
+
+def _finer_first(unit: BearingUnit, mesh: Mesh) -> tuple[Ints, Ints]:
+    """The slave and the master face of a tie: the finer is the slave, the master covers it."""
+    name, bearing = unit.bearing.name, unit.bearing
+    outer, bore, seat = (
+        mesh.faces[f"{name}.{key}"] for key in ("outer", "housing.bore", "housing.seat")
+    )
+    beyond = np.abs(mesh.points[np.unique(bore), 0] - bearing.x).max() - bearing.width / 2
+    if len(np.unique(bore)) > len(np.unique(outer)) and beyond < _BESIDE * bearing.width:
+        return bore, outer
+    return outer, seat
 
 
 def bolt_springs(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> list[tuple[ReferencePoint, Floats]]:
@@ -247,6 +260,9 @@ def solids_of_unit(
     sizes : MeshSizes
         Of the scene; a housing from a file is measured on its mesh.
     """
+    if unit.condensed is not None:
+        nothing = Solid(0.0, (unit.bearing.x, 0.0, 0.0), (0.0,) * 9)
+        return bearing_solid(unit.bearing, bore_diameter), nothing
     if unit.foreign is None:
         return unit_solids(unit.bearing, unit.block, bore_diameter)
     mesh = placed_housing(unit.foreign, unit.bearing, sizes).mesh

@@ -110,7 +110,7 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
             else []
         )
         step_mesh.cut(survey, request)
-        step_mesh.mesh(survey, request["size"], request["per_turn"])
+        step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
         tags, xyz, _ = gmsh.model.mesh.getNodes()
         number = np.full(int(tags.max()) + 1, -1)
         number[tags] = np.arange(len(tags))

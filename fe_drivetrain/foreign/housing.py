@@ -24,9 +24,9 @@ from fe_drivetrain.geometry import Bearing, ForeignHousing, MeshSizes, Pick
 from fe_drivetrain.geometry.foreign_housing import SEAT_TOLERANCE
 from fe_drivetrain.mesh.checks import refuse_unsound
 from fe_drivetrain.mesh.facets import facet_points
-from fe_drivetrain.mesh.generation import GMSH_TO_VTK, relax_flat_cells
+from fe_drivetrain.mesh.generation import ATTEMPTS, GMSH_TO_VTK, REFINEMENT, relax_flat_cells
 from fe_drivetrain.mesh.linear import renumbered
-from fe_drivetrain.mesh.measures import volume
+from fe_drivetrain.mesh.measures import inverted_cells, volume
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 
 _STEP_UNIT = 1e-3  # what gmsh reads STEP in [m]
@@ -158,9 +158,41 @@ def _of_step(
         "centre": None if moved is None else (turned.T @ (centre - moved) / scale).tolist(),
         "size": sizes.housing / scale,
         "per_turn": sizes.elements_per_turn,
+        "optimise": False,
     }
-    found = read_in_process("mesh step", housing.file, request)
-    survey = json.loads(str(found["survey"]))
+    for _ in range(ATTEMPTS):
+        found = read_in_process("mesh step", housing.file, request)
+        mesh, survey = _placed_mesh(found, housing, centre, scale)
+        if len(inverted_cells(mesh)) == 0:
+            break
+        if request["optimise"]:  # in vain: finer, as `fe_drivetrain.mesh.generation.generate`
+            request["size"] /= REFINEMENT
+            request["per_turn"] = math.ceil(request["per_turn"] * REFINEMENT)
+        request["optimise"] = True
+    before, after = (survey[key]["volume"] * scale**3 for key in ("before", "after"))
+    meshed = volume(mesh)
+    if abs(meshed / after - 1) > _VOLUME:
+        raise InputError(
+            f"{survey['name']}: its mesh has {meshed:.6g} m^3, but the solid {after:.6g} m^3: "
+            "repair its faces in the CAD program, or choose smaller elements"
+        )
+    facts = {
+        "volume before healing [m^3]": before,
+        "volume after healing [m^3]": after,
+        "solids": survey["after"]["solids"],
+        "faces removed": survey["before"]["faces"] - survey["after"]["faces"],
+        "edges removed": survey["before"]["edges"] - survey["after"]["edges"],
+        "bolt holes": len(survey["seat"]["holes"]),
+    }
+    return _arrays(survey["name"], mesh, facts)
+
+
+def _placed_mesh(
+    found: Mapping[str, NDArray[Any]], housing: ForeignHousing, centre: Floats, scale: float
+) -> tuple[Mesh, dict[str, Any]]:
+    """The mesh of a STEP file's solid in its place, and what is known of the solid."""
+    survey: dict[str, Any] = json.loads(str(found["survey"]))
+    turned, moved = housing.rotation, housing.translate
     seat = survey["seat"]
     middle = np.array(seat["centre"])
     shift = centre - scale * (turned @ middle) if moved is None else np.array(moved)
@@ -180,23 +212,7 @@ def _of_step(
         {key: numbers[value] for key, value in found.items() if key.startswith("body.")},
         {},
     )
-    mesh = relax_flat_cells(_turned_outward(mesh))
-    before, after = (survey[key]["volume"] * scale**3 for key in ("before", "after"))
-    meshed = volume(mesh)
-    if abs(meshed / after - 1) > _VOLUME:
-        raise InputError(
-            f"{survey['name']}: its mesh has {meshed:.6g} m^3, but the solid {after:.6g} m^3: "
-            "repair its faces in the CAD program, or choose smaller elements"
-        )
-    facts = {
-        "volume before healing [m^3]": before,
-        "volume after healing [m^3]": after,
-        "solids": survey["after"]["solids"],
-        "faces removed": survey["before"]["faces"] - survey["after"]["faces"],
-        "edges removed": survey["before"]["edges"] - survey["after"]["edges"],
-        "bolt holes": len(seat["holes"]),
-    }
-    return _arrays(survey["name"], mesh, facts)
+    return relax_flat_cells(_turned_outward(mesh)), survey
 
 
 def _of_mesh(housing: ForeignHousing, bearing: Bearing) -> dict[str, NDArray[Any]]:

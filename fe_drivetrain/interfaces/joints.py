@@ -20,7 +20,12 @@ from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
 from fe_drivetrain.mesh.facets import MEANS, face_weights, facet_points
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.scene.bearing_unit import BearingUnit
-from fe_drivetrain.scene.joint_springs import roller_contacts, rollers_of, spring_matrix
+from fe_drivetrain.scene.joint_springs import (
+    joint_stiffness,
+    roller_contacts,
+    rollers_of,
+    spring_matrix,
+)
 from fe_drivetrain.scene.nose import NoseBearing
 
 SECTORS = 8
@@ -100,6 +105,36 @@ def spring_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> 
     if rigid.size:
         conditions.append(constraints.held(f"{name} held", point, rigid.tolist()))
     return Joint(tuple(conditions), ((point, np.where(np.isinf(k), 0.0, k)),))
+
+
+def condensed_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> Joint:
+    """A housing known as a stiffness alone, behind the joint, under the mean motion of a bearing.
+
+    Parameters
+    ----------
+    unit, mesh : BearingUnit, Mesh
+        Of a condensed housing; the bearing's outer face is free.
+    first_dof : int
+        First of 6 `SECTORS` degrees of freedom, the sectors' shares of the mean motion.
+    n_dofs : int
+        Of the model.
+
+    Returns
+    -------
+    Joint
+        The one spring is to ground, at "NAME.ground".
+    """
+    assert unit.condensed is not None
+    name, centre = f"{unit.bearing.name}.ground", np.array([unit.bearing.x, 0.0, 0.0])
+    face = f"{unit.bearing.name}.outer"
+    on = mesh.face_nodes(face)
+    weights = face_weights(mesh.points, mesh.faces[face], len(mesh.points), MEANS)[on]
+    weights = constraints.centred_weights(weights, mesh.points[on], centre)
+    mean = constraints.averaged_point(name, on, weights, mesh.points, centre, n_dofs)
+    sectors = _in_sectors(mesh, on)
+    shares, point = constraints.shared_motion(name, centre, mean.motion, sectors, first_dof)
+    stiffness = in_series(unit.condensed.matrix, joint_stiffness(unit))
+    return Joint((shares,), ((point, stiffness),))
 
 
 def nose_joint(

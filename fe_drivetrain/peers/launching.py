@@ -136,6 +136,8 @@ def launch(
     interpreter : str
         The Python that has the tool.
     """
+    if os.name != "posix":
+        return Outcome("missing", reason="this system has no sessions of processes: use Linux")
     words = [str(word) for word in getattr(_module(variant.tool), "LAUNCH", ())]
     before = [word.format(threads=limits.threads) for word in words]
     with tempfile.TemporaryDirectory() as name:

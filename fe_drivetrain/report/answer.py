@@ -60,7 +60,8 @@ def value_with_band(found: Figure | Verdict) -> str:
     Parameters
     ----------
     found : Figure or Verdict
-        The value; its band is shown with two digits.
+        The value; its band is shown with two digits, in percent where it lies beyond the digits
+        that are shown.
 
     Returns
     -------
@@ -78,7 +79,11 @@ def value_with_band(found: Figure | Verdict) -> str:
     if place > 0:
         value, band = round(value, -place), round(band, -place)
     certain = math.floor(math.log10(abs(value) or band)) - place + 1
-    digits = min(max(certain, _DIGITS), _MOST_DIGITS)
+    if value and certain > _MOST_DIGITS:
+        percent = formatted(100.0 * band / abs(value), 2, "%")
+        whole = with_unit(formatted(found.computed, _MOST_DIGITS, unit), unit)
+        return f"{whole} ± {percent}\u00a0%"
+    digits = max(certain, _DIGITS)
     text = f"{formatted(value, digits, unit)} ± {formatted(band, 2, unit)}"
     if power:
         text = f"({text})\u00a0×\u00a010{superscript(power)}"

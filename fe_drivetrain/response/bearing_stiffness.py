@@ -102,6 +102,11 @@ def tilt_stiffness(
             "carry the whole moment: set gearbox.stiffness to zeros"
         )
     load = plane.moment
+    if model.scene.bearing_unit(bearing).condensed is not None:
+        raise InputError(
+            f"the housing of {bearing!r} is a stiffness alone: its tilt stiffness is that of the "
+            "scene: read it there"
+        )
     energy = sum(
         response.strain_energy[part][load, load] for part in (bearing, f"{bearing}.housing")
     )

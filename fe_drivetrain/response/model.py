@@ -14,7 +14,13 @@ from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts
 from fe_drivetrain.geometry import Band
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
-from fe_drivetrain.interfaces.joints import SECTORS, nose_joint, roller_joint, spring_joint
+from fe_drivetrain.interfaces.joints import (
+    SECTORS,
+    condensed_joint,
+    nose_joint,
+    roller_joint,
+    spring_joint,
+)
 from fe_drivetrain.interfaces.mechanisms import refuse_mechanisms, warn_of_weak_restraints
 from fe_drivetrain.mesh.cached import cached_mesh
 from fe_drivetrain.mesh.checks import refuse_unsound
@@ -63,7 +69,8 @@ class Model:
     points : Mapping[str, ReferencePoint]
         Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing, the load points by
         their names; where there are
-        such, "NAME.base" (on a bedplate that gives) or "NAME.bolt K" (bolts as beams, to ground),
+        such, "NAME.base" (on a bedplate that gives), "NAME.bolt K" (bolts as beams, to ground) or
+        "NAME.ground" (of a housing that is a stiffness alone),
         "NAME.joint" or "NAME.roller K", whose
         motion is that of the bearing against its housing, or of the shaft against its nose; and
         "nose.root", the nose's rear face.
@@ -94,8 +101,8 @@ class Model:
 
     def standing(self, name: str) -> list[str]:
         """Reference points that a bearing's housing stands on: a bedplate, or bolts; else none."""
-        given = (f"{name}.base", f"{name}.bolt ")
-        return [p for p in self.points if p == given[0] or p.startswith(given[1])]
+        given = (f"{name}.base", f"{name}.ground")
+        return [p for p in self.points if p in given or p.startswith(f"{name}.bolt ")]
 
     @property
     def loads(self) -> tuple[str, ...]:
@@ -180,11 +187,13 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             extra[name] = 6
     for unit in scene.bearing_units:
         name = unit.bearing.name
-        if unit.interface == "rigid":
+        if unit.condensed is not None:
+            extra[f"{name}.ground"] = 6 * SECTORS
+        elif unit.interface == "rigid":
             extra |= {f"{name}.outer": 6, f"{name}.housing.bore": 6}
         elif unit.interface == "averaged":
             extra[f"{name} joint"] = 3 * _N_GROUPS
-        elif unit.interface == "spring":
+        elif unit.interface == "spring" and unit.condensed is None:
             extra[f"{name}.joint"] = 6 * SECTORS
         if unit.bedplate is not None:
             extra[f"{name}.base"] = 6
@@ -218,6 +227,12 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         name = unit.bearing.name
         centre = np.array([unit.bearing.x, 0.0, 0.0])
         points[f"{name}.seat"] = couple(f"{name}.seat", f"shaft.seat.{name}", centre)
+        if unit.condensed is not None:
+            joint = condensed_joint(unit, mesh, first_dof[f"{name}.ground"], n_dofs)
+            conditions += joint.constraints
+            springs += joint.springs
+            points |= {point.name: point for point, _ in joint.springs}
+            continue
         if unit.interface == "rigid":
             inner, outer = (
                 couple(face, face, centre) for face in (f"{name}.outer", f"{name}.housing.bore")
@@ -308,7 +323,11 @@ def needed_faces(scene: Scene) -> list[str]:
         names += ["nose.rear", *(f"nose.band.{bearing.name}" for bearing in scene.nose_bearings)]
     for unit in scene.bearing_units:
         name = unit.bearing.name
-        names += [f"shaft.seat.{name}", f"{name}.housing.base"]
+        names += [f"shaft.seat.{name}"]
+        if unit.condensed is not None:
+            names += [f"{name}.outer"]
+            continue
+        names += [f"{name}.housing.base"]
         if unit.interface != "bonded":
             names += [f"{name}.outer", f"{name}.housing.bore"]
     return names

@@ -221,10 +221,12 @@ def _reactions(
                 carried = _carried_at(model, key, multipliers, U)
                 arm = model.points[key].position - centre
                 reactions[name] += wrench_transport(arm) @ carried
-        for key, part, face in (
-            (f"{name}.seat", name, f"shaft.seat.{name}"),
-            (f"{name}.outer", f"{name}.housing", f"{name}.housing.bore"),
-        ):
+        parts = [(f"{name}.seat", name, f"shaft.seat.{name}")]
+        if unit.condensed is None:
+            parts.append((f"{name}.outer", f"{name}.housing", f"{name}.housing.bore"))
+        else:
+            reactions[f"{name}.outer"] = reactions[name]
+        for key, part, face in parts:
             # What a part's neighbour puts on it: its internal forces less the loads inside it.
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             nodes = mesh.face_nodes(face)

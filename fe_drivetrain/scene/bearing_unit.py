@@ -16,7 +16,13 @@ from pydantic import (
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.strict_yaml import no_truth_value
-from fe_drivetrain.geometry import AnyHousing, Bearing, ForeignHousing, Housing
+from fe_drivetrain.geometry import (
+    AnyHousing,
+    Bearing,
+    CondensedHousing,
+    ForeignHousing,
+    Housing,
+)
 
 #: How the bearing's outer face meets the housing's bore.
 Interface = Literal["bonded", "spring", "rollers", "sliding", "averaged", "rigid"]
@@ -121,7 +127,7 @@ class BearingUnit(Keys):
     @property
     def ring_on_housing(self) -> bool:
         """Whether the bearing's ring counts to the housing, where the shaft is solved apart."""
-        return self.interface in ("bonded", "rollers")
+        return self.interface in ("bonded", "rollers") and self.condensed is None
 
     @property
     def block(self) -> Housing:
@@ -135,14 +141,19 @@ class BearingUnit(Keys):
         if isinstance(self.housing, Housing):
             return self.housing
         raise InputError(
-            f"bearing {self.bearing.name!r} has a housing from a file, but this needs a parametric "
-            "one, with dimensions to change: describe it by these"
+            f"bearing {self.bearing.name!r} has a housing from a file or of a stiffness alone, but "
+            "this needs a parametric one, with dimensions: describe it by these"
         )
 
     @property
     def foreign(self) -> ForeignHousing | None:
         """Its housing, where that is from a file."""
         return self.housing if isinstance(self.housing, ForeignHousing) else None
+
+    @property
+    def condensed(self) -> CondensedHousing | None:
+        """Its housing, where that is a stiffness alone."""
+        return self.housing if isinstance(self.housing, CondensedHousing) else None
 
     @field_validator("bedplate")
     @classmethod
@@ -162,6 +173,11 @@ class BearingUnit(Keys):
                     + (f"{key}: leave {key} out" if given else f"no {key}: add it")
                     + f", or make the interface {'' if given else 'another than '}{interface!r}"
                 )
+        if self.condensed is not None and self.bedplate is not None:
+            raise ValueError(
+                f"bearing {name!r} has a housing of a stiffness alone and a bedplate: put the "
+                "bedplate into the stiffness, and leave it out"
+            )
         if self.foreign is not None:
             _check_foreign(self, self.foreign)
         if self.stiffness is not None:

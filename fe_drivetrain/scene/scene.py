@@ -8,9 +8,11 @@ from pydantic import (
     model_validator,
 )
 
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.geometry import (
     Band,
+    CondensedHousing,
     Housing,
     MeshSizes,
     Shaft,
@@ -164,7 +166,8 @@ class Scene(Keys):
         used = [("shaft", self.shaft.material)]
         for unit in self.bearing_units:
             used.append((unit.bearing.name, unit.bearing.material))
-            used.append((f"{unit.bearing.name}.housing", unit.housing.material))
+            if not isinstance(unit.housing, CondensedHousing):
+                used.append((f"{unit.bearing.name}.housing", unit.housing.material))
             if unit.interface in SPHERICAL_JOINTS and unit.bearing.kind != "spherical":
                 raise ValueError(
                     f"bearing {unit.bearing.name!r} of kind {unit.bearing.kind!r} cannot have the "
@@ -204,13 +207,19 @@ class Scene(Keys):
             return self.nose.body.material
         name, _, housing = part.partition(".")
         unit = self.bearing_unit(name)
-        return unit.housing.material if housing else unit.bearing.material
+        if not housing:
+            return unit.bearing.material
+        if isinstance(unit.housing, CondensedHousing):
+            raise InputError(f"{part} is a stiffness alone, and has no material: leave it out")
+        return unit.housing.material
 
     @property
     def blocks(self) -> dict[str, Housing]:
         """Parametric housings by the name of the bearing; those from files are none."""
         return {
-            unit.bearing.name: unit.block for unit in self.bearing_units if unit.foreign is None
+            unit.bearing.name: unit.housing
+            for unit in self.bearing_units
+            if isinstance(unit.housing, Housing)
         }
 
     @property

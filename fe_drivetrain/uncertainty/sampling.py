@@ -18,6 +18,7 @@ from scipy.stats import qmc
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import value_by_key
+from fe_drivetrain.geometry import CondensedHousing
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.scene import Scene, Spread
@@ -408,6 +409,8 @@ def _evaluated(
 def _with_materials(scene: Scene) -> Scene:
     used = {scene.shaft.material}
     for unit in scene.bearing_units:
-        used |= {unit.bearing.material, unit.housing.material}
+        used |= {unit.bearing.material}
+        if not isinstance(unit.housing, CondensedHousing):
+            used.add(unit.housing.material)
     own = {name: MATERIALS[name] for name in used if name in MATERIALS}
     return scene.model_copy(update={"materials": own | dict(scene.materials)})

@@ -166,7 +166,10 @@ def _parts(scene: Scene) -> dict[str, PartFile]:
         bearing = unit.bearing
         bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
         ring, housing = solids_of_unit(unit, bore, scene.mesh)
-        for part, solid in ((bearing.name, ring), (f"{bearing.name}.housing", housing)):
+        solids = {bearing.name: ring}
+        if unit.condensed is None:
+            solids[f"{bearing.name}.housing"] = housing
+        for part, solid in solids.items():
             density = scene.material_of(part).density
             found[part] = PartFile(
                 mass=density * solid.volume,

@@ -169,6 +169,10 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
         faces = (f"{name}.outer", f"shaft.seat.{name}")
         height = np.mean([mesh.points[mesh.face_nodes(face)][:, 2].max() for face in faces])
         sheet.note([unit.bearing.x, 0.0, height], name.replace("_", " "), (-60, 150))
+        if unit.condensed is not None:
+            foot = [unit.bearing.x, 0.0, -unit.bearing.raceway_diameter / 2]
+            sheet.note(foot, "on a stiffness, to ground", (-140, -60), GROUND)
+            continue
         base = mesh.points[mesh.face_nodes(f"{name}.housing.base")]
         corner = base[np.argmin(base @ [1.0, 1.0, 0.0])]
         if unit.foreign is not None:

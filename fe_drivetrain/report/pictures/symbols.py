@@ -22,6 +22,8 @@ GROUND = "#5b4636"
 
 def add_fixed_base(plotter: Any, mesh: Mesh, unit: BearingUnit, thickness: float) -> None:
     """Show where a housing is held: a plate under its base, or washers on its foot."""
+    if unit.condensed is not None:
+        return
     name = f"{unit.bearing.name}.housing"
     heads = [face for face in mesh.faces if face.startswith(f"{name}.head ")]
     for face in heads or [f"{name}.base"]:
