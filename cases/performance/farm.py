@@ -7,7 +7,15 @@ from importlib.util import find_spec
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import ExactSum, Floats, InputError, MissingToolError, cores, exact_sum
+from fe_drivetrain.common import (
+    ExactSum,
+    Floats,
+    InputError,
+    MissingToolError,
+    cores,
+    exact_sum,
+    peak_memory,
+)
 from fe_drivetrain.histories import Counting, counted_histories, piece, streamed_cycles
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -67,7 +75,7 @@ def run(run: Run, page: Page) -> None:
     import resource  # which Windows does not have
 
     memory = {
-        "of this process": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3,
+        "of this process": (peak_memory() or np.nan) / 1e6,
         "of a local worker": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e3,
     }
     damage = [ExactSum() for _ in COUNTING.slopes]
