@@ -1,7 +1,8 @@
 """Pages that are written from the code each time the documentation is built.
 
 The validation index comes from what the cases declare, the API from the public names of the rooms,
-the gallery from the library of scenes and its pictures (``docs/stills.py``).
+the gallery from the library of scenes and its pictures (``docs/stills.py``), limits of methods from
+results of a run (``docs/result_pages.py``).
 """
 
 from __future__ import annotations
@@ -10,12 +11,13 @@ import importlib
 import inspect
 import pkgutil
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from types import ModuleType
 
 from plotly.offline import get_plotlyjs
+from result_pages import cards_of_cases, limits_page, plain, results
 from sphinx.errors import PycodeError
 from sphinx.pycode import ModuleAnalyzer
 from stills import library
@@ -35,7 +37,9 @@ def write_all(folder: Path) -> None:
     pages["api.rst"] = api_index(rooms)
     for room in rooms:
         pages[f"api/{room}.rst"] = api_of(room)
-    pages["gallery.md"] = gallery(library())
+    found = results()
+    pages["limits.md"] = limits_page(found)
+    pages["gallery.md"] = gallery(library(), cards_of_cases(found, folder / "pictures"))
     for old in (*folder.glob("*.*"), *folder.glob("api/*.*")):
         if old.is_file() and old.relative_to(folder).as_posix() not in pages:
             old.unlink()
@@ -73,18 +77,11 @@ def validation_index(cases: Iterable[Case]) -> str:
     return "\n".join(lines)
 
 
-def plain(text: str) -> str:
-    """Text in which Markdown finds no marks, but for code in backticks, on one line."""
-    pieces = re.split(r"(`+[^`]*`+)", " ".join(text.split()))
-    pieces[::2] = [re.sub(r"([\\*_\[\]<>|#$~])", r"\\\1", piece) for piece in pieces[::2]]
-    return "".join(pieces)
-
-
 # --- Gallery ---
 
 
-def gallery(scenes: Mapping[str, Scene | Component]) -> str:
-    """A card for each scene and component of the library."""
+def gallery(scenes: Mapping[str, Scene | Component], cards: Sequence[str]) -> str:
+    """A card for each scene and component of the library, and those of cases, if there are any."""
     cases = all_cases()
     lines = [
         "# Gallery",
@@ -110,7 +107,19 @@ def gallery(scenes: Mapping[str, Scene | Component]) -> str:
             ":::",
             "",
         ]
-    return "\n".join([*lines, "::::", ""])
+    lines += ["::::", ""]
+    if cards:
+        lines += [
+            "## As cases show it",
+            "",
+            "::::{grid} 1 2 2 3",
+            ":gutter: 3",
+            "",
+            *cards,
+            "::::",
+            "",
+        ]
+    return "\n".join(lines)
 
 
 # --- Notebooks ---

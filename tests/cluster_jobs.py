@@ -36,6 +36,11 @@ def digest_with_death(
     return kept_digest(report, file, options, resume=True)
 
 
+def wait(report: Progress, mark: Path) -> None:
+    mark.touch()
+    time.sleep(WAIT)
+
+
 def mistake(report: Progress) -> None:
     raise InputError("shaft: length is -1 but must be greater than 0: give a length")
 

@@ -56,7 +56,7 @@ def coarse_scene(kind: str, **changes: object) -> Scene:
 
 
 #: Programs that tests start; all else that they need is a Python package.
-PROGRAMS = ("ccx", "chromium")
+PROGRAMS = ("ccx", "chromium", "mpiexec")
 
 #: Where this is set, a test that is skipped has failed: everything that tests need is installed.
 NO_SKIP_VARIABLE = "FE_DRIVETRAIN_NO_SKIP"

@@ -67,9 +67,12 @@ def reports(
         (folder / name).mkdir(parents=True)
         if number == 0:
             mesh = bonded_model.mesh
-            u = -1e6 * bonded_response.displacements[..., 2]
+            fields = {
+                "1 MN down": -1e6 * bonded_response.displacements[..., 2],
+                "0.3 MN m about x": 3e5 * bonded_response.displacements[..., 3],
+            }
             steel = dict.fromkeys(mesh.part_names, (115e9, 77e9))
-            assert write_solid_view(mesh, u, steel, folder / name / "view.json")
+            assert write_solid_view(mesh, fields, steel, folder / name / "view.json")
             Pixels.new("RGB", (8, 5), "teal").save(folder / name / "still.png")
             solid = Solid(caption="Model under 1 MN", file="view.json", still="still.png")
             sections.append(Section(title="Model", items=[solid]))
@@ -315,16 +318,21 @@ def test_a_model_is_turned_cut_coloured_and_read(browser: Any, reports: Path) ->
             read.inner_text(),
         )
         assert page.input_value("input[aria-label='most value of the colours']") != "1"
-        page.select_option(".controls select >> nth=0", label="von Mises stress")
+        page.select_option(".controls select >> nth=1", label="von Mises stress")
         changes()
         page.fill("input[aria-label='most value of the colours']", "1")
         page.keyboard.press("Enter")
         changes()
-        page.select_option(".controls select >> nth=0", label="part")
+        page.select_option(".controls select >> nth=1", label="part")
         changes()
+        before = page.locator(".controls > output").inner_text()
+        page.select_option(".controls select >> nth=0", label="0.3 MN m about x")
+        changes()
+        assert page.locator(".controls > output").inner_text() != before  # its own scale
+        assert read.inner_text() == "Click on the model to read a value."
         page.locator(".controls input[type=range] >> nth=0").fill("3")
         changes()
-        page.select_option(".controls select >> nth=1", label="x")
+        page.select_option(".controls select >> nth=2", label="x")
         changes()
         page.mouse.move(*middle)
         page.mouse.down()

@@ -19,10 +19,10 @@ from test_commands_life import write_history
 from tiny_case import Result
 
 from fe_drivetrain.commands.loads_digest import Options
-from fe_drivetrain.common import pool as pool_module
+from fe_drivetrain.common import jobs as jobs_module
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import mapped, pool, scheduled_by
+from fe_drivetrain.common.jobs import mapped, pool, scheduled_by
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.fidelity.adviser import Quantity
@@ -128,7 +128,7 @@ def test_a_stopped_study_goes_on_where_it_was(
     cluster: Cluster, histories: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At most so many files are handed in as may be at once, and those that are done stay done."""
-    monkeypatch.setattr(pool_module, "AT_ONCE", 4)
+    monkeypatch.setattr(jobs_module, "AT_ONCE", 4)
     items = [(file, OPTIONS, tmp_path, False) for file in histories]
     with scheduled_by(cluster.address):
         stopped = mapped(cluster_jobs.digest_with_death, items, 1)
@@ -262,3 +262,17 @@ def test_no_file_is_lost_or_counted_twice_when_a_worker_is_killed(
     for one, other in zip(found, here, strict=True):
         assert one.keys() == other.keys()
         assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+
+
+def test_the_end_of_the_scheduler_is_said_at_once(cluster: Cluster, tmp_path: Path) -> None:
+    """The last test: nothing is left of the cluster."""
+
+    def end() -> None:
+        until((tmp_path / "begun").exists)
+        cluster.end()
+
+    thread = threading.Thread(target=end, daemon=True)
+    thread.start()
+    with pytest.raises(InputError, match="has ended"), scheduled_by(cluster.address):
+        list(mapped(cluster_jobs.wait, [(tmp_path / "begun",)], 1))
+    thread.join(WAIT)

@@ -4,6 +4,8 @@ import csv
 import os
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from tiny_case import Result
 from fe_drivetrain.commands import life_digest
 from fe_drivetrain.commands.life import parse_lubricant
 from fe_drivetrain.commands.life_bearings import Choices, bearings_of, rollers_in_words
+from fe_drivetrain.commands.life_page import _scatter
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.sites import site_of_class
@@ -88,6 +91,9 @@ def test_lives_of_constant_loads_are_those_of_one_step(
     assert [by_place, by_lamina] == pytest.approx([used, used], rel=1e-5)
     results = read_results(out / "results.json")
     assert all(verdict.passed for verdict in results.verdicts)
+    (answer,) = results.answers
+    assert answer.computed == pytest.approx(float(lives["L10mr [years]"]), rel=1e-5)
+    assert answer.band is None  # each wind has one file
     assert any("ISO" in note for note in results.notes)
     charts = [i.caption for s in results.sections for i in s.items if i.kind == "chart"]
     assert sum("looking downwind" in caption for caption in charts) == 1
@@ -96,6 +102,29 @@ def test_lives_of_constant_loads_are_those_of_one_step(
 
 CHOICES_REST = (True, "rollers", "rigid", True)
 RINGS = ("inner", "outer")
+
+
+def of_rates(*rates_by_wind: tuple[float, ...]) -> Any:
+    """A bearing with such rates of damage in the files of each wind, winds of equal time."""
+    speeds = [8.0 + 2.0 * k for k in range(len(rates_by_wind))]
+    digests = [
+        SimpleNamespace(wind=speed, damage=SimpleNamespace(totals={"L10mr": 10 * r}, seconds=10.0))
+        for speed, rates in zip(speeds, rates_by_wind, strict=True)
+        for r in rates
+    ]
+    shares = np.full(len(speeds), 1.0 / len(speeds))
+    site = SimpleNamespace(speeds=np.array(speeds), shares=shares, years={"L10mr": 50.0})
+    return SimpleNamespace(digests=digests, site=site)
+
+
+def test_the_band_of_a_life_is_the_scatter_of_files_of_one_wind() -> None:
+    assert _scatter(of_rates((1.0, 1.0), (2.0, 2.0))) == 0.0
+    # a tenth up and down: the mean of the two has a standard error of a tenth
+    assert _scatter(of_rates((0.9, 1.1))) == pytest.approx(2 * 0.1 * 50.0)
+    both = _scatter(of_rates((0.9, 1.1), (0.9, 1.1)))
+    assert both == pytest.approx(2 * 0.1 * 50.0 / np.sqrt(2))
+    assert _scatter(of_rates((0.9, 1.1), (1.0,))) is None
+    assert _scatter(SimpleNamespace(site=None)) is None  # type: ignore[arg-type]
 
 
 def test_a_stopped_run_goes_on(

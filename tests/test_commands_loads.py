@@ -94,6 +94,16 @@ def test_the_page_of_own_files(invoke: Callable[..., Result], histories: Path) -
     hours = sum(float(row["hours"]) for row in site)
     assert hours == pytest.approx(-float(np.diff(reach)[0]) * 175200, rel=1e-6)
     results = read_results(out / "results.json")
+    first = results.answers[0]
+    assert first.quantity.startswith("equivalent load of My, slope 3")
+    my = [r for r in equivalent if (r["channel"], r["slope"]) == ("My", "3")]
+    of_b = float(next(r["DEL at 1 Hz"] for r in my if r["file"] == "b"))
+    damage = 60.05 * of_a["My", "3"] ** 3 + 80.25 * of_b**3
+    assert first.computed == pytest.approx(1e-3 * (damage / 140.3) ** (1 / 3), rel=1e-4)  # kN m
+    # were all cycles half ones, whole ones would do twice the damage
+    assert first.band is not None
+    assert 0.0 < first.band / first.computed < 2 ** (1 / 3) - 1
+    assert "in My and" in results.summary[0]
     assert results.figures["capture"]["counts"]
     # 9P is 2.25 Hz, and half the sampling rate of b is 2 Hz
     assert any("9P appears at 1.75 Hz" in note for note in results.notes)
@@ -105,9 +115,9 @@ def test_the_page_of_own_files(invoke: Callable[..., Result], histories: Path) -
         for item in s.items
         if item.kind == "table" and item.caption == multiples
     )
-    my = next(row for row in table.rows if str(row[0]).startswith("My"))
-    assert my[2] == pytest.approx(300.0, rel=0.01)  # 3P
-    assert my[1] == pytest.approx(0.0, abs=1.0)  # 1P
+    moment = next(row for row in table.rows if str(row[0]).startswith("My"))
+    assert moment[2] == pytest.approx(300.0, rel=0.01)  # 3P
+    assert moment[1] == pytest.approx(0.0, abs=1.0)  # 1P
 
 
 def test_a_stopped_run_goes_on(

@@ -5,18 +5,24 @@ import importlib.util
 import re
 import shlex
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from test_report import limit, results
 from tiny_case import Result
 
 from fe_drivetrain.mesh.measures import volume
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
+sys.path.insert(0, str(DOCS))
+
+from result_pages import limits_page  # noqa: E402
+
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("**/*.md"))]
 PAGES = [page for page in PAGES if "generated" not in page.parts]
 
@@ -224,6 +230,26 @@ def test_the_theory_names_modules_that_are_there() -> None:
     assert names
     for name in names:
         assert importlib.util.find_spec(f"fe_drivetrain.{name}"), name
+
+
+#: Rooms that compute nothing of their own.
+WITHOUT_THEORY = {"commands", "common", "plots", "report", "scene", "suite"}
+
+
+def test_every_room_that_models_something_has_its_theory() -> None:
+    text = (DOCS / "theory.md").read_text(encoding="utf-8")
+    named = {name.partition(".")[0] for name in re.findall(r"`([^`]+)`", text)}
+    rooms = {face.parent.name for face in (ROOT / "fe_drivetrain").glob("*/__init__.pyi")}
+    assert rooms - named == WITHOUT_THEORY
+
+
+def test_limits_of_the_cases_are_collected_from_results() -> None:
+    found = limit(low=2.0, high=None, parameter="samples in a *period*", beyond="it aliases")
+    page = limits_page({"stability/one": (results("stability/one", limits=[found]), ROOT)})
+    assert "1 limit of 1 case" in page
+    assert "Safe from 2: samples in a \\*period\\*" in page
+    assert "*Beyond:* it aliases" in page
+    assert "built without results" in limits_page({"a/b": (results("a/b"), ROOT)})
 
 
 def test_every_page_is_reached_from_the_index() -> None:

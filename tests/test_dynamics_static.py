@@ -10,16 +10,15 @@ from fe_drivetrain.dynamics.bodies import Body, assemble
 from fe_drivetrain.dynamics.modes import system_modes
 from fe_drivetrain.dynamics.planetary import bodies_of, equal_angles, springs_of
 from fe_drivetrain.dynamics.response import (
-    absolute_sun_orders,
     crossings,
     frequency_response,
-    mesh_orders,
     modal_response,
     speed_diagram,
 )
 from fe_drivetrain.dynamics.springs import Place, bushing
 from fe_drivetrain.dynamics.static import load_sharing, over_a_turn, static
 from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.torsion.orders import Toothed, absolute_sun_orders, mesh_orders
 from fe_drivetrain.validation.planet_loads import SharingStage, shared_load
 from fe_drivetrain.validation.published_planetary import (
     COOLEY_PARKER_STAGE,
@@ -151,7 +150,11 @@ def test_statics_are_the_response_at_frequency_zero() -> None:
 
 
 def test_orders_and_crossings_of_the_tables() -> None:
-    C = [("planetary", (145, 29)), ("parallel", (108, 27)), ("parallel", (111, 29))]
+    C = [
+        Toothed("planetary", (145, 29)),
+        Toothed("parallel", (108, 27)),
+        Toothed("parallel", (111, 29)),
+    ]
     assert list(mesh_orders(C).values()) == [145, 648, 2664]
     assert list(absolute_sun_orders(C).values()) == [174, 648, 2664]
     found = crossings([213, 257, 431, 834, 1720, 2110, 3750], mesh_orders(C), (10.8, 19.1))

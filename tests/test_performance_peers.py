@@ -15,6 +15,7 @@ import pytest
 
 from fe_drivetrain.cases.performance import peer_settings, peers
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.interpreter import interpreters
 from fe_drivetrain.mesh.mesh import FACETS
 from fe_drivetrain.peers import launching, problems, rounds, runner
 from fe_drivetrain.peers.launching import (
@@ -93,7 +94,7 @@ def measured(variant, problem, folder, limits=LIMITS):
     """A tool in a process of its own, in whichever Python has it."""
     path = folder / "problem.npz"
     runner.write_problem(problem, path)
-    for interpreter in launching.interpreters():
+    for interpreter in interpreters():
         outcome = launching.launch(variant, path, path, limits, interpreter)
         if outcome.status != "missing":
             return outcome

@@ -15,6 +15,11 @@ def test_tables_ask_for_what_the_source_has() -> None:
     assert len({q.interface for q in asked.of("5.3")}) == 9
     assert [q.rank for q in asked.of("6.4")].count("mandatory") == 2
     assert sum(len(q.channels) for q in asked.of("6.4") if q.rank == "mandatory") == 4
+    gearbox = asked.of("4.5")
+    assert len({q.interface for q in gearbox}) == 5
+    # bracketed in the source: six loads of the main shaft, of which three are estimated
+    estimated = [q for q in gearbox if "estimated" in q.note]
+    assert sum(len(q.channels) for q in estimated) == 3 + 5
     with pytest.raises(InputError, match=r"5\.3"):
         asked.of("5.9")
 

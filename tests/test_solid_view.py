@@ -35,7 +35,8 @@ def u(bonded_response: Response) -> Floats:
 def view(bonded_model: Model, u: Floats, tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("view") / "view.json"
     mesh = bonded_model.mesh
-    assert write_solid_view(mesh, u, dict.fromkeys(mesh.part_names, STEEL), path)
+    fields = {"down": u, "down, three times": 3.0 * u}
+    assert write_solid_view(mesh, fields, dict.fromkeys(mesh.part_names, STEEL), path)
     assert path.stat().st_size < LIMIT
     return json.loads(path.read_text("utf-8"))
 
@@ -72,8 +73,9 @@ def test_values_are_those_of_the_nodes(
 ) -> None:
     mesh = bonded_model.mesh
     points = vertices(view)
-    moved = view["largest"] * decoded(view, "displacements", "<i2").reshape(-1, 3) / 32767.0
-    stress = view["greatest"] * decoded(view, "stresses", "<i2") / 32767.0
+    load = view["loads"][0]
+    moved = load["largest"] * decoded(load, "displacements", "<i2").reshape(-1, 3) / 32767.0
+    stress = load["greatest"] * decoded(load, "stresses", "<i2") / 32767.0
     part = view["parts"][0]
     own = np.unique(decoded(view, "triangles", "<u4")[: 3 * part["count"]])
     s = von_mises(
@@ -84,10 +86,37 @@ def test_values_are_those_of_the_nodes(
         distance = np.linalg.norm(mesh.points[nodes] - points[vertex], axis=1)
         node = nodes[np.argmin(distance)]
         assert distance.min() < 1e-4 * view["reach"]
-        assert_allclose(moved[vertex], u[node], atol=1e-4 * view["largest"])
-        assert_allclose(stress[vertex], s[node], atol=1e-4 * view["greatest"])
-    assert_allclose(view["largest"], np.linalg.norm(u, axis=1).max(), rtol=1e-6)
-    assert_allclose(view["factor"] * view["largest"] / (2.0 * view["reach"]), 0.08, rtol=0.2)
+        assert_allclose(moved[vertex], u[node], atol=1e-4 * load["largest"])
+        assert_allclose(stress[vertex], s[node], atol=1e-4 * load["greatest"])
+    assert_allclose(load["largest"], np.linalg.norm(u, axis=1).max(), rtol=1e-6)
+    assert_allclose(load["factor"] * load["largest"] / (2.0 * view["reach"]), 0.08, rtol=0.2)
+
+
+def test_each_load_has_its_own_values_and_scale(view: dict[str, Any]) -> None:
+    one, three = view["loads"]
+    assert [one["name"], three["name"]] == ["down", "down, three times"]
+    for whole in ("largest", "greatest"):
+        assert_allclose(three[whole], 3.0 * one[whole], rtol=1e-9)
+    assert three["displacements"] == one["displacements"]
+    assert three["stresses"] == one["stresses"]
+
+
+def test_loads_that_do_not_fit_are_left_out(
+    bonded_model: Model, u: Floats, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mesh, path = bonded_model.mesh, tmp_path / "view.json"
+    fields = {f"load {k}": u for k in range(3)}
+    lame = dict.fromkeys(mesh.part_names, STEEL)
+    sizes = []
+    for count in (1, 2):
+        write_solid_view(mesh, dict(list(fields.items())[:count]), lame, path)
+        sizes.append(path.stat().st_size)
+    monkeypatch.setattr(solid_view, "MOST_BYTES", sizes[1] + (sizes[1] - sizes[0]) // 2)
+    write_solid_view(mesh, fields, lame, path)
+    assert len(json.loads(path.read_text("utf-8"))["loads"]) == 2
+    monkeypatch.setattr(solid_view, "MOST_BYTES", 1)
+    write_solid_view(mesh, fields, lame, path)
+    assert len(json.loads(path.read_text("utf-8"))["loads"]) == 1
 
 
 def test_of_a_fine_surface_there_are_corners_alone_and_of_one_too_fine_nothing(
@@ -97,11 +126,11 @@ def test_of_a_fine_surface_there_are_corners_alone_and_of_one_too_fine_nothing(
     facets = sum(len(boundary(mesh, part)) for part in mesh.part_names)
     lame = dict.fromkeys(mesh.part_names, STEEL)
     monkeypatch.setattr(solid_view, "MOST_TRIANGLES", facets)
-    assert write_solid_view(mesh, u, lame, tmp_path / "coarse.json")
+    assert write_solid_view(mesh, {"down": u}, lame, tmp_path / "coarse.json")
     coarse = json.loads((tmp_path / "coarse.json").read_text("utf-8"))
     assert sum(part["count"] for part in coarse["parts"]) == facets
     monkeypatch.setattr(solid_view, "MOST_TRIANGLES", facets - 1)
-    assert not write_solid_view(mesh, u, lame, tmp_path / "none.json")
+    assert not write_solid_view(mesh, {"down": u}, lame, tmp_path / "none.json")
     assert not (tmp_path / "none.json").exists()
 
 

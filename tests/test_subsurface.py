@@ -8,6 +8,7 @@ from fe_drivetrain.bearing.subsurface import (
     HardenedCase,
     exposure,
     largest_shear,
+    shear_at_depth,
     stresses_below_ellipse,
     stresses_below_line,
 )
@@ -59,6 +60,21 @@ def test_a_thin_case_crushes_its_core_and_a_thick_one_does_not() -> None:
     assert double.core == pytest.approx(2.0 * thin.core)
     uniform = exposure(DEPTHS, stresses, HardenedCase(0.5, 0.5, 3.0, 0.0))
     assert uniform.case == pytest.approx(2.0 * largest_shear(stresses).max())
+
+
+def test_shear_of_a_history_is_that_of_each_load() -> None:
+    contact = point_contact((3.0, 90.0))
+    loads = np.array([0.0, 2e4, 1e5])
+    found = shear_at_depth(contact, loads, 2e-3)
+    assert found[0] == 0.0
+    for load, shear in zip(loads[1:], found[1:], strict=True):
+        axes = tuple(axis * np.cbrt(load) for axis in contact.half_axes)
+        stresses = stresses_below_ellipse([2e-3], axes, float(contact.pressure(load)))
+        assert shear == pytest.approx(largest_shear(stresses)[0], rel=2e-3)
+    # eight times the load at twice the depth is twice the stress
+    assert shear_at_depth(contact, 8.0 * loads, 4e-3) == pytest.approx(2.0 * found, rel=1e-12)
+    with pytest.raises(InputError, match="depth"):
+        shear_at_depth(contact, loads, 0.0)
 
 
 def test_faults_are_sentences() -> None:

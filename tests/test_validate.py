@@ -30,6 +30,7 @@ from fe_drivetrain.procedure.project import (
     project_schema,
     starting_project,
 )
+from fe_drivetrain.procedure.signatures import content_digest
 from fe_drivetrain.procedure.steps import require_complete
 from fe_drivetrain.report.environment import environment
 from fe_drivetrain.report.results import Results, Table, judge, read_results
@@ -42,7 +43,7 @@ EVIDENCE = (
     "procedure/campaign",
     "drivetrain/from_table",
     "dynamics/drivetrain_levels",
-    "histories/counting",
+    "procedure/interfaces",
 )
 Content = dict[str, Any]
 Invoke = Callable[..., Result]
@@ -327,6 +328,33 @@ def test_each_run_that_changes_something_is_logged_and_loops_are_shown(
     log.write_text("{}\n")
     with pytest.raises(InputError, match="line 1 of the log"):
         read_log(log)
+
+
+def test_a_signature_holds_for_what_was_signed_alone(
+    small: Content, validate: Validate, tmp_path: Path
+) -> None:
+    digest = validate(small)[1].figures["digest"]
+    signature = {"name": "A. B.", "date": "2026-11-23", "digest": digest}
+    status, results = validate(small | {"signed": [signature]})
+    assert status == 0
+    assert results.verdicts[-1].quantity == "signature of A. B.: of these six steps, complete"
+    # run again with the same result it still holds, with another it does not
+    write_case(tmp_path / "reports", "group/run")
+    project = Project.model_validate(small | {"signed": [signature]})
+
+    def now() -> str:
+        found = standing_of(project, tmp_path)
+        return content_digest(project, found.states, found.verdicts)
+
+    assert now() == digest
+    (tmp_path / "wind.csv").touch()
+    time = np.arange(500) * 0.1
+    write_channels(tmp_path / "mine.csv", 0.1, {"gauge [kN m]": -300.0 - 10.0 * np.sin(time)})
+    assert now() != digest
+    change(small, "model.level", "flexible shafts")
+    status, results = validate(small | {"signed": [signature]})
+    assert status == 1
+    assert not results.verdicts[-1].passed
 
 
 @pytest.mark.parametrize(

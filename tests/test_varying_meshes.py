@@ -151,12 +151,13 @@ def test_speed_of_a_gearbox_in_time(quick_run: QuickRun) -> None:
 def test_the_examples_of_the_docs_run() -> None:
     text = (Path(__file__).parents[1] / "docs" / "transients.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, flags=re.S)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     found: dict[str, Any] = {}
     for block in blocks:
         exec(block, found)
     assert found["motion"].converged
     assert found["stopped"].ratio("HSS")[0] == pytest.approx(1.0, rel=1e-6)
+    assert found["turned"].motion.converged
     radial = found["on_rollers"].radial("stage 1 pin 1 upwind")
     assert radial[-1] > radial[0] > 1e5
     # errors of some microns against teeth of a GN/m

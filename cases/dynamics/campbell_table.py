@@ -8,17 +8,21 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import InputError
 from fe_drivetrain.dynamics import (
     Crossing,
-    absolute_sun_orders,
     check_assembly,
     crossings,
     equal_angles,
     excited_motion,
-    mesh_orders,
 )
 from fe_drivetrain.gear import equally_spaced, sequence, sun_phases
 from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.torsion import gear_masses, natural_modes
+from fe_drivetrain.torsion import (
+    Toothed,
+    absolute_sun_orders,
+    gear_masses,
+    mesh_orders,
+    natural_modes,
+)
 from fe_drivetrain.validation import published_drivetrains as published
 
 TABLE_4_8 = {"A": ("146", "730"), "B": ("154", "707.259", "2419.575"), "C": ("174", "648", "2664")}
@@ -29,13 +33,12 @@ SPEEDS = {
     "C": (10.8, 16.0, 19.1),
     "D": (14.8, 18.6, 22.1),
 }
-Stages = list[tuple[str, tuple[int, int]]]
 
 
 class Train(NamedTuple):
     """A drivetrain: kinds and teeth of its stages, and frequencies as printed and of its inputs."""
 
-    stages: Stages
+    stages: list[Toothed]
     printed: tuple[float, ...]
     computed: tuple[float, ...]
 
@@ -45,19 +48,22 @@ def trains() -> dict[str, Train]:
     found = {}
     for letter, printed in published.OTHERS.items():
         table = published.table(f"drivetrain_{letter.lower()}")
-        stages = [(s.kind, s.teeth) for s in table.stages if s.teeth]
+        stages = [Toothed(s.kind, s.teeth) for s in table.stages if s.teeth]
         modes = natural_modes(gear_masses(table, "free"))
         computed = modes.frequencies[published.observable(modes)]
         found[letter] = Train(
-            [(kind, (a, b)) for kind, (a, b) in stages],
+            stages,
             tuple(float(f) for f in printed[1:]),
             tuple(float(f) for f in computed[1:]),
         )
-    teeth: Stages = [("planetary", (99, 21)), ("parallel", (82, 23)), ("parallel", (88, 22))]
+    kinds, teeth = ("planetary", "parallel", "parallel"), ((99, 21), (82, 23), (88, 22))
     modes = natural_modes(gear_masses(published.table("nrel_750kw"), "free"))
     computed = modes.frequencies[published.observable(modes)]
     own = tuple(float(f) for f in published.ELEVEN["free"][1:])
-    return {**found, "D": Train(teeth, own, tuple(float(f) for f in computed[1:]))}
+    return {
+        **found,
+        "D": Train([*map(Toothed, kinds, teeth)], own, tuple(float(f) for f in computed[1:])),
+    }
 
 
 @case(
@@ -72,7 +78,7 @@ def run(run: Run, page: Page) -> None:
         right, printed = mesh_orders(train.stages), absolute_sun_orders(train.stages)
         check_orders(page, letter, train, right, printed)
         for number, name in enumerate(right):
-            kind, (large, small) = train.stages[number]
+            kind, (large, small) = train.stages[number].kind, train.stages[number].teeth
             rows.append(
                 {
                     "drivetrain": letter,
@@ -119,7 +125,7 @@ def check_orders(
                 why="the print has ratios rounded to their third digit",
                 source="Al-Hamadani 2018, Table 4.8",
             )
-        kind, (large, small) = train.stages[number]
+        kind, (large, small) = train.stages[number].kind, train.stages[number].teeth
         if kind == "planetary":
             before = right[name] / large
             ratio = 1 + large / small
@@ -205,7 +211,8 @@ def show_assembly(page: Page, found: dict[str, Train]) -> None:
     rows: list[Record] = []
     refused = []
     for letter, train in found.items():
-        for number, (kind, (ring, sun)) in enumerate(train.stages, start=1):
+        for number, stage in enumerate(train.stages, start=1):
+            kind, (ring, sun) = stage.kind, stage.teeth
             if kind != "planetary":
                 continue
             try:

@@ -26,7 +26,7 @@ from fe_drivetrain.dynamics import (
     torsional,
     turning_modes,
 )
-from fe_drivetrain.fidelity import solid_component
+from fe_drivetrain.fidelity import meridian_shaft, solid_component
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
 from fe_drivetrain.report import trace
@@ -34,6 +34,7 @@ from fe_drivetrain.scene import CarrierComponent, HousingComponent, library_comp
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.torsion import Drivetrain, gear_masses, natural_modes, static_stiffness
 from fe_drivetrain.validation import published_drivetrains as published
+from fe_drivetrain.validation.machine_shafts import shaft_scene
 
 #: Machines with torque of the rotor and tilting moment of the hub [N m], and where it is from.
 OPERATIONS = {
@@ -138,7 +139,7 @@ def error_curves(answers: Sequence[Answer]) -> list[dict[str, Any]]:
 
 
 def more_rungs(run: Run, name: str) -> list[Rung]:
-    """Flexible carrier of the 5 MW gearbox, of beams and of finite elements; housing of C."""
+    """Flexible carrier and a solid shaft of the 5 MW gearbox; housing of C."""
     found = []
     if name == "nrel_5mw":
         component = library_component("planet_carrier")
@@ -146,11 +147,16 @@ def more_rungs(run: Run, name: str) -> list[Rung]:
         with run.step("carrier of beams"):
             beams = Flexible({1: carrier_frame(component)})
         found.append(Rung(Level.FLEXIBLE, beams, "flexible shafts, carrier of beams"))
+        with run.step("solid low-speed shaft"):
+            scene = shaft_scene(library_machine(name), "LSS")
+            shaft = meridian_shaft(scene, 1.4, 4, rings=False, layers=1)
+        given = Flexible(beams.carriers, shafts={"LSS": shaft})
+        found.append(Rung(Level.FLEXIBLE, given, "carrier of beams, solid low-speed shaft"))
         if not run.quick:
             with run.step("carrier of finite elements"):
                 solid = solid_component(coarser(component, COARSER[0]))
-            elements = Flexible({1: solid.body})
-            found.append(Rung(Level.FLEXIBLE, elements, "flexible shafts, carrier of FE"))
+            elements = Flexible({1: solid.body}, shafts={"LSS": shaft})
+            found.append(Rung(Level.FLEXIBLE, elements, "carrier of FE, solid low-speed shaft"))
     if name == "synthetic_2mw":
         housing = library_component("gearbox_housing")
         assert isinstance(housing, HousingComponent)

@@ -347,7 +347,7 @@ def show_picture(
             page.text(f"No picture: {reason}")
             return
         lame = dict.fromkeys(solid.mesh.part_names, material_of(component).lame)
-        is_turned = write_solid_view(solid.mesh, u, lame, run.folder / "deformed.3d.json")
+        is_turned = write_solid_view(solid.mesh, {what: u}, lame, run.folder / "deformed.3d.json")
     caption = f"{what}; displacements times {factor:g}"
     if is_turned:
         page.add(Solid(caption=caption, file="deformed.3d.json", still="deformed.png"))

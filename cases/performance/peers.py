@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_settings import OURS, plan_of, settings_of
-from fe_drivetrain.common import Progress
+from fe_drivetrain.common import Progress, interpreters
 from fe_drivetrain.peers import (
     BENCHMARKS,
     EQUAL,
@@ -16,7 +16,6 @@ from fe_drivetrain.peers import (
     Row,
     Variant,
     how_to_install,
-    interpreters,
     launch,
     parse,
     problems,

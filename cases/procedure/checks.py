@@ -178,8 +178,7 @@ def energies() -> list[Found]:
     """Energy shares; crossings of constant modes."""
     system = gear_masses(TABLE, "free")
     modes = natural_modes(system)
-    elements = tuple(e.name for e in system.elements)
-    met = resonances([Excitation("all", 6.0, system.names)], modes, elements, (9.0, 18.0))
+    met = resonances([Excitation("all", 6.0, system.names)], modes, (9.0, 18.0))
     return [
         Found(
             "sum of energy shares - 1, largest",
@@ -199,7 +198,7 @@ def energies() -> list[Found]:
 def sweep() -> list[Found]:
     """The largest response at the crossing; decrement of a stop."""
     modes = natural_modes(PAIR)
-    (meeting,) = resonances([Excitation("6P", 6.0, ("rotor",))], modes, ("shaft",), (20.0, 30.0))
+    (meeting,) = resonances([Excitation("6P", 6.0, ("rotor",))], modes, (20.0, 30.0))
     speeds = np.linspace(20.0, 30.0, 2001)
     turned = response(PAIR, "rotor", 6.0 * speeds / 60.0)
     peak = float(speeds[np.abs(turned[:, 0] - turned[:, 1]).argmax()])

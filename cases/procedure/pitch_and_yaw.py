@@ -16,6 +16,7 @@ from fe_drivetrain.procedure import (
     SlewingDrive,
     drive_torque,
     friction_torque,
+    governing_torque,
     gyroscopic_torque,
     moves,
     peak_times,
@@ -36,6 +37,7 @@ MOMENT, AXIAL, RADIAL = 3000e3, 200e3, 100e3  # N m, N
 STOP_SPEED, STOP_RAMP = np.radians(7.0), 0.3  # rad/s, s
 PAUSE, DURATION, TURNED = 120.0, 12.0, np.radians(5.0)  # s, s, rad
 BRIDGES, DEFICIT = 35.576, -0.09  # m, share
+BRAKES, MOTOR = (100.0, 200.0, 400.0), 150.0  # N m, at the motors of the yaw drives, all together
 WINDS = (13.0, 16.0, 20.0, 24.0)
 ASSUMED = "the report prints none: of the size of a machine of 2 MW"
 
@@ -312,6 +314,7 @@ def yawing(page: Page) -> None:
         "x",
     )
     page.data("yawing", rows)
+    strength(page, 3.0 * mean, float(np.abs(load).max()) / YAW.ratio)
     gyroscopic = gyroscopic_torque(
         4e6, 2.0 * np.array([np.cos(0.09), 0.0, np.sin(0.09)]), np.array([0, 0, TURNED / DURATION])
     )
@@ -338,6 +341,32 @@ def yawing(page: Page) -> None:
         "kg m^2, kg m^2, -",
         ASSUMED,
     )
+
+
+def strength(page: Page, transient: float, aerodynamic: float) -> None:
+    """Torque of the static strength: the brake's, unless motor, air or switching have more."""
+    rows: list[Record] = []
+    for brake in BRAKES:
+        found = governing_torque(brake, MOTOR, aerodynamic, transient)
+        rows.append(
+            {
+                "brake [N m]": brake,
+                "motor [N m]": MOTOR,
+                "aerodynamic [N m]": aerodynamic,
+                "transient of switching [N m]": transient,
+                "governs": found.by,
+                "torque of the gearbox [N m]": found.torque,
+                "the brake covers all": "yes" if found.brake_covers else "no",
+            }
+        )
+    page.table("Static strength of the yaw gearbox: largest torque at the motor, by brake", rows)
+    page.holds(
+        "the torque of the strength never falls below that of switching",
+        all(float(r["torque of the gearbox [N m]"]) >= transient for r in rows),
+        why="transients may outpace the brake",
+        source="PROTEST 2010, section 7.2.2.2",
+    )
+    page.assume("yaw motors: largest torque", MOTOR, "N m", ASSUMED)
 
 
 def tower(page: Page) -> None:

@@ -1,13 +1,13 @@
 """A million unknowns in a thin tube and a slender shaft: what holds, and the memory of a factor."""
 
 import math
-import resource
 import time
 from collections.abc import Callable
 
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import peak_memory
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import multigrid, round_off, schwarz, solvers
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
@@ -107,7 +107,7 @@ def run(run: Run, page: Page) -> None:
         oval = bodies.oval_work(TUBE, 12)
     sizes = QUICK_SIZES if run.quick else SIZES
     rows = [solve(run, body, unknowns) for body in BODIES for unknowns in sizes]
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    peak = (peak_memory() or float("nan")) / 2**30
     for name, series in grouped(rows, "body"):
         check_solver(page, name, series)
     of = dict(grouped(rows, "body"))

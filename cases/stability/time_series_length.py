@@ -66,7 +66,7 @@ def measured(samples: int, way: str) -> Record:
         "way": way,
         "samples": samples,
         "time [s]": found["seconds"],
-        "memory [MiB]": (found["peak"] - found["before"]) / MIB,
+        "memory [MiB]": ((found["peak"] or math.nan) - (found["before"] or math.nan)) / MIB,
         "statistics": found["statistics"],
     }
 

@@ -66,6 +66,7 @@ from .subsurface import Exposure as Exposure
 from .subsurface import HardenedCase as HardenedCase
 from .subsurface import exposure as exposure
 from .subsurface import largest_shear as largest_shear
+from .subsurface import shear_at_depth as shear_at_depth
 from .subsurface import stresses_below_ellipse as stresses_below_ellipse
 from .subsurface import stresses_below_line as stresses_below_line
 from .tables import ReducedTable as ReducedTable

@@ -15,11 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing.contact import STEEL_NU
+from fe_drivetrain.bearing.contact import STEEL_NU, PointContact
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 _POINTS = 40
+_OVER, _TABLE = (0.1, 100.0), 200  # depths over the short half axis
 
 
 def stresses_below_ellipse(
@@ -232,3 +233,40 @@ def exposure(depths: Floats, stresses: Floats, race: HardenedCase) -> Exposure:
     places = [int(np.where(part, share, -1.0).argmax()) for part in (inside, ~inside)]
     shares, where = share[places], depths[places]
     return Exposure(float(shares[0]), float(shares[1]), float(where[0]), float(where[1]))
+
+
+def shear_at_depth(contact: PointContact, loads: ArrayLike, depth: float) -> Floats:
+    """Largest shear stress below the middle of a contact at one depth, over its load.
+
+    Half axes and pressure grow with the cube root of the load, so that the stress is the pressure
+    times one function of the depth over the half axis. Of a history of loads of the contact that
+    carries most, it is the history of stress at the end of a hardened case.
+
+    Parameters
+    ----------
+    contact : PointContact
+        Of ball and race.
+    loads : array_like, (n,)
+        From 0 on [N].
+    depth : float
+        Above zero [m].
+
+    Returns
+    -------
+    ndarray, (n,)
+        [Pa].
+
+    Raises
+    ------
+    InputError
+        The depth is not above zero.
+    """
+    if depth <= 0.0:
+        raise InputError(f"shear stress at a depth of {depth:g} m: give one above 0")
+    given = np.asarray(loads, dtype=np.float64)
+    a, b = contact.half_axes
+    over = np.geomspace(*_OVER, _TABLE)
+    shear = largest_shear(stresses_below_ellipse(over * b, (a, b), 1.0))
+    size = b * np.cbrt(np.maximum(given, (depth / (b * _OVER[1])) ** 3))
+    found = np.exp(np.interp(np.log(depth / size), np.log(over), np.log(shear)))
+    return np.asarray(np.where(given > 0.0, contact.pressure(given) * found, 0.0))

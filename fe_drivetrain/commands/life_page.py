@@ -18,11 +18,12 @@ from fe_drivetrain.commands.life_digest import (
 from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
 from fe_drivetrain.commands.loads_tables import write_tables
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.life.at_site import site_lives
 from fe_drivetrain.life.reference_life import reference_load
 from fe_drivetrain.life.roller_damage import KINDS, RINGS, LifeRules
+from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -166,6 +167,13 @@ def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Si
         row, ring = np.unravel_index(int(np.argmax(parts)), parts.shape)
         whole = parts.sum()
         words = f"Bearing {life.one.name} lives {_years(years['L10mr'])} {at} (L10mr"
+        band = _scatter(life)
+        if np.isfinite(years["L10mr"]):
+            page.found(f"L10mr of bearing {life.one.name} [years]", years["L10mr"], band)
+        if band is not None:
+            shown = value_with_band(page.answers[-1])
+            words = f"Bearing {life.one.name} lives {shown} {at} (L10mr, ± two standard errors of "
+            words += "files of the same wind"
         words += f"; L10r {_years(years['L10r'])}, L10 {_years(years['L10'])})"
         if whole:
             words += (
@@ -177,6 +185,27 @@ def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Si
             most = life.site.speeds[np.argmax(shares)]
             words += f", winds about {most:g} m/s {100 * shares.max():.0f} %"
         page.answer(words + ".")
+
+
+def _scatter(life: BearingLife) -> float | None:
+    """Two standard errors of L10mr over files of a wind [years]; None where one stands alone.
+
+    Each wind's mean rate of damage has the standard error s / sqrt(n) of its n files; those of all
+    winds, weighted by their time at the site, add up as squares.
+    """
+    site = life.site
+    if site is None:
+        return None
+    rates: dict[float, list[float]] = {}
+    for one in life.digests:
+        rate = one.damage.totals["L10mr"] / one.damage.seconds
+        rates.setdefault(_bin(one.wind), []).append(rate)
+    if min(map(len, rates.values())) < 2:
+        return None
+    each = [rates[float(speed)] for speed in site.speeds]
+    mean = float(site.shares @ [np.mean(one) for one in each])
+    errors = site.shares * [np.std(one, ddof=1) / np.sqrt(len(one)) for one in each]
+    return 2.0 * float(np.linalg.norm(errors)) / mean * site.years["L10mr"] if mean else None
 
 
 def _life_rows(found: Sequence[BearingLife]) -> list[Record]:

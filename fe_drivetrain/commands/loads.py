@@ -22,7 +22,7 @@ from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.run import results_text
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import scheduled_by
+from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 _KEPT = "files that are done are kept: run again with --resume"

@@ -8,6 +8,7 @@ from fe_drivetrain.commands.loads_digest import LOADS, POWER, UNITS, Options
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.histories.damage import FREQUENCY
+from fe_drivetrain.report.answer import value_with_band
 from fe_drivetrain.report.charts import heat_map, trace
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
@@ -23,6 +24,48 @@ def equivalent(
 ) -> Floats:
     """Damage-equivalent loads (c, s) of sums of n r^m over so many seconds, at a frequency [Hz]."""
     return np.asarray((damage / (frequency * seconds)) ** (1.0 / slopes))
+
+
+def answer_of_counts(page: Page, found: Together, options: Options) -> str:
+    """The equivalent tilting moment and torque, with what the residue leaves open.
+
+    Parameters
+    ----------
+    page : Page
+        Takes the values.
+    found : Together
+        Of all files.
+    options : Options
+        Slopes, and the rule for the residue.
+
+    Returns
+    -------
+    str
+        The first words of the answer; none where nothing varies.
+    """
+    assert found.damage is not None
+    slope, hertz = options.slopes[0], options.frequency
+    words = []
+    for name in ("My", "Mx"):
+        sums = found.damage[LOADS.index(name), 0], found.halves[LOADS.index(name), 0]
+        if not sums[0]:
+            continue
+        load, most = (
+            float(equivalent(np.array([[total]]), found.seconds, np.array([slope]), hertz)[0, 0])
+            for total in (sums[0], sums[0] + sums[1])
+        )
+        band = (most - load) / 1e3 if options.residue == "half" else None
+        quantity = f"equivalent load of {name}, slope {slope:g} [kN m]"
+        page.found(quantity, load / 1e3, band)
+        words.append(f"{value_with_band(page.answers[-1])} in {name}")
+    if not words:
+        return ""
+    open_ends = " (± what whole cycles in place of half ones would add)"
+    rule = open_ends if options.residue == "half" else ""
+    return (
+        f"These loads do the damage of a sine of {hertz:g} Hz with a range of "
+        f"{' and '.join(words)} at a slope of {slope:g}{rule}: "
+    )
 
 
 def _cycles(page: Page, found: Together, options: Options, rule: str) -> dict[str, list[Record]]:

@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 
 from fe_drivetrain.commands.loads_against import beside
-from fe_drivetrain.commands.loads_counts import counts
+from fe_drivetrain.commands.loads_counts import answer_of_counts, counts
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options
 from fe_drivetrain.commands.loads_faults import faults
 from fe_drivetrain.commands.loads_lifetime import Event, lifetime
@@ -28,7 +28,7 @@ from fe_drivetrain.commands.loads_together import WIND_BIN, Together, windows_ta
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.histories.cycles import Cycles
 from fe_drivetrain.histories.sites import Site
@@ -134,8 +134,9 @@ def loaded(
             f"; cycles of a range below {100 * options.gate:g} % of the largest of the channel in "
             "its file are left out"
         )
+    said = answer_of_counts(page, found, options)
     page.answer(
-        f"{len(files)} file{'s' * (len(files) > 1)}, {found.samples:,} samples over "
+        f"{said}{len(files)} file{'s' * (len(files) > 1)}, {found.samples:,} samples over "
         f"{found.seconds:,.6g} s; {rule}."
     )
     tables: dict[str, list[Record]] = {"files": found.files}

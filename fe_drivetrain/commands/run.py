@@ -16,7 +16,7 @@ from fe_drivetrain.commands.progress import show_steps
 from fe_drivetrain.commands.settings import CaseSettings, parse_settings
 from fe_drivetrain.commands.terminal import FAILED, KEPT, MISTAKE, PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import scheduled_by
+from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from fe_drivetrain.commands.settings import (
 )
 from fe_drivetrain.commands.terminal import FAILED, PASSED, as_typed, guarded, write
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import scheduled_by
+from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:

@@ -16,6 +16,7 @@ from fe_drivetrain.procedure.failure_modes import Catalogue
 from fe_drivetrain.procedure.iteration_log import Entry, procedure_of
 from fe_drivetrain.procedure.project import Project
 from fe_drivetrain.procedure.sensors import sampling_rates
+from fe_drivetrain.procedure.signatures import content_digest
 from fe_drivetrain.procedure.steps import STEPS
 from fe_drivetrain.report.charts import heat_map
 from fe_drivetrain.report.number_text import formatted
@@ -91,6 +92,7 @@ def show_project(
             page.add(evidence_table(state.evidence, reports, folder))
         if state.lacks:
             page.table("What it lacks", [[text] for text in state.lacks], ["step is not complete"])
+    _show_signatures(page, standing)
     _show_log(page, standing.project.subject, log)
     page.data("project", standing.project.model_dump(mode="json"))
     page.data(
@@ -369,6 +371,42 @@ def _comparison(page: Page, standing: Standing) -> None:
             for v in standing.verdicts
         ],
     )
+
+
+def _show_signatures(page: Page, standing: Standing) -> None:
+    """Who signed, and whether it is this that was signed; the digest, where it can be signed."""
+    digest = content_digest(standing.project, standing.states, standing.verdicts)
+    complete = all(state.complete for state in standing.states)
+    signed = standing.project.signed
+    if complete:
+        page.data("digest", digest)
+    for one in signed:
+        page.holds(
+            f"signature of {one.name}: of these six steps, complete",
+            complete and one.digest == digest,
+            why="decisions, evidence or comparisons have changed, or a step is not complete: sign "
+            "again",
+            source="digest of decisions, evidence and comparisons",
+        )
+    page.section("Signatures")
+    if signed:
+        page.table(
+            "Signed by",
+            [
+                {
+                    "name": one.name,
+                    "role": one.role,
+                    "date": one.date,
+                    "digest": one.digest,
+                    "holds": "yes" if complete and one.digest == digest else "no",
+                }
+                for one in signed
+            ],
+        )
+    if not complete:
+        page.text("It cannot be signed: not all six steps are complete.")
+    elif not any(one.digest == digest for one in signed):
+        page.text(f"To sign it, state the digest `{digest}` under signed in the project.")
 
 
 def _show_log(page: Page, subject: str, log: Sequence[Entry]) -> None:

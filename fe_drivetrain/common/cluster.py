@@ -8,6 +8,7 @@ digit wherever a job is done.
 
 from __future__ import annotations
 
+import logging
 import os
 import pickle
 import sys
@@ -88,6 +89,7 @@ def connected(address: str) -> Iterator[Client]:
         raise MissingToolError(
             "--scheduler needs Dask: install it with pip install 'fe-drivetrain[cluster]'"
         ) from error
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what goes wrong is raised
     try:
         client = Client(address, timeout=_CONNECT, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -1,6 +1,7 @@
-"""A fresh Python interpreter that imports the same package as this process."""
+"""Other Python interpreters: fresh ones that import what this process does, and the system's."""
 
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -44,3 +45,9 @@ def run_python(
         timeout=timeout,
         check=False,
     )
+
+
+def interpreters() -> list[str]:
+    """This Python, and the system's own, where packages of the distribution are."""
+    system = shutil.which("python3", path=os.defpath)
+    return [sys.executable, *([system] if system else [])]

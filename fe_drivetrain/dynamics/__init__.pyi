@@ -33,6 +33,7 @@ from .equations import steady as steady
 from .equations import summed as summed
 from .equations import varying as varying
 from .equations import wave_table as wave_table
+from .flexible import ElasticHousing as ElasticHousing
 from .flexible import Flexible as Flexible
 from .flexible import Housing as Housing
 from .gear_pairs import MeshStress as MeshStress
@@ -85,10 +86,8 @@ from .planetary import excited_motion as excited_motion
 from .planetary import springs_of as springs_of
 from .response import Crossing as Crossing
 from .response import MeshResponse as MeshResponse
-from .response import absolute_sun_orders as absolute_sun_orders
 from .response import crossings as crossings
 from .response import frequency_response as frequency_response
-from .response import mesh_orders as mesh_orders
 from .response import mesh_response as mesh_response
 from .response import modal_response as modal_response
 from .response import speed_diagram as speed_diagram
@@ -136,3 +135,8 @@ from .tables import Machine as Machine
 from .tables import library_machine as library_machine
 from .tables import parse_machine as parse_machine
 from .tables import read_machine as read_machine
+from .travelling import Travelled as Travelled
+from .travelling import Travelling as Travelling
+from .travelling import integrate_travelling as integrate_travelling
+from .travelling import travelling as travelling
+from .travelling import travelling_of as travelling_of

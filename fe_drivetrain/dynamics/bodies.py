@@ -73,12 +73,15 @@ class Superelement:
         (6 k, 6 k) [N/m, N, N m/rad].
     mass : Floats or None
         (6 k, 6 k) [kg, kg m, kg m^2]; none where it has no mass.
+    weight : Floats or None
+        (6 k, 3) forces and moments of its mass under a unit acceleration along x, y, z.
     """
 
     name: str
     bodies: tuple[str, ...]
     stiffness: Floats
     mass: Floats | None = field(default=None)
+    weight: Floats | None = field(default=None)
 
 
 def assemble(
@@ -139,12 +142,14 @@ def assemble(
         Z[move, move] = f**2 * body.mass * across
         G[tilt, tilt] = (2 * f * J - s) * turned
         Z[tilt, tilt] = (f**2 * J - f * s) * across
-    extra = np.zeros_like(M)
+    extra, weight = np.zeros_like(M), np.zeros((len(M), 3))
     for element in superelements:
         at = np.concatenate([6 * number[name] + np.arange(6) for name in element.bodies])
         extra[np.ix_(at, at)] += element.stiffness
         if element.mass is not None:
             M[np.ix_(at, at)] += element.mass
+        if element.weight is not None:
+            weight[at] += element.weight
     rows = np.zeros((len(springs), 6 * len(bodies)))
     for i, spring in enumerate(springs):
         for name, part_row in spring.by.items():
@@ -162,6 +167,7 @@ def assemble(
         tuple(names),
         T,
         np.array([body.mass for body in bodies]),
+        np.asarray(T.T @ weight),
     )
 
 

@@ -1,8 +1,10 @@
-"""Flexible parts of a machine: carriers and a housing that are condensed elsewhere.
+"""Flexible parts of a machine: carriers, shafts and a housing that are condensed elsewhere.
 
 A carrier comes as a free body at its hub and the middles of its pins, of beams or of finite
-elements (`fe_drivetrain.fidelity.component_frames`, `component_solid`); a housing as the spring
-that it is, on its supports, at the axis of its ring.
+elements (`fe_drivetrain.fidelity.component_frames`, `component_solid`); a shaft as one at its ends
+and its bearings (`fe_drivetrain.fidelity.condensed_shaft`: beam, meridian or solid); a housing on
+its supports as the spring that it is at the axis of its ring, or as a superelement at its ring and
+bearings. The rim of a ring bends by its harmonics.
 """
 
 from collections.abc import Mapping
@@ -10,11 +12,13 @@ from dataclasses import dataclass, field
 from math import cos, sin
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.dynamics.bodies import Body, Superelement
+from fe_drivetrain.dynamics.elastic_ring import Rim
 from fe_drivetrain.dynamics.planetary import PlanetarySet
 from fe_drivetrain.dynamics.springs import Place
 from fe_drivetrain.solve.condensation import Condensed
@@ -45,6 +49,36 @@ class Housing:
 
 
 @dataclass(frozen=True)
+class ElasticHousing:
+    """A housing that gives between its ring and its bearings, on its supports.
+
+    Attributes
+    ----------
+    points : tuple[str, ...]
+        Names of bearings of the machine, and "stage 1 ring" and so on; what has no point of its own
+        is held at the nearest one, as if rigidly joined to it.
+    positions : Floats
+        (p, 3) of the points [m].
+    stiffness : Floats
+        (6 p, 6 p) with its supports [N/m, N, N m/rad].
+    mass : Floats or None
+        (6 p, 6 p) [kg, kg m, kg m^2].
+    """
+
+    points: tuple[str, ...]
+    positions: Floats
+    stiffness: Floats
+    mass: Floats | None = None
+
+    def holds(self, name: str, at: ArrayLike) -> Place:
+        """What holds a ring or bearing of a name at a place (3,) [m]."""
+        away = np.linalg.norm(self.positions - np.asarray(at, dtype=float), axis=1)
+        k = self.points.index(name) if name in self.points else int(away.argmin())
+        x, y, z = self.positions[k]
+        return Place(f"housing at {self.points[k]}", (float(x), float(y), float(z)))
+
+
+@dataclass(frozen=True)
 class Flexible:
     """What of a machine gives beside shafts and bearings.
 
@@ -53,12 +87,20 @@ class Flexible:
     carriers : Mapping[int, Condensed]
         By the number of the planetary stage, from 1: a free body with the points "hub", "pin_1" and
         so on.
-    housing : Housing or None
+    housing : Housing or ElasticHousing or None
         That rings and bearings are in; none where they are in the ground.
+    shafts : Mapping[str, Condensed]
+        By the name of a shaft, in place of its beam: a free body with its points in the order of x,
+        the first and the last at its ends, others at its bearings.
+    rims : Mapping[int, tuple[Rim, tuple[int, ...]]]
+        By the number of the planetary stage: the rim of its ring and the harmonics that it bends
+        in, from 2 on.
     """
 
     carriers: Mapping[int, Condensed] = field(default_factory=dict)
-    housing: Housing | None = None
+    housing: Housing | ElasticHousing | None = None
+    shafts: Mapping[str, Condensed] = field(default_factory=dict)
+    rims: Mapping[int, tuple[Rim, tuple[int, ...]]] = field(default_factory=dict)
 
 
 def carrier_element(
@@ -118,7 +160,94 @@ def carrier_element(
     return bodies, Superelement(f"{stage.name} carrier", joined, (K + K.T) / 2), pins
 
 
-def housing_body(housing: Housing) -> tuple[Body, Superelement]:
-    """The housing's body, and its spring to the ground."""
+def housing_bodies(housing: Housing | ElasticHousing) -> tuple[list[Body], Superelement]:
+    """The housing's body, or those of its points, and its spring to the ground."""
+    if isinstance(housing, ElasticHousing):
+        places = [
+            housing.holds(n, p) for n, p in zip(housing.points, housing.positions, strict=True)
+        ]
+        names = tuple(place.body for place in places)
+        K = np.asarray(housing.stiffness, dtype=float)
+        bodies = [Body(place.body, place.centre) for place in places]
+        return bodies, Superelement("housing", names, K, housing.mass)
     body = Body("housing", housing.position, housing.mass, housing.polar, housing.transverse)
-    return body, Superelement("housing", ("housing",), np.asarray(housing.stiffness, dtype=float))
+    K = np.asarray(housing.stiffness, dtype=float)
+    return [body], Superelement("housing", ("housing",), K)
+
+
+def held_by(housing: Housing | ElasticHousing | None, name: str, at: ArrayLike) -> Place | None:
+    """What holds a ring or bearing of a name at a place (3,): the housing, or none, the ground."""
+    if isinstance(housing, ElasticHousing):
+        return housing.holds(name, at)
+    return None if housing is None else Place("housing", housing.position)
+
+
+def shaft_element(
+    name: str,
+    body: Condensed,
+    begin: tuple[float, float, float],
+    length: float,
+    ends: tuple[Place, Place],
+    with_mass: bool,
+) -> tuple[list[Place], Superelement]:
+    """A shaft's points, and what joins them.
+
+    Parameters
+    ----------
+    name : str
+        Of the shaft.
+    body : Condensed
+        Free, at its ends and bearings.
+    begin : tuple of float
+        Where the shaft begins [m].
+    length : float
+        Of the shaft [m].
+    ends : tuple of Place
+        Bodies that its ends are fixed to.
+    with_mass : bool
+        Whether its mass counts.
+
+    Returns
+    -------
+    points : list of Place
+        In the order of x, those of both ends among them.
+    element : Superelement
+
+    Raises
+    ------
+    InputError
+        Its points are not on its axis, or not as far apart as it is long.
+    """
+    order = np.argsort(body.positions[:, 0])
+    own = body.positions[order]
+    off = max(abs(float(np.ptp(own[:, 0])) - length), float(np.abs(own[:, 1:]).max()))
+    if off > PLACED * length:
+        raise InputError(
+            f"shaft {name!r}: its condensed body is {np.ptp(own[:, 0]):.6g} m long between its "
+            f"outermost points, or these are off its axis, but it must be {length:.6g} m long: "
+            "condense it at its ends and bearings"
+        )
+    places = own - own[0] + np.asarray(begin)
+    inner = [
+        Place(f"{name} node {i}", (float(p[0]), float(p[1]), float(p[2])))
+        for i, p in enumerate(places[1:-1], start=1)
+    ]
+    points = [ends[0], *inner, ends[1]]
+    rows = np.concatenate([6 * k + np.arange(6) for k in order])
+    arm = np.zeros((6 * len(points),) * 2)
+    for k, (point, place) in enumerate(zip(points, places, strict=True)):
+        part = slice(6 * k, 6 * k + 6)
+        arm[part, part] = wrench_transport(place - np.asarray(point.centre))
+
+    def moved(matrix: Floats) -> Floats:
+        found = arm @ matrix[np.ix_(rows, rows)] @ arm.T
+        return np.asarray((found + found.T) / 2)
+
+    heavy = with_mass and body.mass is not None
+    return points, Superelement(
+        name,
+        tuple(point.body for point in points),
+        moved(body.stiffness),
+        moved(np.asarray(body.mass)) if heavy else None,
+        np.asarray(arm @ body.gravity[rows]) if heavy else None,
+    )

@@ -4,7 +4,8 @@ All levels are of one table, with the same inertias, meshes and bearings, and of
 that a level differs from the one below by nothing but the degrees of freedom that it lets move.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from itertools import pairwise
 from math import cos, pi, radians, sin
@@ -14,7 +15,15 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import ALL, Body, Superelement, assemble
-from fe_drivetrain.dynamics.flexible import Flexible, carrier_element, housing_body
+from fe_drivetrain.dynamics.elastic_ring import Rim, with_rim
+from fe_drivetrain.dynamics.flexible import (
+    PLACED,
+    Flexible,
+    carrier_element,
+    held_by,
+    housing_bodies,
+    shaft_element,
+)
 from fe_drivetrain.dynamics.planetary import (
     Inertias,
     PinBearing,
@@ -32,6 +41,7 @@ from fe_drivetrain.dynamics.springs import (
 )
 from fe_drivetrain.dynamics.system import System, without_massless
 from fe_drivetrain.dynamics.tables import STEEL, Machine, ParallelData, PlanetaryData, ShaftData
+from fe_drivetrain.solve.condensation import Condensed
 from fe_drivetrain.torsion.system import Element, Inertia, Torsional
 
 TURNS = frozenset({"rx"})
@@ -62,19 +72,22 @@ class Assembly:
     seats : dict[str, tuple[str, tuple[float, float, float]]]
         Body that each bearing holds, and its place [m].
     superelements : list[Superelement]
-        Of flexible carriers and of the housing.
+        Of flexible carriers, of shafts and of the housing.
+    holders : dict[str, Place | None]
+        What each bearing is held by; none is the ground.
     """
 
     bodies: list[Body]
     springs: list[Spring]
     seats: dict[str, tuple[str, tuple[float, float, float]]]
     superelements: list[Superelement]
+    holders: dict[str, Place | None] = field(default_factory=dict)
 
 
 def machine_system(
     machine: Machine,
     level: Level = Level.RIGID,
-    azimuth: float = 0.0,
+    azimuth: float | Mapping[int, float] = 0.0,
     elements: int = 6,
     held_generator: bool = False,
     flexible: Flexible | None = None,
@@ -91,8 +104,9 @@ def machine_system(
         Its table.
     level : Level
         What may move.
-    azimuth : float
-        Of the rotor's shaft [rad]; carriers behind it turn at their own ratios.
+    azimuth : float or mapping of int to float
+        Of the rotor's shaft [rad], carriers behind it turning at their own ratios; or of carriers
+        by the number of their stage, from 1, others being at 0.
     elements : int
         Of each flexible shaft, beside the stations of its bearings.
     held_generator : bool
@@ -107,7 +121,7 @@ def machine_system(
 def assembly(
     machine: Machine,
     level: Level = Level.RIGID,
-    azimuth: float = 0.0,
+    azimuth: float | Mapping[int, float] = 0.0,
     elements: int = 6,
     held_generator: bool = False,
     flexible: Flexible | None = None,
@@ -118,12 +132,11 @@ def assembly(
     bodies: list[Body] = []
     springs: list[Spring] = []
     superelements: list[Superelement] = []
-    ground: Place | None = None
-    if gives.housing is not None and level is not Level.TORSIONAL:
-        housing, element = housing_body(gives.housing)
-        bodies.append(housing)
+    housing = None if level is Level.TORSIONAL else gives.housing
+    if housing is not None:
+        of_housing, element = housing_bodies(housing)
+        bodies += of_housing
         superelements.append(element)
-        ground = Place(housing.name, housing.position)
     rotor = machine.rotor
     across = rotor.inertia / 2 if rotor.transverse is None else rotor.transverse
     bodies.append(
@@ -131,7 +144,12 @@ def assembly(
     )
     driving, ends = "rotor", []
     for number, stage in enumerate(machine.stages, start=1):
-        name, turned = f"stage {number}", azimuth * machine.speeds[number - 1]
+        name = f"stage {number}"
+        turned = (
+            azimuth.get(number, 0.0)
+            if isinstance(azimuth, Mapping)
+            else azimuth * machine.speeds[number - 1]
+        )
         if isinstance(stage, PlanetaryData):
             carrier = None if level is Level.TORSIONAL else gives.carriers.get(number)
             built = planetary_set(machine, number, free, turned)
@@ -139,7 +157,9 @@ def assembly(
                 pins, element, places = carrier_element(carrier, built, f"{name} carrier")
                 built = replace(built, pins=places)
                 superelements.append(element)
-            made, rows = _planetary(machine, stage, number, built, ground)
+            ground = held_by(housing, f"{name} ring", built.position)
+            rim = None if level is Level.TORSIONAL else gives.rims.get(number)
+            made, rows = _planetary(machine, stage, number, built, ground, rim)
             if carrier is not None:
                 made += pins
             front, rear = f"{name} carrier", f"{name} sun"
@@ -170,18 +190,30 @@ def assembly(
         grid = (0, 0, 0, own.stiffness, 0, 0)
         springs += bushing("grid", Place("generator", at), None, at, grid)
     seats: dict[str, tuple[str, tuple[float, float, float]]] = {}
-    for k in range(len(machine.shafts)):
+    solid = {} if level is Level.TORSIONAL else gives.shafts
+    for name in solid.keys() - {shaft.name for shaft in machine.shafts if shaft.kind == "shaft"}:
+        raise InputError(
+            f"no shaft {name!r} that bends is in {machine.title!r}: name another, or leave it out"
+        )
+    for k, shaft in enumerate(machine.shafts):
+        if shaft.name in solid:
+            bodies, element = _solid_shaft(machine, k, ends[k], bodies, solid[shaft.name], seats)
+            superelements.append(element)
+            continue
         bodies, rows = _shaft(machine, k, ends[k], bodies, level, elements, seats)
         springs += rows
     centres = {body.name: body.position for body in bodies}
     shafts = {shaft.name for shaft in machine.shafts}
+    holders: dict[str, Place | None] = {}
     for bearing in machine.bearings:
         if bearing.holds not in shafts:
             c = centres[bearing.holds]
             seats[bearing.name] = (bearing.holds, (c[0] + bearing.at, c[1], c[2]))
         body, at = seats[bearing.name]
-        springs += bushing(bearing.name, Place(body, centres[body]), ground, at, bearing.stiffness)
-    return Assembly(bodies, springs, seats, superelements)
+        holders[bearing.name] = held_by(housing, bearing.name, at)
+        place = Place(body, centres[body])
+        springs += bushing(bearing.name, place, holders[bearing.name], at, bearing.stiffness)
+    return Assembly(bodies, springs, seats, superelements, holders)
 
 
 def planetary_set(
@@ -241,6 +273,7 @@ def _planetary(
     number: int,
     built: PlanetarySet,
     ground: Place | None,
+    rim: tuple[Rim, tuple[int, ...]] | None,
 ) -> tuple[list[Body], list[Spring]]:
     """The stage's bodies and springs."""
     bodies, torsional = [], built.free == TURNS
@@ -253,6 +286,9 @@ def _planetary(
             moved = replace(body, tied_to=f"stage {number} carrier")
         bodies.append(moved)
     springs = [s for s in springs_of(built) if not (torsional and " pin " in s.name)]
+    if rim is not None:
+        more, springs = with_rim(built, springs, *rim)
+        bodies += more
     if stage.ring_support is not None and not torsional:
         place = Place(f"stage {number} ring", built.position)
         springs += bushing(
@@ -342,6 +378,43 @@ def _shaft(
         nearest = min(range(len(stations)), key=lambda i: abs(stations[i] - bearing.at))
         seats[bearing.name] = (names[nearest], (where, y, z))
     return bodies, springs
+
+
+def _solid_shaft(
+    machine: Machine,
+    k: int,
+    ends: tuple[str, str],
+    bodies: list[Body],
+    body: Condensed,
+    seats: dict[str, tuple[str, tuple[float, float, float]]],
+) -> tuple[list[Body], Superelement]:
+    """A condensed shaft's points, what joins them, and what its bearings hold."""
+    shaft, begin = machine.shafts[k], machine.axes[k]
+    centres = {one.name: one.position for one in bodies}
+    first, last = (Place(name, centres[name]) for name in ends)
+    points, element = shaft_element(
+        shaft.name, body, begin, shaft.length, (first, last), shaft.has_mass
+    )
+    speed = machine.speeds[k]
+    bodies = [*bodies, *(Body(p.body, p.centre, speed=speed) for p in points[1:-1])]
+    along = np.sort(body.positions[:, 0]) - body.positions[:, 0].min()
+    if shaft.has_mass and element.mass is None:
+        index = {one.name: i for i, one in enumerate(bodies)}
+        for pair, length in zip(pairwise(points), np.diff(along), strict=True):
+            for point in pair:
+                place = index[point.body]
+                bodies[place] = _heavier(bodies[place], shaft, float(length))
+    for bearing in machine.bearings:
+        if bearing.holds == shaft.name:
+            nearest = int(np.abs(along - bearing.at).argmin())
+            if abs(along[nearest] - bearing.at) > PLACED * shaft.length:
+                raise InputError(
+                    f"shaft {shaft.name!r}: no point of its condensed body is at the bearing "
+                    f"{bearing.name!r}, {bearing.at:g} m from its begin: condense it there, too"
+                )
+            x, y, z = begin
+            seats[bearing.name] = (points[nearest].body, (x + bearing.at, y, z))
+    return bodies, element
 
 
 def _element(

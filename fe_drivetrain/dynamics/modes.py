@@ -11,8 +11,11 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.system import System
+from fe_drivetrain.torsion.system import Oscillations
 
 Complex = NDArray[np.complex128]
+
+_DIRECTIONS = {"ux", "uy", "uz", "rx", "ry", "rz"}
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,8 @@ class SystemModes:
     ----------
     names : tuple[str, ...]
         (n,) of the degrees of freedom.
+    bodies, springs : tuple[str, ...]
+        (b,) and (m,), in the order of the shares.
     frequencies : Floats
         (n,) ascending [Hz]; exactly 0 where the system moves freely.
     shapes : Floats
@@ -36,10 +41,29 @@ class SystemModes:
     """
 
     names: tuple[str, ...]
+    bodies: tuple[str, ...]
+    springs: tuple[str, ...]
     frequencies: Floats
     shapes: Floats
     strain_shares: Floats
     kinetic_shares: Floats
+
+    @property
+    def energy_shares(self) -> dict[str, Floats]:
+        """By name of each body (kinetic) and spring (strain), (n,) shares in each mode.
+
+        Slices of a mesh are taken together, and springs of one place: "LSS ux" is also in "LSS".
+        """
+        found = dict(zip(self.bodies, self.kinetic_shares, strict=True))
+        for name, shares in zip(self.springs, self.strain_shares, strict=True):
+            mesh, sliced, _ = name.partition(" slice ")
+            place, _, direction = name.rpartition(" ")
+            under = [mesh] if sliced else [name]
+            if not sliced and direction in _DIRECTIONS and place not in self.bodies:
+                under.append(place)
+            for key in under:
+                found[key] = found[key] + shares if key in found else shares
+        return found
 
 
 def system_modes(system: System) -> SystemModes:
@@ -79,7 +103,15 @@ def system_modes(system: System) -> SystemModes:
     energy = shapes * (system.mass @ shapes)
     kinetic = np.zeros((len(system.bodies), n))
     np.add.at(kinetic, system.body_of, energy)
-    return SystemModes(system.names, omega / (2 * np.pi), shapes, strain, kinetic)
+    return SystemModes(
+        system.names,
+        system.bodies,
+        system.spring_names,
+        omega / (2 * np.pi),
+        shapes,
+        strain,
+        kinetic,
+    )
 
 
 def _mass_root(system: System) -> Floats:
@@ -96,32 +128,19 @@ def _mass_root(system: System) -> Floats:
 
 
 @dataclass(frozen=True)
-class TurningModes:
+class TurningModes(Oscillations):
     """Modes of a damped or turning system.
 
     Attributes
     ----------
-    eigenvalues : Complex
-        (k,) with imaginary part above zero, ascending by it [1/s].
     shapes : Complex
         (n, k) each of unit length.
     growing : Floats
         (j,) real eigenvalues above zero, of what diverges without oscillating [1/s].
     """
 
-    eigenvalues: Complex
     shapes: Complex
     growing: Floats
-
-    @property
-    def frequencies(self) -> Floats:
-        """(k,) Im / 2 pi [Hz]."""
-        return np.asarray(self.eigenvalues.imag / (2 * np.pi))
-
-    @property
-    def ratios(self) -> Floats:
-        """(k,) damping ratios, -Re / |.|."""
-        return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
 
 
 def turning_modes(system: System, speed: float = 0.0, damped: bool = True) -> TurningModes:

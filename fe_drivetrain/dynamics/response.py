@@ -12,6 +12,7 @@ from fe_drivetrain.dynamics.mesh_errors import harmonic_of
 from fe_drivetrain.dynamics.meshing import Meshing
 from fe_drivetrain.dynamics.modes import Complex, SystemModes, turning_modes
 from fe_drivetrain.dynamics.system import System, springs_named
+from fe_drivetrain.torsion.orders import crossing_speed
 
 
 def frequency_response(
@@ -212,37 +213,9 @@ def crossings(
     for name, order in orders.items():
         for harmonic in harmonics:
             for mode, frequency in enumerate(np.asarray(frequencies, dtype=float)):
-                speed = 60 * frequency / (order * harmonic)
+                speed = crossing_speed(float(frequency), order * harmonic)
                 if speeds[0] <= speed <= speeds[1]:
-                    found.append(Crossing(name, harmonic, float(frequency), float(speed), mode))
-    return found
-
-
-def mesh_orders(stages: Iterable[tuple[str, tuple[int, int]]]) -> dict[str, float]:
-    """Mesh frequencies over the rotor's, of stages from the rotor on.
-
-    A planetary stage with its ring standing has z_ring times the speed of its carrier, a parallel
-    one z_gear times that of its gear. (Al-Hamadani 2018, Table 4.8, has the sun's teeth times its
-    absolute speed, z_ring + z_sun, which counts the turning of the carrier too.)
-
-    Parameters
-    ----------
-    stages : iterable of (str, (int, int))
-        "planetary" and the teeth of ring and sun, or "parallel" and those of gear and pinion.
-    """
-    found, speed = {}, 1.0
-    for number, (kind, (large, small)) in enumerate(stages, start=1):
-        found[f"stage {number}"] = large * speed
-        speed *= 1 + large / small if kind == "planetary" else large / small
-    return found
-
-
-def absolute_sun_orders(stages: Iterable[tuple[str, tuple[int, int]]]) -> dict[str, float]:
-    """What Table 4.8 of Al-Hamadani 2018 prints: of planetary stages, z_ring + z_sun; wrong."""
-    found, speed = {}, 1.0
-    for number, (kind, (large, small)) in enumerate(stages, start=1):
-        found[f"stage {number}"] = (large + small if kind == "planetary" else large) * speed
-        speed *= 1 + large / small if kind == "planetary" else large / small
+                    found.append(Crossing(name, harmonic, float(frequency), speed, mode))
     return found
 
 

@@ -162,8 +162,7 @@ def machine_seat(found: Assembly, name: str, bearing: Bearing) -> Seat:
         raise InputError(f"no bearing {name!r}: use one of {', '.join(found.seats)}")
     body, at = found.seats[name]
     centres = {b.name: b.position for b in found.bodies}
-    outer = Place("housing", centres["housing"]) if "housing" in centres else None
-    return seat(name, bearing, Place(body, centres[body]), outer, at)
+    return seat(name, bearing, Place(body, centres[body]), found.holders[name], at)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,93 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.equations import Equations
 
 
+@dataclass(frozen=True)
+class SpringsAt:
+    """Forces of springs with their dampers at a place, derivatives and powers; each (m,).
+
+    Attributes
+    ----------
+    elastic, resisting : Floats
+        Of the spring, and of its damper and machine, along its row [N, N m].
+    stiff, damped : Floats
+        Derivatives by the elongation and by its rate.
+    mixed, own, on_phase : Floats
+        Derivatives by the phase of the force along the row, and of that on the phase; and that
+        force, with the error's share.
+    followed : Floats
+        Derivative of the damper's force by the phase, at a constant rate of it.
+    energy, lost, clock : Floats
+        Stored [J]; power taken out, and put in by time alone [W].
+    """
+
+    elastic: Floats
+    resisting: Floats
+    stiff: Floats
+    damped: Floats
+    mixed: Floats
+    own: Floats
+    on_phase: Floats
+    followed: Floats
+    energy: Floats
+    lost: Floats
+    clock: Floats
+
+    @property
+    def along(self) -> Floats:
+        """(m,) whole force along the row."""
+        return np.asarray(self.elastic + self.resisting)
+
+
+def springs_at(
+    equations: Equations, t: float, q: Floats, velocity: Floats, drift: Floats | float = 0.0
+) -> SpringsAt:
+    """All springs at a place.
+
+    Parameters
+    ----------
+    equations : Equations
+        Whose springs.
+    t : float
+        Time [s].
+    q, velocity : Floats
+        (n,).
+    drift : Floats or float
+        (m,) rate of the elongations at constant displacements, of rows that turn.
+    """
+    s = equations.springs
+    factor, slope, bend = waves_at(equations, t, q)
+    e, e1, e2 = errors_at(equations, t, q)
+    turning = s.frequency + s.turns @ velocity
+    x, rate = s.rows @ q - s.offset - e, s.rows @ velocity + drift
+    high, low = x > s.upper, x < s.lower
+    both = s.lower == s.upper
+    side = np.where(both, np.abs(x), np.where(high, x - s.upper, np.where(low, s.lower - x, 0.0)))
+    sign = np.where(both, np.where(x < 0.0, -1.0, 1.0), np.where(high, 1.0, -1.0))
+    touches = (both | high | low).astype(float)
+    first = touches * sign * side**s.exponent
+    second = touches * s.exponent * side ** (s.exponent - 1.0)
+    phi = touches * side ** (s.exponent + 1.0) / (s.exponent + 1.0)
+    k, c = s.stiffness, touches * s.damping
+    machine = np.divide(s.power, s.speed + rate, out=np.zeros(len(k)), where=s.power != 0.0)
+    elastic, resisting = k * factor * first, c * (rate - e1 * turning) + machine
+    along, followed = elastic + resisting, c * e2 * turning
+    own = k * (bend * phi - 2.0 * slope * first * e1 + factor * second * e1**2)
+    slowed = np.divide(machine, s.speed + rate, out=np.zeros(len(k)), where=s.power != 0.0)
+    return SpringsAt(
+        elastic,
+        resisting,
+        k * factor * second,
+        c - slowed,
+        k * (slope * first - factor * second * e1),
+        own + followed * e1 - along * e2,
+        k * slope * phi - along * e1,
+        followed,
+        k * factor * phi,
+        resisting * (rate - e1 * turning),
+        s.frequency * (k * slope * phi - along * e1) + along * drift,
+    )
+
+
 def restoring(
     equations: Equations, t: float, q: Floats, velocity: Floats, driven: bool = True
 ) -> tuple[Floats, Floats]:
@@ -36,33 +123,22 @@ def restoring(
     tangent : Floats
         (n, n), at constant velocity.
     """
+    return gathered(equations, springs_at(equations, t, q, velocity), q, velocity, driven)
+
+
+def gathered(
+    equations: Equations, at: SpringsAt, q: Floats, velocity: Floats, driven: bool = True
+) -> tuple[Floats, Floats]:
+    """Forces (n,) and tangent (n, n) of springs whose own are known; as `restoring`."""
     s = equations.springs
-    factor, slope, bend = waves_at(equations, t, q)
-    e, e1, e2 = errors_at(equations, t, q)
-    turning = s.frequency + s.turns @ velocity
-    x, rate = s.rows @ q - s.offset - e, s.rows @ velocity
-    high, low = x > s.upper, x < s.lower
-    both = s.lower == s.upper
-    side = np.where(both, np.abs(x), np.where(high, x - s.upper, np.where(low, s.lower - x, 0.0)))
-    sign = np.where(both, np.where(x < 0.0, -1.0, 1.0), np.where(high, 1.0, -1.0))
-    touches = (both | high | low).astype(float)
-    first = touches * sign * side**s.exponent
-    second = touches * s.exponent * side ** (s.exponent - 1.0)
-    phi = touches * side ** (s.exponent + 1.0) / (s.exponent + 1.0)
-    k = s.stiffness
-    machine = np.divide(s.power, s.speed + rate, out=np.zeros(len(k)), where=s.power != 0.0)
-    c = touches * s.damping
-    along = k * factor * first + c * (rate - e1 * turning) + machine
-    force = s.rows.T @ along + equations.extra @ q + equations.damping @ velocity
-    tangent = s.rows.T @ ((k * factor * second)[:, None] * s.rows) + equations.extra
-    mixed = s.rows.T @ ((k * (slope * first - factor * second * e1))[:, None] * s.turns)
-    followed = c * e2 * turning
-    tangent = tangent + mixed - s.rows.T @ (followed[:, None] * s.turns)
-    if driven:
-        force = force + s.turns.T @ (k * slope * phi - along * e1)
-        own = k * (bend * phi - 2.0 * slope * first * e1 + factor * second * e1**2)
-        own = own + followed * e1 - along * e2
-        tangent = tangent + mixed.T + s.turns.T @ (own[:, None] * s.turns)
+    force = s.rows.T @ at.along + equations.extra @ q + equations.damping @ velocity
+    tangent = s.rows.T @ (at.stiff[:, None] * s.rows) + equations.extra
+    if s.turns.any():
+        mixed = s.rows.T @ (at.mixed[:, None] * s.turns)
+        tangent = tangent + mixed - s.rows.T @ (at.followed[:, None] * s.turns)
+        if driven:
+            force = force + s.turns.T @ at.on_phase
+            tangent = tangent + mixed.T + s.turns.T @ (at.own[:, None] * s.turns)
     return np.asarray(force), np.asarray(tangent)
 
 

@@ -72,6 +72,8 @@ class System:
         (6 b, n) motions of all bodies by the degrees of freedom.
     body_mass : Floats
         (b,) [kg].
+    weight : Floats
+        (n, 3) load of superelements under a unit acceleration along x, y, z.
     unchangeable : tuple[str, ...]
         Springs by whose stiffness motions without mass have been eliminated.
     """
@@ -88,6 +90,7 @@ class System:
     bodies: tuple[str, ...]
     expansion: Floats
     body_mass: Floats
+    weight: Floats
     unchangeable: tuple[str, ...] = ()
 
     @property
@@ -163,10 +166,10 @@ class System:
         return np.asarray(self.expansion[self._rows_of(body)].T @ np.asarray(wrench, dtype=float))
 
     def gravity(self, acceleration: Floats) -> Floats:
-        """(n,) load of a uniform acceleration (3,) on all bodies [N, N m]."""
-        wrenches = np.zeros((len(self.bodies), 6))
-        wrenches[:, :3] = self.body_mass[:, None] * np.asarray(acceleration, dtype=float)
-        return np.asarray(self.expansion.T @ wrenches.ravel())
+        """(n,) load of a uniform acceleration (3,) on all bodies and superelements [N, N m]."""
+        a, wrenches = np.asarray(acceleration, dtype=float), np.zeros((len(self.bodies), 6))
+        wrenches[:, :3] = self.body_mass[:, None] * a
+        return np.asarray(self.expansion.T @ wrenches.ravel() + self.weight @ a)
 
     @property
     def body_of(self) -> Ints:
@@ -253,4 +256,5 @@ def without_massless(system: System) -> System:
         rows=np.asarray(system.rows @ S),
         extra=on(system.extra),
         expansion=np.asarray(system.expansion @ S),
+        weight=np.asarray(S.T @ system.weight),
     )

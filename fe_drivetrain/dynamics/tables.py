@@ -354,7 +354,7 @@ class Machine(Part):
 
     @property
     def meshing(self) -> tuple[tuple[str, tuple[int, int]], ...]:
-        """Kind and teeth of each stage, as `mesh_orders` takes them.
+        """Kind of each stage, and the teeth of ring and sun, or of gear and pinion.
 
         Raises
         ------

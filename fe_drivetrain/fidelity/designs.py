@@ -15,7 +15,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.reading import value_changes
 from fe_drivetrain.fidelity.adviser import Quantity, band_on_springs, banded_assembly

@@ -14,6 +14,11 @@ from .damage import SNCurve as SNCurve
 from .damage import damage_equivalent_load as damage_equivalent_load
 from .damage import goodman as goodman
 from .damage import miner_damage as miner_damage
+from .farm import Count as Count
+from .farm import Counting as Counting
+from .farm import Piece as Piece
+from .farm import counted_histories as counted_histories
+from .farm import piece as piece
 from .faults import lone_samples as lone_samples
 from .levels import Levels as Levels
 from .levels import Reversals as Reversals

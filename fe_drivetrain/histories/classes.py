@@ -58,7 +58,9 @@ class Classes:
         return np.asarray(np.cumsum(self.amount[::-1])[::-1])
 
 
-def in_classes(*columns: ArrayLike, weights: ArrayLike, least: int = LEAST) -> Classes:
+def in_classes(
+    *columns: ArrayLike, weights: ArrayLike, least: int = LEAST, power: int | None = None
+) -> Classes:
     """Put samples into classes.
 
     Parameters
@@ -69,22 +71,26 @@ def in_classes(*columns: ArrayLike, weights: ArrayLike, least: int = LEAST) -> C
         Amount of each sample.
     least : int
         Classes over the range of each quantity, at least.
+    power : int, optional
+        Of two: the width of the classes, where it is not to follow from the range.
     """
     powers, first, places, shape = [], [], [], []
     for column in columns:
         values = np.asarray(column, dtype=float)
         low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
         span = (high - low) or max(abs(low), abs(high))
-        power = int(np.floor(np.log2(span / least))) if span else _FINEST
-        numbers = np.floor(np.ldexp(values, -power))
-        start = int(np.floor(np.ldexp(low, -power)))
-        powers.append(power)
+        own = power
+        if own is None:
+            own = int(np.floor(np.log2(span / least))) if span else _FINEST
+        numbers = np.floor(np.ldexp(values, -own))
+        start = int(np.floor(np.ldexp(low, -own)))
+        powers.append(own)
         first.append(start)
         places.append((numbers - start).astype(int))
-        shape.append(int(np.floor(np.ldexp(high, -power))) - start + 1)
-    amount = np.zeros(shape)
-    np.add.at(amount, tuple(places), np.asarray(weights, dtype=float))
-    return Classes(tuple(powers), tuple(first), amount)
+        shape.append(int(np.floor(np.ldexp(high, -own))) - start + 1)
+    flat = np.ravel_multi_index(tuple(places), shape)
+    amount = np.bincount(flat, np.asarray(weights, dtype=float), int(np.prod(shape)))
+    return Classes(tuple(powers), tuple(first), amount.reshape(shape))
 
 
 def added(parts: Sequence[Classes]) -> Classes:

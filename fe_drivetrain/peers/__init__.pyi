@@ -5,7 +5,6 @@ from .launching import Limits as Limits
 from .launching import Outcome as Outcome
 from .launching import Variant as Variant
 from .launching import how_to_install as how_to_install
-from .launching import interpreters as interpreters
 from .launching import launch as launch
 from .launching import parse as parse
 from .problems import BENCHMARKS as BENCHMARKS

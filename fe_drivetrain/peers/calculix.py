@@ -7,7 +7,6 @@ and begins its step, so that it stands where the other tools stand.
 from __future__ import annotations
 
 import os
-import pty
 import re
 import shutil
 import subprocess
@@ -172,6 +171,8 @@ def _run(folder: Path) -> _Log:
         It failed.
     """
     # on a terminal ccx shows each line at once, in a file at the end
+    import pty  # not on Windows, where nothing is launched
+
     terminal, inner = pty.openpty()
     start = time.perf_counter()
     process = subprocess.Popen(["ccx", "job"], cwd=folder, stdout=inner, stderr=inner)

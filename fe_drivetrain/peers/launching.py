@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -121,12 +120,6 @@ def how_to_install(tool: str) -> str:
     return str(_module(tool).INSTALL)
 
 
-def interpreters() -> list[str]:
-    """This Python, and the system's own, where packages of the distribution are."""
-    system = shutil.which("python3", path=os.defpath)
-    return [sys.executable, *([system] if system else [])]
-
-
 def launch(
     variant: Variant, problem: Path, warm_up: Path, limits: Limits, interpreter: str
 ) -> Outcome:
@@ -143,6 +136,8 @@ def launch(
     interpreter : str
         The Python that has the tool.
     """
+    if os.name != "posix":
+        return Outcome("missing", reason="this system has no sessions of processes: use Linux")
     words = [str(word) for word in getattr(_module(variant.tool), "LAUNCH", ())]
     before = [word.format(threads=limits.threads) for word in words]
     with tempfile.TemporaryDirectory() as name:

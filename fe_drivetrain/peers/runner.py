@@ -23,7 +23,6 @@ so that lazy imports and compiled code read from disk burden no tool.
 import importlib.util
 import json
 import os
-import resource
 import signal
 import sys
 import time
@@ -148,6 +147,8 @@ def peak_memory() -> int:
                 return 1024 * int(line.split()[1])
     except OSError:
         pass
+    import resource
+
     unit = 1 if sys.platform == "darwin" else 1024
     return unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 

@@ -189,3 +189,56 @@ def with_transients(levels: Levels, torque: float, starts: int, seconds: float =
         )
     added, _ = np.histogram([torque], edges, weights=[starts * seconds])
     return Levels(edges, levels.amount + added)
+
+
+@dataclass(frozen=True)
+class Governing:
+    """The largest torque that a gearbox of a pitch or yaw drive must carry.
+
+    Attributes
+    ----------
+    by : str
+        What gives it.
+    torque : float
+        [N m].
+    brake_covers : bool
+        Whether the motor's brake gives it, as in common designs.
+    """
+
+    by: str
+    torque: float
+    brake_covers: bool
+
+
+def governing_torque(
+    brake: float, motor: float, aerodynamic: float, transient: float = 0.0
+) -> Governing:
+    """Torque of the static strength of gear and gearbox (PROTEST 2010, 7.1.2.2 and 7.2.2.2).
+
+    It is that at which the motor's brake slides, unless the motor, the air, or of a yaw system a
+    transient of switching has more.
+
+    Parameters
+    ----------
+    brake : float
+        Dynamic sliding torque of the brakes of pitch motors, largest torque of those of yaw motors,
+        at the motor [N m].
+    motor, aerodynamic, transient : float
+        Largest of the motor, of the part at the motor (over the ratio), of switching [N m].
+
+    Raises
+    ------
+    InputError
+        One of them is below zero.
+    """
+    torques = {
+        "motor brake": brake,
+        "motor": motor,
+        "aerodynamic forces": aerodynamic,
+        "transient": transient,
+    }
+    for name, torque in torques.items():
+        if not torque >= 0.0:
+            raise InputError(f"largest torque of the {name} is {torque:g} N m: give its size")
+    by = max(torques, key=lambda name: torques[name])
+    return Governing(by, torques[by], by == "motor brake")

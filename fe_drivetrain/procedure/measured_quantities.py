@@ -1,8 +1,8 @@
-"""What is to be measured at interfaces of pitch and yaw system, and tables of it from channels.
+"""What is to be measured at interfaces of gearbox, pitch and yaw system, and tables of it.
 
-The package's list is ``measured_quantities.yaml``, Tables 5.3, 6.3 and 6.4 of PROTEST 2010. A table
-is filled from channels by name, simulated or measured: what a list asks for and no channel gives is
-a row that says so.
+The package's list is ``measured_quantities.yaml``, Tables 4.5, 5.3, 6.3 and 6.4 of PROTEST 2010. A
+table is filled from channels by name, simulated or measured: what a list asks for and no channel
+gives is a row that says so.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Quantities(_Row):
 
     table: str
     interface: str
-    kind: Literal["loads", "kinematics", "dynamics", "temperature"]
+    kind: Literal["loads", "kinematics", "dynamics", "synchronous", "temperature"]
     side: Literal["external", "internal"]
     unit: str
     channels: tuple[str, ...]
@@ -83,7 +83,7 @@ class QuantityList(_Row):
 
 @cache
 def listed_quantities() -> QuantityList:
-    """Tables 5.3, 6.3 and 6.4 of PROTEST 2010."""
+    """Tables 4.5, 5.3, 6.3 and 6.4 of PROTEST 2010."""
     name = "measured_quantities.yaml"
     text = (package_files("fe_drivetrain.procedure") / name).read_text("utf-8")
     return validated(QuantityList, parse_mapping(text, name), name)

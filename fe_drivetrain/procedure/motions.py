@@ -84,8 +84,10 @@ def periodic_motions(system: Torsional, torques: Floats, step: float) -> Motions
 def _static(system: Torsional, torque: Floats, largest: float) -> Floats:
     """Angles under constant torques, without free turning."""
     root = np.sqrt(system.J)
-    scaled = system.K / np.outer(root, root)
-    found = np.asarray(np.linalg.pinv(scaled, rcond=1e-12, hermitian=True) @ (torque / root) / root)
+    # stiffness is W^T W, and squaring would cost half of the digits
+    W = np.sqrt(system.k)[:, None] * system.B / root
+    wound = np.linalg.lstsq(W.T, torque / root, rcond=None)[0]
+    found = np.asarray(np.linalg.lstsq(W, wound, rcond=None)[0] / root)
     if np.abs(system.K @ found - torque).max() > 1e-9 * largest:
         raise InputError(
             f"mean torques of {torque.sum():g} N m in sum speed up a system that turns freely: "

@@ -205,6 +205,17 @@ class Comparison(_Step):
         return self
 
 
+class Signature(_Part):
+    """Who stands for the project, and for what of it."""
+
+    name: Name = Field(description="who signs")
+    role: str = Field(default="", description="as in 'loads'")
+    date: Name = Field(description="as in 2026-11-23")
+    digest: Annotated[str, Field(pattern=r"^[0-9a-f]{16}$")] = Field(
+        description="of what is signed: the report of a complete project states it"
+    )
+
+
 class Project(_Part):
     """The six steps of one drivetrain."""
 
@@ -229,6 +240,7 @@ class Project(_Part):
     inputs: Inputs | None = None
     campaign: Campaign | None = None
     comparison: Comparison | None = None
+    signed: tuple[Signature, ...] = Field(default=(), description="signatures, when it is complete")
 
     @field_validator("subject", mode="before")
     @classmethod

@@ -9,19 +9,16 @@ energy of the mode.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
+
+import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.torsion.gear_table import (
-    GENERATOR,
-    ROTOR,
-    Drivetrain,
-    PlanetaryStage,
-)
-from fe_drivetrain.torsion.system import Modes
+from fe_drivetrain.torsion.gear_table import GENERATOR, ROTOR
+from fe_drivetrain.torsion.orders import Geared, crossing_speed, mesh_orders
 
 NEAR, MOVED = 0.1, 0.01
 """Margin below which a frequency is near, and energy share below which a mode is not excited."""
@@ -70,40 +67,44 @@ class Excitation:
         frequency : float
             [Hz].
         """
-        return 60.0 * frequency / self.per_turn
+        return crossing_speed(frequency, self.per_turn)
 
 
-def drivetrain_excitations(table: Drivetrain, blades: int = 3) -> tuple[Excitation, ...]:
+def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[Excitation, ...]:
     """Blade passing, imbalance of shafts, planets passing, meshes up to 3x and their sidebands.
 
     Parameters
     ----------
-    table : Drivetrain
-        Stages without teeth have no mesh frequency, and are left out of the register.
+    stages : iterable of Geared
+        Rows of a gear table (`torsion.Drivetrain.stages`) or of a machine
+        (`dynamics.Machine.stages`). Those without teeth have no mesh frequency, and are left out
+        of the register.
     blades : int
         Of the rotor.
 
     Returns
     -------
     tuple of Excitation
-        They act at the parts of `torsion.gear_masses` of the same table.
+        They act at the parts of `torsion.gear_masses` of the same table, or `dynamics`'
+        `machine_system` of the same machine.
     """
+    given = tuple(stages)
+    orders = mesh_orders(given)
     found = [
         Excitation("1P", 1.0, (ROTOR,)),
         *(Excitation(f"{k * blades}P", float(k * blades), (ROTOR,)) for k in (1, 2)),
     ]
     speed = 1.0
-    for number, stage in enumerate(table.stages, start=1):
+    for number, stage in enumerate(given, start=1):
         name = f"stage {number}"
-        if isinstance(stage, PlanetaryStage):
-            planets = range(1, stage.planets + 1)
+        parts: tuple[str, ...] = (f"{name} mesh",)
+        count = getattr(stage, "planets", 0)
+        if count:
+            planets = range(1, count + 1)
             parts = tuple(f"{name} {mesh}-planet {i}" for mesh in ("ring", "sun") for i in planets)
-            found.append(Excitation(f"{name} planets passing", stage.planets * speed, parts))
-        else:
-            parts = (f"{name} mesh",)
-        if stage.teeth:
-            # of the fixed ring for each turn of the carrier, of the gear for each of its own
-            mesh = stage.teeth[0] * speed
+            found.append(Excitation(f"{name} planets passing", count * speed, parts))
+        if name in orders:
+            mesh = orders[name]
             found += [Excitation(f"{name} mesh {k}x", k * mesh, parts) for k in (1, 2, 3)]
             for sign, word in ((1.0, "+"), (-1.0, "-")):
                 found.append(Excitation(f"{name} mesh 1x {word} shaft", mesh + sign * speed, parts))
@@ -115,6 +116,18 @@ def drivetrain_excitations(table: Drivetrain, blades: int = 3) -> tuple[Excitati
 
 
 Verdict = Literal["resonance", "near", "clear", "not excited"]
+
+
+class SharedModes(Protocol):
+    """Natural modes, and which parts have their energy."""
+
+    @property
+    def frequencies(self) -> Floats:
+        """(n,) ascending, 0 of free motion [Hz]."""
+
+    @property
+    def energy_shares(self) -> Mapping[str, Floats]:
+        """(n,) by the name of each part."""
 
 
 @dataclass(frozen=True)
@@ -150,8 +163,7 @@ class Meeting:
 
 def resonances(
     excitations: Iterable[Excitation],
-    modes: Modes,
-    elements: tuple[str, ...],
+    modes: SharedModes,
     speeds: tuple[float, float],
     near: float = NEAR,
     moved: float = MOVED,
@@ -162,10 +174,9 @@ def resonances(
     ----------
     excitations : iterable of Excitation
         Register.
-    modes : Modes
-        Of a model with the parts at which they act.
-    elements : tuple of str
-        Names of its elements, in their order.
+    modes : SharedModes
+        Of a model with the parts at which they act: `torsion.natural_modes`, or
+        `dynamics.system_modes` of bodies with six degrees of freedom.
     speeds : tuple of float
         Least and largest speed of the rotor in operation [rpm].
     near : float
@@ -190,8 +201,9 @@ def resonances(
         )
     found = []
     moving = [m for m, f in enumerate(modes.frequencies) if f > 0.0]
+    known = modes.energy_shares
     for excitation in excitations:
-        shares = _shares(excitation, modes, elements)
+        shares = _shares(excitation, known)
         for number, m in enumerate(moving, start=1):
             frequency, share = float(modes.frequencies[m]), float(shares[m])
             crossing = excitation.crossing(frequency)
@@ -215,17 +227,12 @@ def resonances(
     return found
 
 
-def _shares(excitation: Excitation, modes: Modes, elements: tuple[str, ...]) -> Floats:
+def _shares(excitation: Excitation, known: Mapping[str, Floats]) -> Floats:
     """(n,) share of the excited parts in the energy of each mode."""
-    total = 0.0 * modes.frequencies
     for part in excitation.at:
-        if part in modes.names:
-            total += modes.inertia_shares[modes.names.index(part)]
-        elif part in elements:
-            total += modes.stiffness_shares[elements.index(part)]
-        else:
+        if part not in known:
             raise InputError(
                 f"excitation {excitation.name!r} acts at {part!r}, which is no part of the model: "
-                f"use some of {', '.join((*modes.names, *elements))}"
+                f"use some of {', '.join(known)}"
             )
-    return total
+    return np.asarray(sum(known[part] for part in excitation.at))

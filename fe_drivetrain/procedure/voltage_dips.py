@@ -16,6 +16,45 @@ from fe_drivetrain.common.errors import InputError
 
 
 @dataclass(frozen=True)
+class TorqueTable:
+    """Share of a generator's torque by corners, of a dip of any shape, or of several.
+
+    Attributes
+    ----------
+    times : tuple of float
+        Of the corners, in order; two at the same time are a jump [s].
+    values : tuple of float
+        Share of the torque before at each; the first and the last hold on outside.
+    """
+
+    times: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        steps = np.diff(self.times)
+        if (
+            len(self.times) != len(self.values)
+            or len(self.times) < 2
+            or not np.isfinite([*self.times, *self.values]).all()
+            or (steps < 0.0).any()
+        ):
+            raise InputError(
+                f"a table of torque with {len(self.times)} times and {len(self.values)} shares: "
+                "give as many of both, two or more, finite, times in order"
+            )
+
+    def shares(self, time: Floats) -> Floats:
+        """Share of the torque, straight between the corners.
+
+        Parameters
+        ----------
+        time : ndarray, (n,)
+            [s].
+        """
+        return np.asarray(np.interp(np.asarray(time, np.float64), self.times, self.values))
+
+
+@dataclass(frozen=True)
 class Dip:
     """A dip of the generator's torque.
 
@@ -55,6 +94,13 @@ class Dip:
         time : ndarray, (n,)
             [s].
         """
-        corners = np.array([0.0, self.fall, self.duration, self.duration + self.recovery])
+        return self.table.shares(time)
+
+    @property
+    def table(self) -> TorqueTable:
+        """The same by its corners."""
+        ends = [self.start + t for t in (0.0, self.fall, self.duration)]
         low = 1.0 - self.depth
-        return np.asarray(np.interp(time, self.start + corners, [1.0, low, low, 1.0]))
+        return TorqueTable(
+            (*ends, self.start + self.duration + self.recovery), (1.0, low, low, 1.0)
+        )

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report.pictures.deformation import exaggeration, picture_of_deformation
@@ -26,6 +27,17 @@ if TYPE_CHECKING:
 
 MOST_TRIANGLES = 100_000
 """Of a surface: with its values it then takes less than 3 MB."""
+MOST_BYTES = 3_000_000
+"""Of a file: as many loads are in it as fit, one at least."""
+
+SHOWN_LOADS = {
+    "Fx": "1 MN along x",
+    "Fz": "1 MN along z",
+    "Mx": "1 MN m about x",
+    "My": "1 MN m about y",
+}
+"""At the hub, for comparison with the load that a page is about."""
+_MEGA = 1e6
 
 _FINE = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))  # flat pieces of a six-node triangle
 _COARSE = ((0, 1, 2),)
@@ -62,15 +74,21 @@ def deformed_shape(
     factor = picture_of_deformation(model, response, load_factors, folder / picture)
     mesh, scene = model.mesh, model.scene
     lame = {part: scene.material_of(part).lame for part in mesh.part_names}
-    u = response.displacements @ np.asarray(load_factors, dtype=np.float64)
+    fields = {what: response.displacements @ np.asarray(load_factors, dtype=np.float64)}
+    for component, name in SHOWN_LOADS.items():
+        column = FORCES.index(component)
+        fields[f"{name} at the hub"] = _MEGA * response.displacements[..., column]
     caption = f"Deformed shape, displacements times {factor:,.0f}, under {what}"
-    if not write_solid_view(mesh, u, lame, folder / view):
+    if not write_solid_view(mesh, fields, lame, folder / view):
         return Image(caption=caption, file=picture)
     return Solid(caption=caption, file=view, still=picture)
 
 
 def write_solid_view(
-    mesh: Mesh, u: Floats, lame: Mapping[str, tuple[float, float]], path: Path
+    mesh: Mesh,
+    fields: Mapping[str, Floats],
+    lame: Mapping[str, tuple[float, float]],
+    path: Path,
 ) -> bool:
     """Write what a page needs to show a deformed mesh in three dimensions.
 
@@ -78,8 +96,9 @@ def write_solid_view(
     ----------
     mesh : Mesh
         The mesh.
-    u : Floats
-        (n, 3) displacements of its nodes [m].
+    fields : Mapping[str, Floats]
+        (n, 3) displacements of its nodes [m] by the load in words, the first of which is shown
+        first. Those that come last are left out where the file would be larger than `MOST_BYTES`.
     lame : mapping
         Lame's constants (lambda, mu) [Pa] of the material of each part, by the part's name.
     path : Path
@@ -95,48 +114,61 @@ def write_solid_view(
     if count > MOST_TRIANGLES:
         return False
     pieces = _FINE if len(_FINE) * count <= MOST_TRIANGLES else _COARSE
-    parts, shown, triangles, stress = [], [], [], []
+    parts, shown, triangles = [], [], []
     first = vertices = 0
     for part, six in facets.items():
         corners = six[:, np.array(pieces)].reshape(-1, 3)
         nodes, numbers = np.unique(corners, return_inverse=True)
         shown.append(nodes)
         triangles.append(numbers.reshape(-1, 3) + vertices)
-        own = nodal_stresses(mesh.points, mesh.cells[mesh.part_cells(part)], u.ravel(), lame[part])
-        stress.append(von_mises(own[nodes]))
         parts.append({"name": part, "first": first, "count": len(corners)})
         first, vertices = first + len(corners), vertices + len(nodes)
-    path.write_text(
-        json.dumps(
-            _content(mesh.points, u, np.concatenate(shown), np.concatenate(stress))
-            | {"parts": parts, "triangles": _packed(np.concatenate(triangles), "<u4")}
-        ),
-        encoding="utf-8",
-    )
+    nodes = np.concatenate(shown)
+    low, high = mesh.points[nodes].min(axis=0), mesh.points[nodes].max(axis=0)
+    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
+    # in letters of 6 bits: positions and triangles; then displacements and stresses of each load
+    surface, field = (8 / 6 * size for size in (6 * vertices + 12 * first, 8 * vertices))
+    count = max(1, int((MOST_BYTES - surface) / max(field, 1.0)))
+    content = {
+        "middle": middle.tolist(),
+        "reach": reach,
+        "positions": _units(mesh.points[nodes] - middle, reach),
+        "parts": parts,
+        "triangles": _packed(np.concatenate(triangles), "<u4"),
+        "loads": [
+            {"name": name, **_field(mesh, u, shown, lame, reach)}
+            for name, u in list(fields.items())[:count]
+        ],
+    }
+    path.write_text(json.dumps(content), encoding="utf-8")
     return True
 
 
-def _content(points: Floats, u: Floats, nodes: Ints, stress: Floats) -> dict[str, Any]:
-    """Positions, displacements and stresses of vertices, each with the value of a whole unit."""
-    low, high = points[nodes].min(axis=0), points[nodes].max(axis=0)
-    middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
-    size = np.linalg.norm(u[nodes], axis=1)
-    largest = float(size.max())
-    greatest = float(stress.max())
-
-    def units(values: Floats, whole: float) -> str:
-        return _packed(np.rint(_STEPS * values / (whole or 1.0)), "<i2")
-
+def _field(
+    mesh: Mesh,
+    u: Floats,
+    shown: Sequence[Ints],
+    lame: Mapping[str, tuple[float, float]],
+    reach: float,
+) -> dict[str, Any]:
+    """Displacements and stresses of the vertices, each with the value of a whole unit."""
+    stresses = []
+    for part, nodes in zip(mesh.part_names, shown, strict=True):
+        own = nodal_stresses(mesh.points, mesh.cells[mesh.part_cells(part)], u.ravel(), lame[part])
+        stresses.append(von_mises(own[nodes]))
+    moved, stress = u[np.concatenate(shown)], np.concatenate(stresses)
+    largest, greatest = float(np.linalg.norm(moved, axis=1).max()), float(stress.max())
     return {
-        "middle": middle.tolist(),
-        "reach": reach,
         "largest": largest,
         "greatest": greatest,
         "factor": exaggeration(largest, 2.0 * reach),
-        "positions": units(points[nodes] - middle, reach),
-        "displacements": units(u[nodes], largest),
-        "stresses": units(stress, greatest),
+        "displacements": _units(moved, largest),
+        "stresses": _units(stress, greatest),
     }
+
+
+def _units(values: Floats, whole: float) -> str:
+    return _packed(np.rint(_STEPS * values / (whole or 1.0)), "<i2")
 
 
 def _packed(values: Floats | Ints, kind: str) -> str:

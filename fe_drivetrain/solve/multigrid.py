@@ -7,7 +7,7 @@ by pyamg. Up to twelve right-hand sides go through together: the matrices are re
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -20,13 +20,11 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.solve.reduction import Joints, System, diagonal_blocks, in_blocks
+from fe_drivetrain.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
 
 MAX_ITERATIONS = 150
 
 _LANCZOS_STEPS = 12
-_LAST_DIGIT = 1e-32
-_RECENT = 1e-2
-_PATIENCE = 40
 
 # Rows of whole vectors, and blocks of vectors that stay in the cache between two smoothing steps.
 _VECTOR, _COLUMNS = 4, 12
@@ -380,7 +378,8 @@ def _solved(
     with threadpool_limits(1, user_api="blas"):
         for found in iterates(K, F, precondition):
             errors.append(found.energy_error)
-            too_long = found.iterations == MAX_ITERATIONS or _is_hopeless(errors, tolerance)
+            too_long = found.iterations == MAX_ITERATIONS
+            too_long |= is_hopeless(errors, tolerance, MAX_ITERATIONS)
             if found.energy_error <= tolerance or too_long:
                 break
     return replace(found, x=found.x[:, :count])
@@ -391,11 +390,7 @@ def iterates(
 ) -> Iterator[Iteration]:
     """Conjugate gradients, one step after the other; ``x`` is overwritten by the next step.
 
-    The residual says little about slender solids, whose stiffest and softest motions are ten
-    decades apart. What conjugate gradients add in step k to the squared energy norm is known
-    exactly, Delta_k = alpha_k (r_k, z_k), and the squared error is the sum of what is still to
-    come. It is taken as Delta_k times the largest such ratio seen in the steps before (Meurant,
-    Papez, Tichy 2021, Accurate error estimation in CG, section 4).
+    Their error is estimated in the energy norm, see `stopping`.
     """
     R = np.array(F, order="C")
     X = np.zeros_like(R)
@@ -409,7 +404,7 @@ def iterates(
         kernels.residual(K.indptr, K.indices, K.data, P, zero, KP)
         curvature = -np.einsum("nm,nm->m", P, KP)
         # Columns that are zero, or solved to the last digit, stand still.
-        alive = np.abs(rz) > _LAST_DIGIT * np.abs(start)
+        alive = np.abs(rz) > LAST_DIGIT * np.abs(start)
         if (alive & ((rz < 0.0) | ~(curvature > 0.0))).any():
             yield Iteration(X, len(terms), math.inf)
             return
@@ -421,33 +416,3 @@ def iterates(
         new = np.einsum("nm,nm->m", R, Z)
         kernels.redirect(P, Z, np.divide(new, rz, out=np.zeros_like(rz), where=alive))
         rz = new
-
-
-def _is_hopeless(errors: Sequence[float], tolerance: float) -> bool:
-    """Whether the rate of the latter half would take twice as long as there is."""
-    k = len(errors)
-    if k < _PATIENCE:
-        return False
-    decades = math.log10(errors[k // 2]) - math.log10(errors[-1])
-    missing = math.log10(errors[-1]) - math.log10(tolerance)
-    needed = missing / max(decades, 1e-3) * (k - k // 2)
-    return k + needed > 2 * MAX_ITERATIONS
-
-
-def energy_error(terms: Floats) -> float:
-    """Estimated relative energy error after the last step, of the worst column.
-
-    Parameters
-    ----------
-    terms : Floats
-        (k, m) what each step of conjugate gradients added to the squared energy norm.
-    """
-    last = terms[-1]
-    tails = np.cumsum(terms[::-1], axis=0)[::-1]  # from each step to the last
-    total = tails[0]
-    # At the start convergence is another. A window of 1e-4 fell below half the truth on thin tubes.
-    recent = tails <= _RECENT * total
-    recent |= ~recent.any(axis=0)
-    ratio = np.divide(tails, terms, out=np.ones_like(terms), where=recent & (terms > 0.0))
-    squared = np.divide(ratio.max(axis=0) * last, total, out=np.zeros_like(last), where=total > 0.0)
-    return float(np.sqrt(squared.max()))

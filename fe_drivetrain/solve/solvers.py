@@ -11,14 +11,14 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
-from fe_drivetrain.solve import direct_solvers, multigrid, schwarz
+from fe_drivetrain.solve import direct_solvers, multigrid, petsc, schwarz
 from fe_drivetrain.solve.cost_model import predict
 from fe_drivetrain.solve.reduction import System
 from fe_drivetrain.solve.rounding import round_off
 
-METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz")
+METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz", *petsc.METHODS)
 
-ITERATIVE = ("multigrid", "schwarz")
+ITERATIVE = ("multigrid", "schwarz", *petsc.METHODS)
 
 TOLERANCE = 1e-9
 """Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
@@ -153,8 +153,9 @@ class Solver:
             f"about {found.energy_error:.1e} (relative residual {residual:.1e}), short of "
             f"{self.tolerance:.0e}"
         )
-        tried = ITERATIVE if self.method == "schwarz" else ("multigrid",)
-        costs = [c for c in predict(self.system, F.shape[1]) if c.method not in tried]
+        tried = {"schwarz": ("multigrid", "schwarz"), "multigrid": ("multigrid",)}
+        left_out = tried.get(self.method, ())
+        costs = [c for c in predict(self.system, F.shape[1]) if c.method not in left_out]
         cost = min(costs, key=lambda c: (not c.fits, c.seconds))
         if not cost.fits:
             what = "patches" if cost.method == "schwarz" else "a direct factor"
@@ -185,7 +186,8 @@ def factorise(
         From `reduction.reduce`.
     method : str
         ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
-        ``schwarz`` (for thin and slender solids of any size), or ``auto``: the one with the least
+        ``schwarz`` (for thin and slender solids of any size), ``petsc`` and ``petsc-mumps`` (in
+        parts, on MPI processes: see `petsc`), or ``auto``: the one with the least
         predicted time, see `cost.predict`.
     n_rhs : int
         How many right-hand sides will come, for ``auto``.
@@ -210,7 +212,14 @@ def factorise(
             "or choose 'multigrid' or 'superlu'"
         )
     start = time.perf_counter()
-    if method in ITERATIVE:
+    if method in petsc.METHODS:
+        ranks = petsc.Ranks(system, method)
+        held = ranks.bytes
+
+        def iterate(F: Floats) -> multigrid.Iteration:
+            return ranks.solve(F, tolerance)
+
+    elif method in ITERATIVE:
         made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
         held = made.bytes
 

@@ -14,8 +14,8 @@ from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
 import numpy as np
 
 from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import arithmetic, program_hash
-from fe_drivetrain.common.pool import Pool, pool
 from fe_drivetrain.common.progress import Progress, silent
 
 _P = ParamSpec("_P")

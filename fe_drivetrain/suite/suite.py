@@ -12,7 +12,7 @@ from typing import Any
 
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.files import HiddenFolder, empty, sentence_about
-from fe_drivetrain.common.pool import pool
+from fe_drivetrain.common.jobs import pool
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
 from fe_drivetrain.report.results import Problem

@@ -14,9 +14,15 @@ from .gear_table import read_drivetrain as read_drivetrain
 from .gear_table import shaft_damping as shaft_damping
 from .gear_table import stage_masses as stage_masses
 from .gear_table import two_masses as two_masses
+from .orders import Geared as Geared
+from .orders import Toothed as Toothed
+from .orders import absolute_sun_orders as absolute_sun_orders
+from .orders import crossing_speed as crossing_speed
+from .orders import mesh_orders as mesh_orders
 from .system import Element as Element
 from .system import Inertia as Inertia
 from .system import Modes as Modes
+from .system import Oscillations as Oscillations
 from .system import Torsional as Torsional
 from .system import chain as chain
 from .system import changed as changed

@@ -164,8 +164,8 @@ class Modes:
 
     Attributes
     ----------
-    names : tuple[str, ...]
-        Of the inertias.
+    names, elements : tuple[str, ...]
+        Of the inertias, and of the elements.
     frequencies : Floats
         (n,) ascending [Hz]; exactly 0 where the system turns freely.
     shapes : Floats
@@ -178,10 +178,22 @@ class Modes:
     """
 
     names: tuple[str, ...]
+    elements: tuple[str, ...]
     frequencies: Floats
     shapes: Floats
     stiffness_shares: Floats
     inertia_shares: Floats
+
+    @property
+    def energy_shares(self) -> dict[str, Floats]:
+        """By name of each inertia (kinetic) and element (strain), (n,) shares in each mode."""
+        return dict(
+            zip(
+                (*self.names, *self.elements),
+                (*self.inertia_shares, *self.stiffness_shares),
+                strict=True,
+            )
+        )
 
     @property
     def to_one(self) -> Floats:
@@ -207,7 +219,12 @@ def natural_modes(system: Torsional) -> Modes:
     shares = np.zeros_like(energy)
     shares[:, turning] = energy[:, turning] / omega[turning] ** 2
     return Modes(
-        system.names, omega / (2 * np.pi), basis / root[:, None], shares, np.asarray(basis**2)
+        system.names,
+        tuple(element.name for element in system.elements),
+        omega / (2 * np.pi),
+        basis / root[:, None],
+        shares,
+        np.asarray(basis**2),
     )
 
 
@@ -351,19 +368,16 @@ def chain(
 
 
 @dataclass(frozen=True)
-class DampedModes:
-    """Modes of the damped system.
+class Oscillations:
+    """Complex eigenvalues of what oscillates.
 
     Attributes
     ----------
     eigenvalues : Complex
-        (k,) of what oscillates, imaginary parts above zero and ascending [1/s].
-    creeping : Floats
-        (j,) real eigenvalues below zero of what comes back without oscillating [1/s].
+        (k,) imaginary parts above zero and ascending [1/s].
     """
 
     eigenvalues: Complex
-    creeping: Floats
 
     @property
     def frequencies(self) -> Floats:
@@ -374,6 +388,19 @@ class DampedModes:
     def ratios(self) -> Floats:
         """Damping ratios, -Re / |.|."""
         return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
+
+
+@dataclass(frozen=True)
+class DampedModes(Oscillations):
+    """Modes of the damped system.
+
+    Attributes
+    ----------
+    creeping : Floats
+        (j,) real eigenvalues below zero of what comes back without oscillating [1/s].
+    """
+
+    creeping: Floats
 
 
 def damped_modes(system: Torsional) -> DampedModes:

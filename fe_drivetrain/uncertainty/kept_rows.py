@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.common.pool import mapped, on_cluster
+from fe_drivetrain.common.jobs import mapped, on_cluster
 from fe_drivetrain.common.progress import Progress
 
 AT_A_TIME = 8

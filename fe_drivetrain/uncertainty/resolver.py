@@ -8,7 +8,7 @@ from functools import partial
 from typing import TypeVar
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.pool import mapped
+from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.fidelity.ladder import shaft_level

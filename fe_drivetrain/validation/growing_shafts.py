@@ -7,12 +7,11 @@ line of JSON.
 from __future__ import annotations
 
 import json
-import resource
 import subprocess
 import sys
 from dataclasses import dataclass
 
-from fe_drivetrain.common import run_python
+from fe_drivetrain.common import peak_memory, run_python
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.validation import stiffness_choices as choices
@@ -87,10 +86,7 @@ def _measure(size: float, turn: int, method: str) -> Grown:
     level = choices.Level(choices.CURVED, size, turn)
     solve = choices.Solve(method)  # type: ignore[arg-type]
     (outcome,) = choices.shaft_outcomes(STEPPED, MATERIAL, level, [solve])
-    # Linux counts in KiB, macOS in bytes
-    unit = 1 if sys.platform == "darwin" else 1024
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
-    return Grown(outcome.unknowns, outcome.used, outcome.seconds, peak)
+    return Grown(outcome.unknowns, outcome.used, outcome.seconds, peak_memory() or 0)
 
 
 if __name__ == "__main__":

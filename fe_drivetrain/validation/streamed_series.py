@@ -11,12 +11,11 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, run_python
+from fe_drivetrain.common import Floats, peak_memory, run_python
 from fe_drivetrain.compare import Comparison, compare, compare_streamed
 from fe_drivetrain.compare import statistics as by_definition
 
@@ -106,15 +105,6 @@ def statistics(found: Comparison) -> dict[str, float]:
     """The statistics of a comparison by name."""
     every = asdict(found)
     return {name: float(every[name][0, 0]) for name in expected()}
-
-
-def peak_memory() -> int | None:
-    """Most memory of this process so far [bytes]; None where the system does not report it."""
-    status = Path("/proc/self/status")
-    # not getrusage: its figure outlives exec, and would be that of the process that started us
-    lines = status.read_text(encoding="ascii").splitlines() if status.exists() else []
-    found = [line.split() for line in lines if line.startswith("VmHWM:")]
-    return 1024 * int(found[0][1]) if found else None
 
 
 def in_own_process(samples: int, way: str) -> dict[str, Any]:

@@ -67,33 +67,41 @@
     if (!made) return;
     const data = JSON.parse(text);
     const still = place.parentElement.querySelector("img");
-    const arrays = {
-      position: unpacked(data.positions, Int16Array),
-      displacement: unpacked(data.displacements, Int16Array),
-      stress: unpacked(data.stresses, Int16Array),
-    };
+    const arrays = { position: unpacked(data.positions, Int16Array) };
+    const buffers = {};
+    let load = null; // the one that is shown
     const triangles = unpacked(data.triangles, Uint32Array);
     const home = { yaw: -2.1, pitch: 0.35, zoom: 1, target: data.middle };
     const sides = [0, 0, 0]; // half lengths of the box round the model
     arrays.position.forEach((value, k) => { sides[k % 3] = Math.max(sides[k % 3], (data.reach * Math.abs(value)) / 32767); });
-    const state = { ...home, factor: data.factor, colours: 1, axis: -1, at: 0.5, hidden: new Set() };
-    const kinds = [
-      null,
-      { name: "displacement", unit: "mm", whole: 1e3 * data.largest },
-      { name: "von Mises stress", unit: "MPa", whole: 1e-6 * data.greatest },
-    ];
+    const state = { ...home, factor: 0, colours: 1, axis: -1, at: 0.5, hidden: new Set() };
+    let kinds = [];
     let range = [0, 1];
 
     canvas.setAttribute("role", "application");
     canvas.setAttribute("aria-label", "Model in three dimensions: drag or arrow keys turn it, plus and minus scale it, Enter reads the value in the middle");
     gl.useProgram(made);
-    for (const [name, values] of Object.entries(arrays)) {
+    function upload(name) {
       const at = gl.getAttribLocation(made, name);
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
+      buffers[name] ??= gl.createBuffer();
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
+      gl.bufferData(gl.ARRAY_BUFFER, arrays[name], gl.STATIC_DRAW);
       gl.enableVertexAttribArray(at);
       gl.vertexAttribPointer(at, name === "stress" ? 1 : 3, gl.SHORT, true, 0, 0);
     }
+    function show(number) {
+      load = data.loads[number];
+      arrays.displacement = unpacked(load.displacements, Int16Array);
+      arrays.stress = unpacked(load.stresses, Int16Array);
+      ["displacement", "stress"].forEach(upload);
+      kinds = [
+        null,
+        { name: "displacement", unit: "mm", whole: 1e3 * load.largest },
+        { name: "von Mises stress", unit: "MPa", whole: 1e-6 * load.greatest },
+      ];
+    }
+    upload("position");
+    show(0);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
     gl.enable(gl.DEPTH_TEST);
@@ -126,7 +134,7 @@
       gl.viewport(0, 0, width, height);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       for (const [name, value] of Object.entries({ ...basis(), middle: data.middle, target: state.target })) gl.uniform3fv(uniform(name), value);
-      for (const [name, value] of Object.entries({ reach: data.reach, largest: data.largest, factor: state.factor, zoom: zoom(), aspect: width / height })) gl.uniform1f(uniform(name), value);
+      for (const [name, value] of Object.entries({ reach: data.reach, largest: load.largest, factor: state.factor, zoom: zoom(), aspect: width / height })) gl.uniform1f(uniform(name), value);
       gl.uniform1i(uniform("colours"), state.colours);
       gl.uniform2fv(uniform("range"), range);
       gl.uniform4fv(uniform("cut"), plane());
@@ -148,7 +156,7 @@
       const whole = 32767;
       const vertex = function (k) {
         const p = [0, 1, 2].map((c) => data.middle[c] + (data.reach * arrays.position[3 * k + c]) / whole);
-        const u = [0, 1, 2].map((c) => (data.largest * arrays.displacement[3 * k + c]) / whole);
+        const u = [0, 1, 2].map((c) => (load.largest * arrays.displacement[3 * k + c]) / whole);
         const moved = p.map((value, c) => value + state.factor * u[c]);
         const seen = moved.map((value, c) => value - state.target[c]);
         return { p, u, moved, s: arrays.stress[k] / whole, x: dot(seen, right), y: dot(seen, up), z: dot(seen, toward) };
@@ -181,7 +189,7 @@
     function pick(across, upward) {
       const found = under(across, upward);
       read.textContent = found
-        ? `${found.part.replaceAll("_", " ")} at x ${digits(found.point[0])}, y ${digits(found.point[1])}, z ${digits(found.point[2])} m: displacement ${digits(1e3 * found.u)} mm, von Mises stress ${digits(1e-6 * data.greatest * found.s)} MPa`
+        ? `${found.part.replaceAll("_", " ")} at x ${digits(found.point[0])}, y ${digits(found.point[1])}, z ${digits(found.point[2])} m: displacement ${digits(1e3 * found.u)} mm, von Mises stress ${digits(1e-6 * load.greatest * found.s)} MPa`
         : "There is nothing at that point.";
     }
 
@@ -218,9 +226,18 @@
     const times = element("output", {});
     const factor = element("input", { type: "range", min: 0, max: 3, step: 0.05, value: 1 });
     const scaled = function () {
-      state.factor = data.factor * Number(factor.value);
+      state.factor = load.factor * Number(factor.value);
       times.textContent = ` ${digits(state.factor)} times`;
     };
+    const loads = element("select", {}, ...data.loads.map(({ name }, value) => element("option", { value, textContent: name })));
+    loads.addEventListener("change", function () {
+      show(Number(loads.value));
+      range = [0, 1];
+      scaled();
+      showRange();
+      read.textContent = "Click on the model to read a value.";
+      draw();
+    });
     factor.addEventListener("input", function () { scaled(); draw(); });
     const axis = element("select", {}, ...["none", "x", "y", "z"].map((name, k) => element("option", { value: k - 1, textContent: name })));
     const at = element("input", { type: "range", min: 0, max: 1, step: 0.005, value: 0.5, disabled: true });
@@ -245,7 +262,7 @@
     const reset = element("button", { type: "button", className: "filter", textContent: "first view" });
     reset.addEventListener("click", function () { Object.assign(state, home); draw(); });
     place.append(
-      element("div", { className: "controls" }, labelled("Colour", colours), legend, labelled("Deformation", factor), times, labelled("Cut across", axis), at, ...boxes, reset),
+      element("div", { className: "controls" }, ...(data.loads.length > 1 ? [labelled("Load", loads)] : []), labelled("Colour", colours), legend, labelled("Deformation", factor), times, labelled("Cut across", axis), at, ...boxes, reset),
       canvas,
       read,
     );

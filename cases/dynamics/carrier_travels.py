@@ -1,0 +1,153 @@
+"""Planets that travel round the sun in time: gravity and hub moments, and an elastic ring."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.dynamics import (
+    Flexible,
+    Level,
+    Machine,
+    Rim,
+    State,
+    System,
+    azimuths,
+    contact_ratios,
+    generalised_alpha,
+    integrate_travelling,
+    library_machine,
+    machine_meshing,
+    machine_system,
+    over_a_turn,
+    steady,
+    steady_load,
+    travelling,
+    varying_equations,
+)
+from fe_drivetrain.dynamics.static import Turn
+from fe_drivetrain.report import trace
+from fe_drivetrain.scene import Material
+from fe_drivetrain.suite import Page, Run
+
+NAME, TORQUE, MOMENT, SPEED = "nrel_750kw", 3.25e5, -3e5, 2.31  # N m, N m, rad/s
+RING = 99
+"""Teeth of the ring: meshes in a turn of the carrier."""
+STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
+PIN = "stage 1 pin 1 upwind"
+
+
+@case(
+    "Planets that travel: loads of their bearings in time, and the mesh as the ring feels it",
+    source="statics over a turn; McFadden and Smith 1985: sidebands of planets passing",
+)
+def run(run: Run, page: Page) -> None:
+    """A turn in time against statics at each azimuth; lines of the ring beside the mesh."""
+    machine = library_machine(NAME)
+    count = 12 if run.quick else 36
+    with run.step("a turn in time and at rest"):
+        moving, still = a_turn(machine, count), at_rest(machine, count)
+    mean = still.resultant(PIN).mean()
+    page.vanishes(
+        "load of an upwind bearing in time from that of statics, largest over the mean",
+        float(np.abs(moving.resultant(PIN) - still.resultant(PIN)).max() / mean),
+        within=1e-3,
+        why="inertia and dampers of 1e-4 s at 2.3 rad/s, steps of a thirtieth of a planet's path",
+        source="equilibria at each azimuth",
+        measure="reaction",
+    )
+    with run.step("elastic ring"):
+        lines = ring_lines(machine, 4 if run.quick else 18)
+    beside = lines[[RING - 3, RING + 3]]
+    page.vanishes(
+        "third harmonic of the ring: line of the mesh over those beside it, of planets passing",
+        float(lines[RING] / beside.min()),
+        within=0.05,
+        why="meshes in phase move it as three forces that turn; the sun's gears push to one side",
+        source="symmetry: planets in phase excite orders that are three from the mesh",
+        measure="order",
+    )
+    swing = np.ptp(moving.resultant(PIN)) / mean
+    page.answer(
+        f"In time, with planets that travel, the load of an upwind planet bearing swings by "
+        f"{100 * swing:.1f} % of its mean in a turn, as in statics at each azimuth.",
+        "A place of the ring does not feel the mesh frequency of planets in phase in its third "
+        f"harmonic, but the lines {RING - 3} and {RING + 3} times a turn beside it.",
+    )
+    page.section("Over a turn")
+    angles = np.degrees(azimuths(count))
+    page.chart(
+        "Radial load of the upwind bearing of planet 1",
+        [
+            trace("in time", angles, moving.resultant(PIN) / 1e3, True),
+            trace("at rest", angles, still.resultant(PIN) / 1e3),
+        ],
+        "azimuth of the carrier [deg]",
+        "radial load [kN]",
+    )
+    page.section("An elastic ring")
+    page.table(
+        "Third harmonic of the ring, radial amplitude at orders of the carrier",
+        [
+            {"order": k, "amplitude [nm]": 1e9 * float(lines[k])}
+            for k in (3, RING - 6, RING - 3, RING, RING + 3, RING + 6)
+        ],
+    )
+
+
+def a_turn(machine: Machine, count: int) -> Turn:
+    """Loads in the second turn, meshes as stiff as on average."""
+    carriers = travelling(machine, held_generator=True)
+    load = loads(machine, carriers.system)
+    zero = np.zeros(len(load))
+    found = integrate_travelling(
+        varying_equations(carriers.system, {}, damping=1e-4),
+        carriers,
+        SPEED,
+        steady(load),
+        4 * np.pi / SPEED,
+        2 * np.pi / SPEED / (10 * count),
+        generalised_alpha(0.3),
+        State(np.linalg.solve(carriers.system.K, load), zero, zero),
+        every=10,
+    )
+    assert found.motion.converged
+    second = slice(count, 2 * count)
+    return Turn(found.azimuth[second], carriers.system.spring_names, found.motion.forces[second])
+
+
+def at_rest(machine: Machine, count: int) -> Turn:
+    """Equilibria at azimuths."""
+
+    def at(azimuth: float) -> System:
+        return machine_system(machine, Level.RIGID, azimuth, held_generator=True)
+
+    return over_a_turn(at, lambda system: loads(machine, system), azimuths(count))
+
+
+def loads(machine: Machine, system: System) -> Floats:
+    """Gravity, torque and a moment that tilts the hub."""
+    return steady_load(machine, system, TORQUE, np.array([0.0, 0.0, 0.0, 0.0, MOMENT, 0.0]))
+
+
+def ring_lines(machine: Machine, steps: int) -> Floats:
+    """Amplitudes of the third harmonic of an elastic ring by orders of the carrier [m]."""
+    rim = Flexible(rims={1: (Rim(0.55, 0.04, 0.23, STEEL), (3,))})
+    carriers = travelling(machine, held_generator=True, flexible=rim)
+    system = carriers.system
+    meshing = machine_meshing(machine, SPEED, contact_ratios(machine))
+    planetary = {name: mesh for name, mesh in meshing.items() if name.startswith("stage 1")}
+    load = system.load_on("rotor", TORQUE * np.eye(6)[3])
+    zero, turn = np.zeros(len(load)), 2 * np.pi / SPEED
+    count = steps * RING
+    found = integrate_travelling(
+        varying_equations(system, planetary, damping=3e-5, harmonics=max(1, steps // 6)),
+        carriers,
+        SPEED,
+        steady(load),
+        1.2 * turn,
+        turn / count,
+        generalised_alpha(0.2),
+        State(np.linalg.solve(system.K, load), zero, zero),
+    )
+    last = found.motion.q[-count - 1 : -1, system.place("stage 1 rim 3 cos ux")]
+    return np.asarray(np.abs(np.fft.rfft(last)) * 2 / count)

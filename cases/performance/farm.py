@@ -1,0 +1,139 @@
+"""A wind farm's years of samples, counted in pieces on all workers and as one stream on one."""
+
+import resource
+import time
+from collections.abc import Iterator
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import ExactSum, Floats, InputError, cores, exact_sum
+from fe_drivetrain.histories import Counting, counted_histories, piece, streamed_cycles
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+
+TURBINES = 4
+#: Samples of all turbines, of a full and a quick run; of 20 turbines at 20 Hz in 8 years.
+SAMPLES, QUICK, FARM = 1_000_000_000, 8_000_000, 1e11
+PIECE = 1 << 20
+COUNTING = Counting(-5, (4.0, 10.0))
+STEP = 0.05  # s
+
+
+def made(turbine: int, number: int, size: int) -> Floats:
+    """Samples of a piece: noise with a slow part, and 3P; the same wherever they are made."""
+    noise = np.random.default_rng(turbine).standard_normal(PIECE, dtype=np.float32)[:size]
+    slow = np.random.default_rng([turbine, number]).standard_normal()
+    at = STEP * np.arange(number * PIECE, number * PIECE + size)
+    return np.asarray(noise + 5.0 + slow + 0.5 * np.sin(2 * np.pi * 0.6 * at), dtype=np.float64)
+
+
+def sizes(samples: int) -> list[int]:
+    """Of the pieces of a turbine."""
+    return [min(PIECE, samples - start) for start in range(0, samples, PIECE)]
+
+
+@case(
+    "A wind farm's years: cycles, damage and load duration counted in pieces",
+    source="ASTM E1049-85 (2017), 5.4.4, over each whole history in one stream",
+    settings=("samples",),
+    alone=True,
+)
+def run(run: Run, page: Page) -> None:
+    """Count made histories both ways; nothing may differ."""
+    samples = int(float(run.settings.get("samples", QUICK if run.quick else SAMPLES)))
+    each = samples // TURBINES
+    if each < 1:
+        raise InputError(f"samples = {samples}: give {TURBINES} or more, as in samples=1e9")
+    piece(np.arange(4.0), COUNTING)  # compiled code is loaded
+    with run.step("in pieces"):
+        start = time.perf_counter()
+        pieces = (
+            (f"turbine {turbine}", (turbine, number, size))
+            for turbine in range(TURBINES)
+            for number, size in enumerate(sizes(each))
+        )
+        count = len(sizes(each))
+        made_in_pieces = counted_histories(made, pieces, COUNTING, local=cores(), report=run.report)
+        found = next(made_in_pieces)[1]
+        for number, (_, more) in enumerate(made_in_pieces, 2):
+            run.report(f"turbines ({number} of {TURBINES})")
+            found = found + more
+        apart = time.perf_counter() - start
+    memory = {
+        "of this process": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3,
+        "of a local worker": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e3,
+    }
+    damage = [ExactSum() for _ in COUNTING.slopes]
+    cycles = 0.0
+    with run.step("in one stream"):
+        start = time.perf_counter()
+        for turbine in range(TURBINES):
+            for block in streamed_cycles(whole(turbine, each)):
+                cycles += float(block.counts.sum())
+                for k, m in enumerate(COUNTING.slopes):
+                    damage[k] = damage[k] + exact_sum(block.counts * block.ranges**m)
+        together = time.perf_counter() - start
+    for m, mine, exact in zip(COUNTING.slopes, found.damage, damage, strict=True):
+        page.equals(
+            f"sum of n r^{m:g} in pieces [-]",
+            float(mine),
+            float(exact),
+            within=0.0,
+            why="the same cycles, and sums without rounding",
+            source="three points of the standard over each whole history",
+            measure="identity",
+        )
+    page.equals(
+        "cycles in pieces [-]",
+        float(found.cycles.amount.sum()),
+        cycles,
+        within=0.0,
+        why="each is counted once, halves as halves",
+        source="three points of the standard over each whole history",
+        measure="identity",
+    )
+    page.equals(
+        "samples at all levels [-]",
+        float(found.levels.amount.sum()),
+        float(TURBINES * each),
+        within=0.0,
+        why="each is at one level",
+        source="the samples that were made",
+        measure="identity",
+    )
+    rate = TURBINES * each / apart
+    page.answer(
+        f"{TURBINES * each:,} samples in {TURBINES * count:,} pieces take {apart:.3g} s, made "
+        f"noise and start of processes included: {rate / 1e6:.3g} million a second"
+        + (
+            "." if run.quick else f", so that {FARM:.0e} take {FARM / rate / 3600:.2g} hours there."
+        ),
+        f"In one stream cycles and sums alone take {together:.3g} s, and are the same to the last "
+        "digit.",
+    )
+    row: Record = {
+        "samples": TURBINES * each,
+        "pieces": TURBINES * count,
+        "cycles": cycles,
+        "in pieces [s]": apart,
+        "in one stream, no levels [s]": together,
+        **{f"most memory {name} [MB]": value for name, value in memory.items()},
+    }
+    page.section("What it takes")
+    page.table(f"Pieces of {PIECE:,} samples; --scheduler takes the workers of a cluster", [row])
+    page.data("farm", row)
+    page.section("What is counted")
+    for name, classes in (("range of cycles", found.cycles), ("level", found.levels)):
+        page.chart(
+            f"{name.capitalize()} in classes",
+            [trace(name, classes.middles(), classes.amount)],
+            f"{name} [-]",
+            "number",
+        )
+
+
+def whole(turbine: int, samples: int) -> Iterator[Floats]:
+    """All pieces of a history."""
+    for number, size in enumerate(sizes(samples)):
+        yield made(turbine, number, size)

@@ -1,0 +1,244 @@
+"""Resonance of bodies with six degrees of freedom: register, margins, a run-up and its Campbell."""
+
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.dynamics import (
+    Loads,
+    System,
+    SystemModes,
+    crossings,
+    direction_kinds,
+    equations_of,
+    exact_steps,
+    library_machine,
+    machine_system,
+    system_modes,
+    with_proportional_damping,
+)
+from fe_drivetrain.histories import campbell
+from fe_drivetrain.procedure import (
+    Meeting,
+    Sweep,
+    drivetrain_excitations,
+    resonances,
+    run_up_peak,
+    swept_response,
+)
+from fe_drivetrain.report import heat_map, trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.torsion import mesh_orders
+
+MACHINE = library_machine("synthetic_2mw")
+SPEEDS = (8.0, 18.0)  # rpm, in operation
+BEGIN, END = 6.0, 28.0  # rpm, of the run-up
+SECONDS, STEP = 20.0, 2.5e-4  # s
+RATIO, AT = 0.01, 60.0  # of critical damping, at that frequency [Hz], in proportion to it elsewhere
+ERROR = 10e-6  # m, of transmission, once in each mesh
+MESH = "stage 1 sun-planet 1"
+SEGMENT, CLASS = 0.5, 1.0  # s, rpm, of the short-time spectra
+HIGHEST = 90.0  # Hz, of what is drawn
+
+
+@case(
+    "Run-up of a drivetrain with six degrees of freedom: register, margins, Campbell diagram",
+    source="PROTEST 2010, ECN-E--10-100, section 4.2, appendix A; Lewis 1932, Trans. ASME 54",
+)
+def run(run: Run, page: Page) -> None:
+    """Register against modes; a run-up by the whole matrices, against exact modes."""
+    system = with_proportional_damping(machine_system(MACHINE), RATIO / (np.pi * AT))
+    modes = system_modes(system)
+    with run.step("register"):
+        found = register(page, system, modes)
+    with run.step("run-up"):
+        signal, exact, step, orders = simulated_run_up(system, modes, 0.5 if run.quick else 1.0)
+    error = float(np.abs(signal - exact).max() / np.abs(exact).max())
+    fastest = 2.0 * np.pi * orders * END / 60.0 * step
+    page.vanishes(
+        "run-up: motion of the planet by the whole matrices and by exact modes, largest difference "
+        "over the largest motion",
+        error,
+        within=0.25 * fastest**2,
+        why="loads are straight between steps, which is (w h)^2 / 12 of a sine; three times that, "
+        "as modes pass it at different times",
+        source="sum of modes, each by Lewis' integral",
+    )
+    with run.step("Campbell"):
+        shown(page, modes, signal, step)
+    peaks(page, modes, orders)
+    met = [m for m in found if m.verdict == "resonance"]
+    page.answer(
+        f"From {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm {len(met)} crossings are at a part with 1 % or "
+        f"more of the mode's energy, of {sum(m.margin == 0.0 for m in found)} in all; in a run-up "
+        f"of {SECONDS:g} s they stay below the response at rest, and come later than the crossing."
+    )
+    page.assume(
+        "damping ratio at 60 Hz, in proportion to frequency", RATIO, "", "none is published"
+    )
+    page.assume("error of transmission", ERROR * 1e6, "µm", "linear: all motions scale with it")
+
+
+def register(page: Page, system: System, modes: SystemModes) -> list[Meeting]:
+    """All excitations against all modes, with energy shares; crossings of `dynamics` the same."""
+    excitations = drivetrain_excitations(MACHINE.stages)
+    found = resonances(excitations, modes, SPEEDS)
+    kinds = direction_kinds(system, modes)
+    free = int(np.count_nonzero(modes.frequencies == 0.0))
+    rows: list[Record] = [
+        {
+            "excitation": m.excitation,
+            "mode": m.mode,
+            "kind": kinds[free + m.mode - 1],
+            "frequency [Hz]": m.frequency,
+            "crossing [rpm]": m.crossing,
+            "margin": m.margin,
+            "energy share": m.share,
+            "verdict": m.verdict,
+        }
+        for m in found
+        if m.verdict in ("resonance", "near")
+    ]
+    orders = mesh_orders(MACHINE.stages)
+    names = {f"{name} mesh {k}x" for name in orders for k in (1, 2, 3)}
+    other = crossings(modes.frequencies[free:], orders, SPEEDS)
+    ours = sorted(m.crossing for m in found if m.margin == 0.0 and m.excitation in names)
+    page.equals(
+        "mesh crossings in operation, by the register and by the diagram of speeds",
+        float(len(ours)),
+        float(len(other)),
+        within=0.0,
+        why="a count",
+        source="crossings of `dynamics`",
+        measure="identity",
+    )
+    page.vanishes(
+        "speeds of these crossings, largest difference [rpm]",
+        float(np.abs(np.array(ours) - sorted(c.speed for c in other)).max()),
+        within=1e-9,
+        why="rounding",
+        source="crossings of `dynamics`",
+    )
+    page.section("Register against modes")
+    page.table(
+        f"Excitations that meet or near a mode from {SPEEDS[0]:g} to {SPEEDS[1]:g} rpm", rows
+    )
+    counts: list[Record] = [
+        {
+            "kind of mode": kind,
+            "modes": kinds[free:].count(kind),
+            **{
+                verdict: sum(
+                    m.verdict == verdict and kinds[free + m.mode - 1] == kind for m in found
+                )
+                for verdict in ("resonance", "near", "clear", "not excited")
+            },
+        }
+        for kind in dict.fromkeys(kinds[free:])
+    ]
+    page.table("Verdicts by kind of mode", counts)
+    page.data("resonances", rows)
+    return found
+
+
+def simulated_run_up(
+    system: System, modes: SystemModes, share: float
+) -> tuple[Floats, Floats, float, float]:
+    """Radial motion of a planet while the speed rises evenly, by matrices and by exact modes."""
+    order = mesh_orders(MACHINE.stages)["stage 1"]
+    seconds = SECONDS * share
+    sweep = Sweep(order * BEGIN / 60.0, order * (END - BEGIN) / 60.0 / seconds)
+    springs = [k for k, n in enumerate(system.spring_names) if n.startswith(f"{MESH} slice")]
+    push = system.rows[springs].T @ system.stiffness[springs] * ERROR
+    time = np.arange(round(seconds / STEP) + 1) * STEP
+    loads = Loads(push[:, None], time, np.cos(sweep.phase(time))[:, None])
+    _, q, _ = exact_steps(equations_of(system), loads, seconds, STEP)
+    place = system.place("stage 1 planet 1 uy")
+    exact = np.zeros(len(time))
+    for frequency, shape in zip(modes.frequencies, modes.shapes.T, strict=True):
+        if frequency > 0.0:
+            ratio = RATIO * frequency / AT
+            each = shape[place] * float(shape @ push)
+            if ratio < 1.0:
+                exact += each * swept_response(float(frequency), ratio, sweep, time).real
+            else:
+                # far above the sweep, and overdamped: it follows
+                exact += each * np.cos(sweep.phase(time)) / (2.0 * np.pi * frequency) ** 2
+    return q[:, place], exact, STEP, order
+
+
+def shown(page: Page, modes: SystemModes, signal: Floats, step: float) -> None:
+    """Short-time spectra of the run-up by speed, with known modes and mesh orders drawn in."""
+    speed = np.linspace(BEGIN, END, len(signal))
+    edges = np.arange(BEGIN, END + CLASS, CLASS)
+    found = campbell([(signal, speed * np.pi / 30.0, step)], edges * np.pi / 30.0, SEGMENT)
+    kept = found.frequency <= HIGHEST
+    level = np.log10(np.maximum(found.density[:, kept].T, 1e-12 * np.nanmax(found.density)))
+    order = mesh_orders(MACHINE.stages)["stage 1"]
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    drawn = modes.frequencies[(modes.frequencies > 0.0) & (modes.frequencies <= HIGHEST)]
+    ends = np.array([BEGIN, END])
+    page.section("Run-up")
+    diagram = heat_map(
+        f"Short-time Campbell diagram of the planet's motion in a run-up by {END - BEGIN:g} rpm; "
+        "lines: mesh of stage 1, and natural frequencies (dotted)",
+        middles,
+        found.frequency[kept],
+        level,
+        ("rotor speed [rpm]", "frequency [Hz]", "log10 of density [m^2/Hz]"),
+        yaxis={"range": [0.0, HIGHEST]},
+    )
+    white = {"color": "white", "width": 1}
+    diagram.figure["data"] += [
+        trace("stage 1 mesh 1x", ends, order * ends / 60.0, line=white, showlegend=False),
+        *(
+            trace(f"{f:.1f} Hz", ends, [f, f], line={**white, "dash": "dot"}, showlegend=False)
+            for f in drawn
+        ),
+    ]
+    page.add(diagram)
+    there = found.segments > 0.0
+    met = order * middles[there] / 60.0
+    ridge = found.frequency[found.density[there][:, kept].argmax(axis=1)]
+    page.at_most(
+        "ridge of the diagram, largest distance from the mesh order or a natural frequency [Hz]",
+        max(
+            min(abs(r - m), float(np.abs(r - drawn).min())) for r, m in zip(ridge, met, strict=True)
+        ),
+        order * (0.5 * CLASS + 0.5 * SEGMENT * (END - BEGIN) / (len(signal) * step)) / 60.0
+        + 2.0 / SEGMENT,
+        why="half a class of 1 rpm, half the rise in a segment of 0.5 s, and two of its lines",
+        source="excitation, or the decay of a mode that was passed",
+        measure="frequency",
+    )
+    page.text(
+        f"The ridge follows the mesh order to within {float(np.abs(ridge - met).max()):.1f} Hz, "
+        "and is brightest where it has just passed a mode that moves the planet."
+    )
+
+
+def peaks(page: Page, modes: SystemModes, order: float) -> None:
+    """Peak of each mode in the run-up over that at rest, by the time that the run-up takes."""
+    inside = [f for f in modes.frequencies if order * BEGIN / 60.0 < f < order * END / 60.0]
+    rows: list[Record] = []
+    for seconds in (5.0, 20.0, 100.0, 1000.0):
+        sweep = Sweep(order * BEGIN / 60.0, order * (END - BEGIN) / 60.0 / seconds)
+        for f in (inside[0], inside[-1]):
+            peak = run_up_peak(float(f), RATIO * float(f) / AT, sweep)
+            rows.append(
+                {
+                    "run-up [s]": seconds,
+                    "mode [Hz]": float(f),
+                    "peak over that at rest": peak.share,
+                    "later than the crossing by [Hz]": peak.frequency - float(f),
+                }
+            )
+    shares = [float(r["peak over that at rest"]) for r in rows]
+    page.holds(
+        "a slower run-up brings each mode nearer to its response at rest",
+        all(a < b for a, b in zip(shares, shares[2:], strict=False)),
+        why="there is more time in the resonance",
+        source="Lewis 1932",
+    )
+    page.table("Peaks in run-ups of several durations", rows)
+    page.data("peaks", rows)

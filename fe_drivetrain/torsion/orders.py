@@ -1,0 +1,91 @@
+"""Orders of gear meshes: how often teeth meet in a turn of the rotor, and where a mode is met."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Protocol
+
+
+class Geared(Protocol):
+    """A gear stage: its teeth, the ring's or the gear's first, and speed out over speed in."""
+
+    @property
+    def kind(self) -> str:
+        """Either "planetary" or "parallel"."""
+
+    @property
+    def teeth(self) -> tuple[int, ...] | None:
+        """From the largest gear on; the last are those of the output."""
+
+    @property
+    def speed_ratio(self) -> float:
+        """Of the output over the input."""
+
+
+@dataclass(frozen=True)
+class Toothed:
+    """A stage of which only kind and teeth are known.
+
+    Attributes
+    ----------
+    kind : str
+        "planetary", with its ring standing and driven by its carrier, or "parallel".
+    teeth : tuple of int
+        Of ring and sun, or of gear and pinion.
+    """
+
+    kind: str
+    teeth: tuple[int, int]
+
+    @property
+    def speed_ratio(self) -> float:
+        """Of the sun to the carrier, or of the pinion to the gear."""
+        large, small = self.teeth
+        return (1.0 if self.kind == "planetary" else 0.0) + large / small
+
+
+def mesh_orders(stages: Iterable[Geared]) -> dict[str, float]:
+    """Mesh frequencies over the rotor's, of stages from the rotor on.
+
+    A planetary stage with its ring standing has z_ring times the speed of its carrier, a parallel
+    one z_gear times that of its gear. (Al-Hamadani 2018, Table 4.8, has the sun's teeth times its
+    absolute speed, z_ring + z_sun, which counts the turning of the carrier too.)
+
+    Parameters
+    ----------
+    stages : iterable of Geared
+        Rows of a gear table, of a machine, or `Toothed`.
+
+    Returns
+    -------
+    dict
+        By "stage 1" and so on; stages without teeth are left out.
+    """
+    return _orders(stages, absolute=False)
+
+
+def absolute_sun_orders(stages: Iterable[Geared]) -> dict[str, float]:
+    """What Table 4.8 of Al-Hamadani 2018 prints: of planetary stages, z_ring + z_sun; wrong."""
+    return _orders(stages, absolute=True)
+
+
+def _orders(stages: Iterable[Geared], absolute: bool) -> dict[str, float]:
+    found, speed = {}, 1.0
+    for number, stage in enumerate(stages, start=1):
+        if stage.teeth:
+            beside = stage.teeth[-1] if absolute and stage.kind == "planetary" else 0
+            found[f"stage {number}"] = (stage.teeth[0] + beside) * speed
+        speed *= stage.speed_ratio
+    return found
+
+
+def crossing_speed(frequency: float, order: float) -> float:
+    """Speed of the rotor at which an order has a frequency, n = 60 f / order [rpm].
+
+    Parameters
+    ----------
+    frequency : float
+        [Hz].
+    order : float
+        Periods in a turn of the rotor.
+    """
+    return 60.0 * frequency / order

@@ -1,0 +1,79 @@
+"""A shaft of a machine as a scene of its own, to be condensed as beam, meridian or solid."""
+
+from fe_drivetrain.common import InputError
+from fe_drivetrain.common.reading import validated
+from fe_drivetrain.dynamics import Machine
+from fe_drivetrain.dynamics.tables import STEEL
+from fe_drivetrain.scene import Scene
+
+#: Of a seat, over the shaft's diameter.
+SEAT = 0.2
+
+
+def shaft_scene(machine: Machine, name: str, size: float = 0.2) -> Scene:
+    """A round shaft of a machine with its bearings' seats; its supports have no part in this.
+
+    Parameters
+    ----------
+    machine : Machine
+        Its table.
+    name : str
+        Of a shaft that is given by its size.
+    size : float
+        Of elements, over the diameter.
+
+    Returns
+    -------
+    Scene
+        The shaft begins at x = 0; its reference points are "hub", its bearings and "gearbox".
+
+    Raises
+    ------
+    InputError
+        There is no such shaft.
+    """
+    given = {shaft.name: shaft for shaft in machine.shafts if shaft.outer is not None}
+    if name not in given:
+        raise InputError(f"no shaft {name!r} with a diameter: use one of {', '.join(given)}")
+    shaft = given[name]
+    d = float(shaft.outer or 0.0)
+    units = [
+        {
+            "bearing": {
+                "name": bearing.name.replace("-", "_"),
+                "x": bearing.at,
+                "width": SEAT * d,
+                "kind": "ring",
+                "raceway_diameter": 1.3 * d,
+            },
+            "housing": {
+                "width": 0.3 * d,
+                "wall": 0.25 * d,
+                "foot_width": 0.4 * d,
+                "pedestal_width": 2.0 * d,
+                "centre_height": 1.0 * d,
+                "foot_length": 3.0 * d,
+            },
+            "interface": "bonded",
+        }
+        for bearing in machine.bearings
+        if bearing.holds == name
+    ]
+    return validated(
+        Scene,
+        {
+            "title": f"{name} of {machine.title}",
+            "materials": {"shaft_steel": STEEL.model_dump()},
+            "shaft": {
+                "front": 0.0,
+                "material": "shaft_steel",
+                "sections": [
+                    {"length": shaft.length, "outer_diameter": d, "inner_diameter": shaft.inner}
+                ],
+            },
+            "bearing_units": units,
+            "gearbox": {"stiffness": [1e6] * 6},
+            "mesh": {"shaft": size * d, "bearing": size * d, "housing": size * d},
+        },
+        f"shaft {name}",
+    )
