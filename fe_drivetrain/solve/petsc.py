@@ -36,7 +36,7 @@ from fe_drivetrain.solve.reduction import Elements, Joints, System
 METHODS = ("petsc", "petsc-mumps")
 
 MOST = 400
-"""Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 to 160."""
+"""Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 and more."""
 
 MPI_VARIABLE = "FE_DRIVETRAIN_MPI"
 """Environment variable: the command that starts the processes, "mpiexec -n CORES" where unset."""
