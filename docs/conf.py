@@ -38,6 +38,8 @@ os.environ |= {"IPYTHONDIR": written_pages.ipython_folder(HERE / "generated" / "
 # Types stand in the signature; the docstrings say units, shapes and sources.
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
+# Of programs that the system has, or has not.
+autodoc_mock_imports = ["mpi4py", "petsc4py"]
 # The list of a room's names stands at the top of its page; in every page's menu it would be slow.
 toc_object_entries = False
 python_maximum_signature_line_length = 88

@@ -258,3 +258,32 @@ def test_a_damaged_housing_ends_a_command_with_status_2_and_one_sentence(samples
         status, _, error = invoke(*words)
         assert status == 2
         assert "half.step cannot be read as STEP" in error
+
+
+def test_small_details_are_removed_where_asked_for_and_with_a_message(tmp_path):
+    with gmsh_session():
+        occ = gmsh.model.occ
+        bored, _ = occ.cut(
+            [(3, occ.addBox(-0.5, -0.5, -0.5, 1, 1, 1))],
+            [(3, occ.addCylinder(-1, 0, 0, 2, 0, 0, 0.3))],
+        )
+        occ.synchronize()
+        edge = next(
+            tag
+            for _, tag in gmsh.model.getEntities(1)
+            if gmsh.model.getType(1, tag) == "Line" and occ.getMass(1, tag) == pytest.approx(1)
+        )
+        face = int(gmsh.model.getAdjacencies(1, edge)[0][0])
+        ((_, solid),) = occ.chamfer([bored[0][1]], [edge], [face], [5e-5])
+        write_step(tmp_path / "box.step", [solid])
+    housing = {
+        "step": str(tmp_path / "box.step"),
+        "seat": {"radius": 300},
+        "held": [{"point": [0, 0, -500], "normal": [0, 0, 1]}],
+    }
+    sizes, bearing = MeshSizes(housing=0.3, elements_per_turn=8), Bearing(kind="ring")
+    with gmsh_session():
+        assert opened(housing["step"])["after"]["faces"] == 8
+    with pytest.warns(UserWarning, match="box.step: healing has removed 1 faces and 3 edges"):
+        found = placed_housing(ForeignHousing(**housing, smallest_detail=0.2), bearing, sizes)
+    assert found.facts["faces removed"] == 1

@@ -17,8 +17,8 @@ from fe_drivetrain.solve.cost_model import available_memory
 
 ROOT = Path(__file__).parents[1]
 POSIX = {"fcntl", "grp", "pty", "pwd", "resource", "termios", "tty"}
-#: Runs in a process of its own, which the case starts only where processes can be forked.
-FORKS = {"cases/stability/fault_moments.py"}
+#: Run in processes of their own, started only where there are forks, and MPI with PETSc.
+APART = {"cases/stability/fault_moments.py", "fe_drivetrain/solve/petsc_ranks.py"}
 NOT_HERE = SimpleNamespace(name="nt", environ=os.environ)
 
 
@@ -31,7 +31,7 @@ def test_no_module_needs_what_windows_does_not_have() -> None:
                 module = {node.module} if isinstance(node, ast.ImportFrom) else set()
                 if POSIX & {*names, *module}:
                     found.add(path.relative_to(ROOT).as_posix())
-    assert found == FORKS
+    assert found == APART
 
 
 def test_memory_is_known_where_the_system_says(

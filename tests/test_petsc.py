@@ -17,7 +17,7 @@ from fe_drivetrain.solve.solvers import factorise, solve
 @pytest.fixture(scope="module")
 def with_petsc():
     if petsc.interpreter() is None:
-        pytest.skip("no Python here has petsc4py: apt-get install python3-petsc4py openmpi-bin")
+        pytest.skip(f"no Python here has petsc4py: {petsc.INSTALL}")
 
 
 @pytest.fixture(scope="module")

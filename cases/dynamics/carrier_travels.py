@@ -33,6 +33,9 @@ NAME, TORQUE, MOMENT, SPEED = "nrel_750kw", 3.25e5, -3e5, 2.31  # N m, N m, rad/
 RING = 99
 """Teeth of the ring: meshes in a turn of the carrier."""
 STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
+RIM = Rim(0.563, 0.08, 0.23, STEEL)
+"""Outside the published root circle, 1.047 m, as thick as the published 509 kg of the ring ask for;
+not held by bolts."""
 PIN = "stage 1 pin 1 upwind"
 
 
@@ -88,7 +91,7 @@ def run(run: Run, page: Page) -> None:
     page.table(
         "Third harmonic of the ring, radial amplitude at orders of the carrier",
         [
-            {"order": k, "amplitude [nm]": 1e9 * float(lines[k])}
+            {"order": k, "amplitude [µm]": 1e6 * float(lines[k])}
             for k in (3, RING - 6, RING - 3, RING, RING + 3, RING + 6)
         ],
     )
@@ -107,7 +110,7 @@ def a_turn(machine: Machine, count: int) -> Turn:
         4 * np.pi / SPEED,
         2 * np.pi / SPEED / (10 * count),
         generalised_alpha(0.3),
-        State(np.linalg.solve(carriers.system.K, load), zero, zero),
+        State(np.asarray(np.linalg.solve(carriers.system.K, load), dtype=np.float64), zero, zero),
         every=10,
     )
     assert found.motion.converged
@@ -131,7 +134,7 @@ def loads(machine: Machine, system: System) -> Floats:
 
 def ring_lines(machine: Machine, steps: int) -> Floats:
     """Amplitudes of the third harmonic of an elastic ring by orders of the carrier [m]."""
-    rim = Flexible(rims={1: (Rim(0.55, 0.04, 0.23, STEEL), (3,))})
+    rim = Flexible(rims={1: (RIM, (3,))})
     carriers = travelling(machine, held_generator=True, flexible=rim)
     system = carriers.system
     meshing = machine_meshing(machine, SPEED, contact_ratios(machine))
@@ -147,7 +150,7 @@ def ring_lines(machine: Machine, steps: int) -> Floats:
         1.2 * turn,
         turn / count,
         generalised_alpha(0.2),
-        State(np.linalg.solve(system.K, load), zero, zero),
+        State(np.asarray(np.linalg.solve(system.K, load), dtype=np.float64), zero, zero),
     )
     last = found.motion.q[-count - 1 : -1, system.place("stage 1 rim 3 cos ux")]
     return np.asarray(np.abs(np.fft.rfft(last)) * 2 / count)

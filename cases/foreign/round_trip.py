@@ -35,7 +35,7 @@ PICKS = {
 
 
 @case(
-    "A housing from STEP and mesh files against the parametric housing that they are of",
+    "A housing read back from STEP and mesh files, against the parametric one",
     source="the parametric housing itself, meshed by the program",
 )
 def run(run: Run, page: Page) -> None:

@@ -1,13 +1,21 @@
 """A wind farm's years of samples, counted in pieces on all workers and as one stream on one."""
 
-import resource
 import time
 from collections.abc import Iterator
+from importlib.util import find_spec
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import ExactSum, Floats, InputError, cores, exact_sum
+from fe_drivetrain.common import (
+    ExactSum,
+    Floats,
+    InputError,
+    MissingToolError,
+    cores,
+    exact_sum,
+    peak_memory,
+)
 from fe_drivetrain.histories import Counting, counted_histories, piece, streamed_cycles
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -42,6 +50,10 @@ def sizes(samples: int) -> list[int]:
 def run(run: Run, page: Page) -> None:
     """Count made histories both ways; nothing may differ."""
     samples = int(float(run.settings.get("samples", QUICK if run.quick else SAMPLES)))
+    if find_spec("resource") is None:
+        raise MissingToolError(
+            "this system does not say what memory its processes have taken: run it on Linux"
+        )
     each = samples // TURBINES
     if each < 1:
         raise InputError(f"samples = {samples}: give {TURBINES} or more, as in samples=1e9")
@@ -60,8 +72,10 @@ def run(run: Run, page: Page) -> None:
             run.report(f"turbines ({number} of {TURBINES})")
             found = found + more
         apart = time.perf_counter() - start
+    import resource  # which Windows does not have
+
     memory = {
-        "of this process": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3,
+        "of this process": (peak_memory() or np.nan) / 1e6,
         "of a local worker": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e3,
     }
     damage = [ExactSum() for _ in COUNTING.slopes]

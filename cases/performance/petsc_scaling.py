@@ -89,9 +89,7 @@ def measured(system: System, F: Floats, count: int, repeats: int) -> tuple[Recor
 def run(run: Run, page: Page) -> None:
     """The same bar on more processes, and bars that grow with them."""
     if petsc.interpreter() is None:
-        raise MissingToolError(
-            "no Python here has petsc4py: apt-get install python3-petsc4py openmpi-bin"
-        )
+        raise MissingToolError(f"no Python here has petsc4py: {petsc.INSTALL}")
     size = float(run.settings.get("unknowns", QUICK if run.quick else UNKNOWNS))
     most = int(run.settings.get("processes", cores()))
     counts = [2**k for k in range(most.bit_length()) if 2**k <= most]

@@ -74,7 +74,7 @@ def interfaces() -> list[Found]:
     loads = np.array([250e3, 5e3, -400e3, 800e3, 50e3, 20e3])
     size = np.random.default_rng(1).standard_normal((200, 6))
     changing = np.asarray(loads * (1.0 + 0.3 * size), dtype=np.float64)
-    table = three_point_loads(PLACES, np.arange(200) * 0.1, changing)
+    table = three_point_loads(PLACES, np.linspace(0.0, 19.9, 200), changing)
     worst = max(float(np.abs(imbalance(table, body.name)).max()) for body in table.bodies)
     arms = [table.interface(f"{side} arm").loads[:, 2] for side in ("left", "right")]
     housing = -0.5 * PLACES.between_arms * (arms[0] - arms[1])

@@ -150,7 +150,7 @@ def simulated_run_up(
     sweep = Sweep(order * BEGIN / 60.0, order * (END - BEGIN) / 60.0 / seconds)
     springs = [k for k, n in enumerate(system.spring_names) if n.startswith(f"{MESH} slice")]
     push = system.rows[springs].T @ system.stiffness[springs] * ERROR
-    time = np.arange(round(seconds / STEP) + 1) * STEP
+    time = np.asarray(np.arange(round(seconds / STEP) + 1) * STEP, dtype=np.float64)
     loads = Loads(push[:, None], time, np.cos(sweep.phase(time))[:, None])
     _, q, _ = exact_steps(equations_of(system), loads, seconds, STEP)
     place = system.place("stage 1 planet 1 uy")

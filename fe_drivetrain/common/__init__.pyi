@@ -15,10 +15,10 @@ from .exact_sums import ExactSum as ExactSum
 from .exact_sums import exact_sum as exact_sum
 from .interpreter import interpreters as interpreters
 from .interpreter import run_python as run_python
-from .memory import peak_memory as peak_memory
 from .jobs import mapped as mapped
 from .jobs import pool as pool
 from .jobs import scheduled_by as scheduled_by
+from .memory import peak_memory as peak_memory
 from .processes import Processes as Processes
 from .progress import Progress as Progress
 from .progress import silent as silent

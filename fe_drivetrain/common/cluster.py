@@ -27,7 +27,12 @@ from fe_drivetrain.common.cache import CACHE_VARIABLE, user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.made_by import machine, program_hash
 from fe_drivetrain.common.progress import Progress, silent
-from fe_drivetrain.common.threads import CORES_VARIABLE, held_to_one_thread, hold_threads
+from fe_drivetrain.common.threads import (
+    CORES_VARIABLE,
+    held_to_one_thread,
+    hold_threads,
+    thread_limits,
+)
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -81,6 +86,7 @@ def connected(address: str) -> Iterator[Client]:
     InputError
         There is no scheduler at the address.
     """
+    before = {name: os.environ.get(name) for name in (CORES_VARIABLE, *thread_limits(1))}
     os.environ[CORES_VARIABLE] = "1"
     hold_threads()
     try:
@@ -102,6 +108,9 @@ def connected(address: str) -> Iterator[Client]:
             yield client
     finally:
         client.close()
+        os.environ |= {name: value for name, value in before.items() if value is not None}
+        for name in (name for name, value in before.items() if value is None):
+            os.environ.pop(name, None)
 
 
 class Cluster:

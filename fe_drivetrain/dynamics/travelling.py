@@ -418,7 +418,13 @@ class _Run:
                 outside1 = self.loads.at(t)
                 behind = am * (M @ a) + af * (now.force - outside)
                 step, then, count, converged = self.newton(
-                    t, q, v, a, (1 - af) * outside1 - behind, b, tolerance
+                    t,
+                    q,
+                    v,
+                    np.asarray(a, dtype=np.float64),
+                    (1 - af) * outside1 - behind,
+                    b,
+                    tolerance,
                 )
                 iterations, most = iterations + count, max(most, count)
                 missed += not converged
@@ -434,7 +440,7 @@ class _Run:
         times, places, rates, forces, energies, carried = (
             np.array(of) for of in zip(*kept, strict=True)
         )
-        end = State(q, v, a, begin.time + steps * dt)
+        end = State(q, v, np.asarray(a, dtype=np.float64), begin.time + steps * dt)
         motion = Motion(times, places, rates, forces, energies, iterations, most, missed, end)
         return Travelled(motion, self.speed * times, self.carriers.seats, carried)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -96,6 +97,11 @@ def placed_housing(
     ------
     InputError
         The file cannot be read or meshed, a face is not found, or the seat is not the bearing's.
+
+    Warns
+    -----
+    UserWarning
+        Healing has removed small details.
     """
     housing.check_bearing(bearing)
     used = user_cache() if cache is None else cache
@@ -113,6 +119,14 @@ def placed_housing(
         arrays = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
         used.keep("meshes", content, arrays)
     facts = json.loads(str(arrays["facts"].ravel()[0]))
+    if facts["faces removed"] or facts["edges removed"]:
+        warnings.warn(
+            f"{Path(housing.file).name}: healing has removed {facts['faces removed']} faces and "
+            f"{facts['edges removed']} edges, and changed the volume from "
+            f"{facts['volume before healing [m^3]']:.9g} to "
+            f"{facts['volume after healing [m^3]']:.9g} m^3",
+            stacklevel=2,
+        )
     part = f"{bearing.name}.housing"
     faces = {
         f"{part}.{key.removeprefix('face ')}": value

@@ -89,7 +89,8 @@ def in_classes(
         places.append((numbers - start).astype(int))
         shape.append(int(np.floor(np.ldexp(high, -own))) - start + 1)
     flat = np.ravel_multi_index(tuple(places), shape)
-    amount = np.bincount(flat, np.asarray(weights, dtype=float), int(np.prod(shape)))
+    counted = np.bincount(flat, np.asarray(weights, dtype=float), int(np.prod(shape)))
+    amount: Floats = np.asarray(counted, dtype=np.float64)
     return Classes(tuple(powers), tuple(first), amount.reshape(shape))
 
 

@@ -168,7 +168,7 @@ def case_channels(
             f"a step of {step:g} s in measurement case {case.code!r}, whose shortest part is "
             f"{float(np.diff(times).min()):g} s: give a step above 0 and at most that"
         )
-    time = np.arange(round(case.seconds / step) + 1) * step
+    time = np.arange(round(case.seconds / step) + 1, dtype=np.float64) * np.float64(step)
     braking = rated * case.torque(time)
     speed = case.speed(time)
     accelerating = float(system.J.sum()) * np.gradient(speed, step)

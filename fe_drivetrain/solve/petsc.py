@@ -36,7 +36,7 @@ from fe_drivetrain.solve.reduction import Elements, Joints, System
 METHODS = ("petsc", "petsc-mumps")
 
 MOST = 400
-"""Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 to 160."""
+"""Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 and more."""
 
 MPI_VARIABLE = "FE_DRIVETRAIN_MPI"
 """Environment variable: the command that starts the processes, "mpiexec -n CORES" where unset."""
@@ -46,6 +46,8 @@ FOLDER_VARIABLE = "FE_DRIVETRAIN_MPI_FOLDER"
 
 _RANK = Path(__file__).with_name("petsc_ranks.py")
 _NEEDS = "import mpi4py, petsc4py.PETSc, scipy"
+
+INSTALL = "apt-get install python3-petsc4py python3-mpi4py python3-scipy openmpi-bin"
 
 
 @once
@@ -121,8 +123,7 @@ class Ranks:
         python = interpreter()
         if python is None:
             raise InputError(
-                f"solver {method!r} needs PETSc and MPI: apt-get install python3-petsc4py "
-                "openmpi-bin, or choose 'multigrid'"
+                f"solver {method!r} needs PETSc and MPI: {INSTALL}, or choose 'multigrid'"
             )
         launch = _launch()
         self._folder = Path(tempfile.mkdtemp(dir=os.environ.get(FOLDER_VARIABLE)))

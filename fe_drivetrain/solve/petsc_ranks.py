@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import importlib.util
 import json
-import resource
 import sys
 import time
 from pathlib import Path
@@ -23,11 +22,18 @@ petsc4py.init([])
 from petsc4py import PETSc  # noqa: E402
 from scipy import linalg, sparse  # noqa: E402
 
-_spec = importlib.util.spec_from_file_location("stopping", Path(__file__).with_name("stopping.py"))
-assert _spec is not None
-assert _spec.loader is not None
-stopping = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(stopping)
+
+def _module(path: str) -> Any:
+    """A module of this package, which this Python may not have, by itself."""
+    spec = importlib.util.spec_from_file_location("alone", Path(__file__).parents[1] / path)
+    assert spec is not None
+    assert spec.loader is not None
+    found = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(found)
+    return found
+
+
+stopping, memory = _module("solve/stopping.py"), _module("common/memory.py")
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -111,7 +117,7 @@ class Rank:
         self.folder, starts = folder, self._starts(setup["blocks"])
         self.low, self.high = starts
         self.size = ((3 * (self.high - self.low), 3 * setup["blocks"]),) * 2
-        start, self.before = time.perf_counter(), _most_memory()
+        start, self.before = time.perf_counter(), memory.peak_memory()
         self.K = self._matrix(folder)
         self.nnz = int(self.K.getInfo(PETSc.Mat.InfoType.LOCAL)["nz_used"])
         bodies = self._matrix(folder / "bodies") if setup["apart"] else self.K
@@ -134,8 +140,8 @@ class Rank:
         return K
 
     def _facts(self) -> dict[str, Any]:
-        memory = _most_memory() - self.before
-        both = self.comm.tompi4py().allgather((memory, self.nnz))
+        more = memory.peak_memory() - self.before
+        both = self.comm.tompi4py().allgather((more, self.nnz))
         return {"ranks": self.comm.size, "bytes": [b for b, _ in both], "nnz": [n for _, n in both]}
 
     def _preconditioner(self, method: str, K: Any) -> Any:
@@ -225,11 +231,6 @@ class Rank:
         """What the first process has to say."""
         if self.comm.rank == 0:
             print("@" + json.dumps(values), flush=True)
-
-
-def _most_memory() -> int:
-    """That this process has had so far [bytes]."""
-    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 def main(folder: Path) -> None:

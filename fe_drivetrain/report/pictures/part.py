@@ -45,9 +45,7 @@ def picture_of_part(
     import pyvista
 
     view = View.fitting(points[np.unique(triangles)], _FROM, top=80, bottom=80)
-    surface = pyvista.PolyData.from_regular_faces(
-        np.array(points), np.array(triangles, dtype=np.int_)
-    )
+    surface = pyvista.PolyData.from_regular_faces(np.array(points), triangles.tolist())
     with drawing(path, view) as sheet:
         sheet.solid(surface, sharp_edges(surface), _COLOUR)
         middle = view.project(points.mean(axis=0))
