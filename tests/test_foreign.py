@@ -160,9 +160,9 @@ def test_a_part_elsewhere_in_its_file_is_turned_and_moved_to_its_bearing(files):
 
 
 def test_the_same_block_from_step_is_as_stiff_within_the_error_of_its_mesh(files):
-    own = unit_stiffness(scene(joint=SPRING), "main_bearing", method="cholmod")
+    own = unit_stiffness(scene(joint=SPRING), "main_bearing", method="superlu")
     housing = f"step: {files}/block.step, seat: {{radius: 300}}, held: [{FOOT}]"
-    foreign = unit_stiffness(scene(housing, SPRING), "main_bearing", method="cholmod")
+    foreign = unit_stiffness(scene(housing, SPRING), "main_bearing", method="superlu")
     # the block stands on its whole foot, and has no bolt holes
     scale = np.sqrt(np.outer(own.diagonal(), own.diagonal()))
     assert np.abs((foreign - own) / scale).max() < 0.02
@@ -182,9 +182,9 @@ def test_the_same_block_from_step_is_as_stiff_within_the_error_of_its_mesh(files
     ],
 )
 def test_a_mesh_of_ours_read_back_is_as_stiff_to_round_off(files, housing):
-    own = unit_stiffness(scene(joint=SPRING), "main_bearing", method="cholmod")
+    own = unit_stiffness(scene(joint=SPRING), "main_bearing", method="superlu")
     read = unit_stiffness(
-        scene(housing.format(files), SPRING), "main_bearing", method="cholmod", cache=NO_CACHE
+        scene(housing.format(files), SPRING), "main_bearing", method="superlu", cache=NO_CACHE
     )
     assert np.abs(read - own).max() < 1e-12 * np.abs(own).max()
 
@@ -195,7 +195,7 @@ def test_a_bonded_bearing_is_tied_to_its_housing_and_all_is_in_balance(files):
     tilt = []
     for one in (own, foreign):
         model = build_model(one, mesh_scene(one))
-        response = unit_load_response(model, "cholmod")
+        response = unit_load_response(model, "superlu")
         assert response.equilibrium_error < 1e-8
         tilt.append(response.motions["main_bearing.seat"][4, 4])
     assert tilt[1] == pytest.approx(tilt[0], rel=0.04)
@@ -210,7 +210,7 @@ def test_bolts_as_beams_are_softer_than_washers_and_they_than_the_foot(files):
     tilt = []
     for way in ways:
         housing = f"step: {files}/block.step, seat: {{radius: 300}}, held: [{FOOT}]{way}"
-        K = unit_stiffness(scene(housing, SPRING), "main_bearing", method="cholmod", ring=False)
+        K = unit_stiffness(scene(housing, SPRING), "main_bearing", method="superlu", ring=False)
         tilt.append(K[4, 4])
     assert tilt[0] > tilt[1] > tilt[2]
 
@@ -220,7 +220,7 @@ def test_a_scene_on_bolts_is_in_balance_and_each_bolt_carries_its_share(files):
     housing = f"step: {files}/block.step, seat: {{radius: 300}}, held: [{FOOT}], {bolts}"
     one = scene(housing, SPRING)
     model = build_model(one, mesh_scene(one))
-    response = unit_load_response(model, "cholmod")
+    response = unit_load_response(model, "superlu")
     assert response.equilibrium_error < 1e-8
     pull = 0.0
     for point, k in model.springs:
