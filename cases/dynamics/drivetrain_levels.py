@@ -104,7 +104,8 @@ def run(run: Run, page: Page) -> None:
     page.table(f"The simplest level within {100 * TOLERANCE:g} % of the finest", needed)
     page.text(
         "Torsional frequencies need a torsional model, and loads of bearings, of planets and along "
-        "the face rigid bodies at least: a torsional one has no answer. Times are of this run."
+        "the face rigid bodies at least: a torsional one has no answer. It has one for contact "
+        "stress, but of planets and slices that share equally. Times are of this run."
     )
     page.answer(
         "All levels are one assembly: the torsional tables come back to round-off from it.",
