@@ -12,7 +12,7 @@ from fe_drivetrain.procedure.motions import driven_motions, element_torques
 from fe_drivetrain.procedure.resonance import Excitation, drivetrain_excitations, resonances
 from fe_drivetrain.procedure.voltage_dips import Dip
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.torsion.gear_table import gear_masses, gear_speeds, two_masses
+from fe_drivetrain.torsion.gear_table import GENERATOR, gear_masses, gear_speeds, two_masses
 from fe_drivetrain.torsion.system import (
     Inertia,
     chain,
@@ -159,6 +159,20 @@ def test_meshes_are_teeth_times_turns() -> None:
     )
     assert register["generator 1x"] == pytest.approx(abs(speeds["generator"]))
     assert register["3P"] == 3.0
+    assert register["shaft 1-2 2x"] == pytest.approx(2.0 * speeds["stage 2 gear"])
+    assert register["shaft 2-3 1x"] == pytest.approx(abs(speeds["stage 3 gear"]))
+
+
+def test_a_fixed_frequency_is_as_near_at_every_speed() -> None:
+    modes = natural_modes(two_masses(table("drivetrain_c"), "free"))
+    own = float(modes.frequencies[1])
+    grid = Excitation("grid", 0.0, (GENERATOR,), fixed=1.05 * own)
+    assert grid.frequency(1.0) == grid.frequency(20.0) == 1.05 * own
+    for speeds in ((1.0, 2.0), (8.0, 18.0)):
+        (met,) = resonances([grid], modes, speeds)
+        assert met.verdict == "near"
+        assert met.margin == pytest.approx(0.05)
+        assert met.crossing == np.inf
 
 
 def test_a_sweep_has_its_peak_where_the_register_has_the_crossing() -> None:
@@ -182,6 +196,8 @@ def test_faults_of_a_register_are_sentences() -> None:
         resonances([], modes, (2.0, 1.0))
     with pytest.raises(InputError, match="periods"):
         Excitation("a", 0.0, ("rotor",))
+    with pytest.raises(InputError, match="one of them above 0"):
+        Excitation("a", 1.0, ("rotor",), fixed=50.0)
 
 
 def test_a_dip_leaves_what_it_says() -> None:

@@ -251,3 +251,9 @@ def test_the_example_of_the_docs_finds_what_it_says() -> None:
     names: dict[str, object] = {}
     exec(code, names)
     assert names["found"] == pytest.approx([150.0 * 24.0 / 174.0, 20.0, 5300.0], rel=1e-9)
+
+
+def test_a_band_that_a_record_cannot_have_is_a_sentence() -> None:
+    for band in ((3.0, 0.2), (60.0, 80.0), (-1.0, 5.0)):
+        with pytest.raises(InputError, match="are no band of a record of 100 Hz"):
+            spectral_fit(np.ones(1000), np.ones(1000), 0.01, band)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies import Body, assemble
+from fe_drivetrain.dynamics.bodies import Body, Superelement, assemble
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.modes import system_modes
 from fe_drivetrain.dynamics.springs import Place, directed
@@ -147,6 +147,31 @@ def test_the_torque_of_a_shaft_is_that_of_the_torsional_model() -> None:
     assert np.abs(found - expected).max() < 1e-6 * np.abs(expected).max()
     with pytest.raises(InputError, match="no shaft 'IMS'"):
         torque_signal(system, load, history, step, "IMS")
+
+
+def test_a_condensed_shaft_has_the_torque_of_the_spring_that_it_replaces() -> None:
+    k, J = {"LSS": 5e3, "HSS": 4e4}, [150.0, 3.0, 24.0]
+    springs = shafts(k, J)
+    only = shafts({"HSS": 4e4}, J[1:])
+    bodies = [
+        Body(f"body {i}", polar=j, transverse=j, mass=1.0, free=frozenset({"rx"}))
+        for i, j in enumerate(J)
+    ]
+    between = np.kron([[1.0, -1.0], [-1.0, 1.0]], np.diag(5e3 * TURN))
+    hss = directed(
+        "HSS rx", Place("body 1", (0, 0, 0)), Place("body 2", (0, 0, 0)), (0, 0, 0), TURN, 4e4
+    )
+    condensed = assemble(bodies, [hss], [Superelement("LSS", ("body 0", "body 1"), between)])
+    history = np.minimum(np.arange(200) / 20.0, 1.0)
+    one, other = (
+        torque_signal(s, s.load_on("body 2", -700.0 * TURN), history, 5e-3, "LSS", front="body 0")(
+            locked_basis(s, ())
+        )
+        for s in (springs, condensed)
+    )
+    assert np.abs(one - other).max() < 1e-9 * np.abs(one).max()
+    with pytest.raises(InputError, match="no shaft 'LSS' with a torsion spring"):
+        torque_signal(only, only.load_on("body 1", TURN), history, 5e-3, "LSS", front="body 0")
 
 
 def test_one_after_another_keeps_what_the_signal_does_not_see() -> None:

@@ -222,6 +222,7 @@ def change(content: Content, key: str, value: Any) -> None:
         ("model.machine", "other", 2, "no evidence says which level"),
         ("load_cases.cases.0.loads", [], 3, "brings no design load about"),
         ("load_cases.cases.0.evidence", [], 3, "was not run"),
+        ("load_cases.cases.0.number", "1.9", 3, "no load case 1.9: use one of 1.1, 1.2,"),
         ("load_cases.cases", [], 3, "no load case brings 'torque oscillation"),
         ("inputs.values.0.measured_by", "", 4, "has no band, and no signal"),
         ("inputs.values.0.measured_by", "speed", 4, "no signal of the campaign"),

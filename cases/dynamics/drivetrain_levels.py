@@ -177,11 +177,11 @@ def more_rungs(run: Run, name: str) -> list[Rung]:
         found.append(Rung(Level.FLEXIBLE, arms, "flexible shafts, housing on torque arms"))
         carrier = carrier_of(library_machine(name).stages[0].centre_distance)
         with run.step("carrier of C"):
-            solid = None if run.quick else solid_component(coarser(carrier, COARSER[0]))
-            beams = carrier_frame(carrier)
-        body = beams if solid is None else solid.body
-        both = Flexible({1: body}, housing=own)
-        of = "beams" if solid is None else "FE"
+            if run.quick:
+                of, cast = "beams", carrier_frame(carrier)
+            else:
+                of, cast = "FE", solid_component(coarser(carrier, COARSER[0])).body
+        both = Flexible({1: cast}, housing=own)
         found.append(Rung(Level.FLEXIBLE, both, f"carrier of {of}, housing on torque arms"))
     return found
 

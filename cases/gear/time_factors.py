@@ -60,9 +60,9 @@ def run(run: Run, page: Page) -> None:
         [
             {
                 "wind [m/s]": wind,
-                "hours": float(mine),
+                "hours": round(float(mine)),
                 "printed hours": hour,
-                "time factor": float(factor),
+                "time factor": round(float(factor)),
                 "printed factor": given,
             }
             for wind, mine, hour, factor, given in zip(
@@ -76,14 +76,14 @@ def run(run: Run, page: Page) -> None:
         "Table 7.2 divides by teeth and by ratios of speed, so that teeth of faster shafts count "
         "less. A tooth of a faster shaft meshes more often: a tooth of the ring three times in a "
         "turn of the carrier, of the sun once for each planet that passes, of a pinion once in "
-        "each of its own turns. Damage by Table 7.2 is too small by the last column, beside that "
-        "of the ring."
+        "each of its own turns. The last column is what damage by Table 7.2 has to be multiplied "
+        "by, beside that of the ring."
     )
     page.answer(
         "Tables 7.1 and 7.2 come out to the digit: hours of bins that end at the wind named, "
         f"{hours.sum() / 1752.0:.1f} % of 20 years in all, and their factors over teeth and "
         "ratios.",
-        f"What Table 7.2 divides by, teeth have to be multiplied by: {worst['tooth']} is loaded "
-        f"{float(str(worst['counted over printed'])):.0f} times as often, beside the ring, as it "
-        "has it.",
+        "Table 7.2 divides by ratios of speed that have to multiply: beside the ring, a tooth of "
+        f"the {worst['tooth']} is loaded {float(str(worst['counted over printed'])):.0f} times as "
+        "often as printed.",
     )

@@ -5,18 +5,9 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.procedure import checks_of_parts
+from fe_drivetrain.cases.procedure import checks_of_parts, checks_of_signals
 from fe_drivetrain.cases.procedure.checks_of_parts import Found
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.histories import (
-    alias,
-    capture_matrix,
-    damage_equivalent_load,
-    equivalent_level,
-    even_levels,
-    rainflow_cycles,
-    time_at_level,
-)
 from fe_drivetrain.procedure import (
     Excitation,
     Procedure,
@@ -34,7 +25,7 @@ from fe_drivetrain.procedure import (
     reduced_torque,
     require_complete,
     resonances,
-    sampling_rates,
+    spectral_fit,
     stiffness_by_ranges,
     three_point_loads,
 )
@@ -53,7 +44,7 @@ from fe_drivetrain.torsion import (
     stage_masses,
     static_stiffness,
 )
-from fe_drivetrain.validation import published_campaigns, published_drivetrains
+from fe_drivetrain.validation import published_drivetrains
 
 TABLE = published_drivetrains.table("drivetrain_c")
 FRONT, REAR, STIFFNESS, DAMPING = 150.34, 24.0, 5296.0, 19.86
@@ -236,7 +227,16 @@ def identified() -> list[Found]:
     omega = float(np.sqrt(STIFFNESS / REDUCED))
     exact = np.array([REDUCED, DAMPING, STIFFNESS])
     low = Twist(STEP, 9.0 * torque, *(a / 9.0 for a in x))
+    biases, known = noisy_bias()
     return [
+        Found(
+            "bias of a fit by noise of the torque, over that expected",
+            float(np.mean(biases)) / known,
+            1.0,
+            "power of the noise over that of the signal in the band",
+            3.0 * float(np.std(biases, ddof=1) / np.sqrt(np.size(biases))) / known,
+            "three standard errors of the mean of all fits",
+        ),
         Found(
             "Eq 4: stiffness over the truth",
             float(np.median(stiffness_by_ranges(shaft))) / STIFFNESS,
@@ -270,81 +270,23 @@ def identified() -> list[Found]:
     ]
 
 
-def captured() -> list[Found]:
-    """Windows and mean turbulence of the capture matrices."""
-    found = []
-    for of, mean in (
-        (published_campaigns.MONITORING, 9.73),
-        (published_campaigns.IDENTIFICATION, 7.30),
-    ):
-        matrix = capture_matrix(*of.each, *of.edges)
-        found += [
-            Found(
-                f"{of.where}: windows",
-                float(matrix.counts.sum()),
-                float(of.windows),
-                "printed",
-                0.0,
-                "a count",
-            ),
-            Found(
-                f"{of.where}: mean turbulence [%], {100 * of.turbulence:.2f} printed",
-                100.0 * matrix.mean_turbulence,
-                mean,
-                "middles of the printed classes",
-                5e-3,
-                "its last digit",
-            ),
-        ]
-    return found
-
-
-def counted() -> list[Found]:
-    """Rainflow, equivalent loads, load durations."""
-    example = rainflow_cycles(np.array([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]))
-    counts = {float(r): float(example.counts[example.ranges == r].sum()) for r in example.ranges}
-    expected = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
-    wave = rainflow_cycles(3.0 * np.cos(np.linspace(0.0, 20.0 * np.pi, 4001)))
-    signal = np.random.default_rng(1).standard_normal(5000)
-    one, two = (damage_equivalent_load([rainflow_cycles(s * signal)], 1.0, 4.0) for s in (1.0, 2.0))
-    durations = time_at_level(signal, 0.1, even_levels(-6.0, 6.0))
-    level = equivalent_level(np.abs(signal), 10.0 / 3.0)
-    inside = float(np.abs(signal).mean()) <= level <= float(np.abs(signal).max())
-    return [
-        Found(
-            "cycles of the example of ASTM E1049, largest difference",
-            max(abs(counts.get(r, 0.0) - expected.get(r, 0.0)) for r in {*counts, *expected}),
-            0.0,
-            "ASTM E1049: 3 x 0.5, 4 x 1.5, 6 x 0.5, 8 x 1, 9 x 0.5",
-            0.0,
-            "counts",
-        ),
-        Found(
-            "equivalent range of ten periods of a sine of range 6",
-            damage_equivalent_load([wave], 10.0, 4.0),
-            6.0,
-            "ten cycles",
-        ),
-        Found("equivalent load of twice the load, over it", two / one, 2.0, "m"),
-        Found("load durations [s]", float(durations.amount.sum()), 500.0, "T"),
-        Found("equivalent level from mean to maximum", float(inside), 1.0, "p > 1", 0.0, "a truth"),
-    ]
-
-
-def sampling() -> list[Found]:
-    """Sampling rates and aliases."""
-    f = 2.546
-    slow, good = sampling_rates(f)
-    return [
-        Found(
-            "rates over the frequency, difference from 3 and 5",
-            abs(slow / f - 3.0) + abs(good / f - 5.0),
-            0.0,
-            "3 to 5 x",
-        ),
-        Found("at 3 x it appears at itself, over it", alias(f, 1.0 / slow) / f, 1.0, "above 2 x"),
-        Found("at 1.5 x it appears at half of it", alias(f, 1.0 / (1.5 * f)) / f, 0.5, "|f - f_s|"),
-    ]
+def noisy_bias() -> tuple[Floats, float]:
+    """Bias of stiffness by a torque with noise and no second record, of ten; the one expected."""
+    driving, load = (
+        band_torque(20000, STEP, (0.05, 20.0), s, n) for n, s in ((1, 100.0), (2, 40.0))
+    )
+    m = periodic_motions(PAIR, np.stack([driving, -load]), STEP)
+    torque, _ = reduced_torque(driving, load, FRONT, REAR)
+    frequency = np.fft.rfftfreq(len(torque), STEP)
+    band = (frequency >= 1.0) & (frequency <= 5.0)
+    found, expected = [], []
+    for seed in range(10):
+        noise = 40.0 * np.random.default_rng(seed).standard_normal(len(torque))
+        fit = spectral_fit(torque + noise, m.angle[0] - m.angle[1], STEP, (1.0, 5.0))
+        found.append(fit.values[2] / STIFFNESS - 1.0)
+        noisy, clean = (np.abs(np.fft.rfft(a)[band]) ** 2 for a in (noise, torque))
+        expected.append(float(noisy.sum() / clean.sum()))
+    return np.array(found), float(np.mean(expected))
 
 
 def reduction() -> list[Found]:
@@ -417,8 +359,8 @@ CHECKS: dict[str, Callable[[], list[Found]]] = {
     "energy shares, Campbell": energies,
     "sweep and stop": sweep,
     "identification": identified,
-    "capture matrices": captured,
-    "cycles and durations": counted,
+    "capture matrices": checks_of_signals.captured,
+    "cycles and durations": checks_of_signals.counted,
     "misalignment": checks_of_parts.misaligned,
     "pitch and yaw torque": checks_of_parts.slewing,
     "friction": checks_of_parts.friction,
@@ -427,7 +369,7 @@ CHECKS: dict[str, Callable[[], list[Found]]] = {
     "thermal torque": checks_of_parts.thermal,
     "transients": checks_of_parts.transients,
     "tower shear": checks_of_parts.shear,
-    "sampling": sampling,
+    "sampling": checks_of_signals.sampling,
     "reduction": reduction,
     "steps": loops,
 }

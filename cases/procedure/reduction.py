@@ -84,7 +84,8 @@ def dip_torque(machine: Machine, system: System, seconds: float) -> Callable[[Fl
     history = 1.0 - Dip(0.2, DEPTH, LENGTH).shares(np.arange(0.0, seconds, STEP))
     turn = np.zeros(6)
     turn[3] = TORQUE / machine.speeds[-1]
-    return torque_signal(system, system.load_on("generator", turn), history, STEP, SHAFT)
+    load = system.load_on("generator", turn)
+    return torque_signal(system, load, history, STEP, SHAFT, front="rotor")
 
 
 def levels(run: Run, page: Page, machine: Machine) -> None:

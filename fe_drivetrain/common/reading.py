@@ -84,7 +84,7 @@ def parse_mapping(text: str, source: str) -> dict[str, Any]:
         raise InputError(f"{source} is not plain YAML: {' '.join(str(error).split())}") from error
     if not isinstance(data, dict):
         raise InputError(
-            f"{source} must be a mapping of keys to values: begin with a line such as 'title: mine'"
+            f"{source} must be a mapping of keys to values: write lines such as 'KEY: VALUE'"
         )
     return data
 

@@ -240,7 +240,7 @@ def csv_channels(
                     titles = line
                     break
     except UnicodeDecodeError as error:
-        raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
+        raise InputError(f"table '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
     found: dict[str, Channel] = {}
     places: list[int] = []
     bare = {name.lower() for name in units}
@@ -260,7 +260,7 @@ def csv_channels(
         )
     except ValueError as error:
         raise InputError(
-            f"hub loads '{file}': {error}, counted below the header: correct the cell, or remove "
+            f"table '{file}': {error}, counted below the header: correct the cell, or remove "
             "the line"
         ) from error
     used = [name for name in found if name in wanted]

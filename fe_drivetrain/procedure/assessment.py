@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from itertools import chain
 from typing import Any
 
 from fe_drivetrain.procedure.evidence import Found
-from fe_drivetrain.procedure.failure_modes import Catalogue, DesignLoad
+from fe_drivetrain.procedure.failure_modes import NUMBERS, Catalogue, DesignLoad
 from fe_drivetrain.procedure.project import (
     SECTIONS,
     EvidenceLink,
@@ -182,7 +183,11 @@ def _failure_modes(project: Project, loads: Mapping[str, DesignLoad]) -> list[st
 
 
 def _unknown(name: str, loads: Mapping[str, DesignLoad]) -> str:
-    return f"{name!r} is no design load of these systems: use one of {', '.join(loads)}"
+    close = get_close_matches(name, loads, n=1, cutoff=0.6)
+    if close:
+        return f"{name!r} is no design load of these systems: did you mean {close[0]!r}?"
+    names = ", ".join(f"{load!r}" for load in loads)
+    return f"{name!r} is no design load of these systems: use one of {names}"
 
 
 def _model(project: Project, evidence: Evidence) -> list[str]:
@@ -277,6 +282,12 @@ def _load_cases(project: Project, loads: Mapping[str, DesignLoad]) -> list[str]:
     lacks = [] if step.cases else ["no load case is named: add some under cases"]
     for case in step.cases:
         name = f"{case.standard} {case.edition} {case.number}"
+        known = NUMBERS.get((case.standard, case.edition))
+        if known and case.number not in known:
+            lacks.append(
+                f"{case.standard} edition {case.edition} has no load case {case.number}: use one "
+                f"of {', '.join(known)}, or 'own' as standard"
+            )
         if not case.loads:
             lacks.append(f"{name} brings no design load about: name some under loads")
         if not case.evidence:

@@ -159,6 +159,7 @@ def read_channels(given: ChannelFile, folder: Path, wanted: frozenset[str]) -> C
         channel = found.get(column.lower())
         if channel is None:
             known = ", ".join(f"{c.name} [{c.unit}]" for c in list(found.values())[:12])
+            known = known or "no column with a unit"
             raise InputError(
                 f"{file} has no column {column!r} with a unit for the channel {name!r}; it has "
                 f"{known}: map the channel, or state the unit under units"

@@ -23,6 +23,15 @@ Covered = Literal["yes", "partly", "no"]
 """Whether the external condition that brings the load about is one of the load cases."""
 
 
+LAST_OF_GROUP = {1: 5, 2: 4, 3: 3, 4: 2, 5: 1, 6: 4, 7: 1, 8: 2}
+NUMBERS = {
+    ("IEC 61400-1", "3"): tuple(
+        f"{group}.{k}" for group, last in LAST_OF_GROUP.items() for k in range(1, last + 1)
+    )
+}
+"""Load cases by standard and edition: Table 2 of IEC 61400-1:2005, from memory, not verified."""
+
+
 class _Row(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 

@@ -232,7 +232,9 @@ def frequency_that_holds(signal: Floats, step: float, share: float = 0.999) -> f
     return float(np.fft.rfftfreq(len(signal), step)[int(np.argmax(held >= share))])
 
 
-def torque_signal(system: System, load: Floats, history: Floats, step: float, shaft: str) -> Signal:
+def torque_signal(
+    system: System, load: Floats, history: Floats, step: float, shaft: str, front: str = ""
+) -> Signal:
     """The torque in a shaft under a load that varies, from rest, by what still moves.
 
     Parameters
@@ -247,6 +249,9 @@ def torque_signal(system: System, load: Floats, history: Floats, step: float, sh
         Between two samples [s].
     shaft : str
         Name of the shaft, of which the first torsion spring is read; it must not be locked.
+    front : str
+        Body at the front end of a shaft that is condensed and has no springs: the torque is what
+        superelements hold it with. Empty where the shaft has springs.
 
     Returns
     -------
@@ -256,12 +261,21 @@ def torque_signal(system: System, load: Floats, history: Floats, step: float, sh
     Raises
     ------
     InputError
-        The shaft has no torsion spring.
+        The shaft has no torsion spring, and no superelement holds its front end.
     """
     names = [f"{shaft} rx", f"{shaft} element 1 rx"]
     watched = next((k for k, n in enumerate(system.spring_names) if n in names), None)
-    if watched is None:
-        raise InputError(f"no shaft {shaft!r} with a torsion spring: name a shaft of the machine")
+    if watched is not None:
+        torque = system.stiffness[watched] * system.rows[watched]
+    elif front:
+        torque = system.extra[system.place(f"{front} rx")]
+    else:
+        torque = np.zeros(0)
+    if not torque.any():
+        raise InputError(
+            f"no shaft {shaft!r} with a torsion spring: name a shaft of the machine, or under "
+            "front the body that a condensed shaft begins at"
+        )
     times = np.arange(len(history)) * step
 
     def run(basis: Floats) -> Floats:
@@ -273,7 +287,7 @@ def torque_signal(system: System, load: Floats, history: Floats, step: float, sh
         )
         loads = varying(basis.T @ load, times, history)
         found = modal_superposition(equations, loads, float(times[-1]), step)
-        return np.asarray(system.stiffness[watched] * (found.q @ rows[watched]))
+        return np.asarray(found.q @ (torque @ basis))
 
     return run
 

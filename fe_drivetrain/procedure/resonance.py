@@ -26,27 +26,31 @@ NEAR, MOVED = 0.1, 0.01
 
 @dataclass(frozen=True)
 class Excitation:
-    """Something periodic in the rotation of a shaft.
+    """Something periodic in the rotation of a shaft, or in time.
 
     Attributes
     ----------
     name : str
         As in "3P", "stage 2 mesh 1x".
     per_turn : float
-        Periods for one turn of the rotor.
+        Periods for one turn of the rotor; 0 of one that does not follow the speed.
     at : tuple of str
         Parts of the model at which it acts: inertias or elements.
+    fixed : float
+        Frequency at any speed, as of a controller's communication or of the grid [Hz]; 0 of one
+        that follows the speed.
     """
 
     name: str
     per_turn: float
     at: tuple[str, ...]
+    fixed: float = 0.0
 
     def __post_init__(self) -> None:
-        if not self.per_turn > 0.0:
+        if min(self.per_turn, self.fixed) < 0.0 or (self.per_turn > 0.0) == (self.fixed > 0.0):
             raise InputError(
-                f"excitation {self.name!r} has {self.per_turn:g} periods a turn of the rotor: give "
-                "a number above 0"
+                f"excitation {self.name!r} has {self.per_turn:g} periods a turn of the rotor and a "
+                f"fixed frequency of {self.fixed:g} Hz: give one of them above 0, the other 0"
             )
 
     def frequency(self, speed: float) -> float:
@@ -57,21 +61,24 @@ class Excitation:
         speed : float
             [rpm].
         """
-        return self.per_turn * speed / 60.0
+        return self.fixed or self.per_turn * speed / 60.0
 
     def crossing(self, frequency: float) -> float:
-        """Speed of the rotor at which it has a frequency [rpm].
+        """Speed of the rotor at which it has a frequency [rpm]; infinite of a fixed one.
 
         Parameters
         ----------
         frequency : float
             [Hz].
         """
-        return crossing_speed(frequency, self.per_turn)
+        return np.inf if self.fixed else crossing_speed(frequency, self.per_turn)
 
 
 def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[Excitation, ...]:
     """Blade passing, imbalance of shafts, planets passing, meshes up to 3x and their sidebands.
+
+    Imbalance of brake disc, coupling and generator is once a turn of the generator. Frequencies of
+    controllers are not those of a gear table: add an `Excitation` with ``fixed`` for each.
 
     Parameters
     ----------
@@ -102,16 +109,23 @@ def drivetrain_excitations(stages: Iterable[Geared], blades: int = 3) -> tuple[E
         if count:
             planets = range(1, count + 1)
             parts = tuple(f"{name} {mesh}-planet {i}" for mesh in ("ring", "sun") for i in planets)
-            found.append(Excitation(f"{name} planets passing", count * speed, parts))
+            found.append(Excitation(f"{name} planets passing", count * abs(speed), parts))
         if name in orders:
             mesh = orders[name]
             found += [Excitation(f"{name} mesh {k}x", k * mesh, parts) for k in (1, 2, 3)]
             for sign, word in ((1.0, "+"), (-1.0, "-")):
                 found.append(Excitation(f"{name} mesh 1x {word} shaft", mesh + sign * speed, parts))
         speed *= stage.speed_ratio
+        if number < len(given):
+            following = "carrier" if getattr(given[number], "planets", 0) else "gear"
+            wheels = f"{name} {'sun' if count else 'pinion'}", f"stage {number + 1} {following}"
+            found += [
+                Excitation(f"shaft {number}-{number + 1} {k}x", k * abs(speed), wheels)
+                for k in (1, 2)
+            ]
     return (
         *found,
-        *(Excitation(f"generator {k}x", k * speed, (GENERATOR,)) for k in (1, 2)),
+        *(Excitation(f"generator {k}x", k * abs(speed), (GENERATOR,)) for k in (1, 2)),
     )
 
 
@@ -142,7 +156,7 @@ class Meeting:
     frequency : float
         Of the mode [Hz].
     crossing : float
-        Speed of the rotor at which they meet [rpm].
+        Speed of the rotor at which they meet [rpm]; infinite of a fixed frequency.
     margin : float
         Least distance of both frequencies over that of the mode, within the range of speeds.
     share : float

@@ -54,10 +54,15 @@ def spectral_fit(
     Raises
     ------
     InputError
-        The band has fewer than ten lines.
+        The band does not rise, is above half the sampling rate, or has fewer than ten lines.
     """
     count = len(torque)
     frequency = np.fft.rfftfreq(count, step)
+    if not 0.0 <= band[0] < band[1] <= frequency[-1]:
+        raise InputError(
+            f"frequencies from {band[0]:g} to {band[1]:g} Hz are no band of a record of "
+            f"{1.0 / step:g} Hz: give two that rise, from 0 to {frequency[-1]:g} Hz"
+        )
     inside = (frequency >= band[0]) & (frequency <= band[1]) & (frequency > 0.0)
     if int(inside.sum()) < 10:
         raise InputError(
