@@ -8,7 +8,9 @@ from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.dynamics.advice import (
     RUNGS,
     Answer,
+    Asked,
     Operation,
+    contact_stress,
     ladder,
     needed_level,
 )
@@ -160,10 +162,27 @@ def test_what_is_asked_of_each_level() -> None:
     assert [a.name for a in answers] == ["torsional", "rigid bodies"]
     assert answers[0].values["load sharing of the planets"] is None
     assert needed_level(answers, "load sharing of the planets", 0.5) == "rigid bodies"
+    stress = "largest contact stress of a gear [MPa]"
+    assert needed_level(answers, stress, 0.5) == "torsional"
+    low, high = (answer.values[stress] for answer in answers)
+    assert low is not None
+    assert high is not None
+    assert high > low  # planets and slices do not share equally
     assert needed_level(answers, "first torsional frequency [Hz]", 0.1) == "torsional"
     assert needed_level(answers, "first torsional frequency [Hz]", 1e-6) == "rigid bodies"
     with pytest.raises(InputError, match="was asked"):
         needed_level(answers, "noise", 0.1)
+
+
+def test_contact_stress_of_a_torsional_level_is_that_of_equal_shares() -> None:
+    # 985 MPa by hand of the high-speed stage of C at rated torque, the largest of its meshes
+    rated = contact_stress(Asked(C, RUNGS[0], Operation(1.055e6)))
+    assert rated == pytest.approx(985.0, rel=2.5e-3)
+    assert contact_stress(Asked(C, RUNGS[0], Operation(4 * 1.055e6))) == pytest.approx(2 * rated)
+    # a moment of the hub reaches bodies in space alone
+    assert contact_stress(Asked(C, RUNGS[0], Operation(1.055e6, 1e6))) == rated
+    still, tilted = (contact_stress(Asked(C, RUNGS[1], Operation(1.055e6, m))) for m in (0, 1e6))
+    assert still != tilted
 
 
 def test_a_level_in_between_that_is_wrong_rules_out_those_below() -> None:

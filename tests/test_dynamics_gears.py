@@ -1,7 +1,7 @@
 """Gears of a machine with full data: stiffness and contact ratios against its table."""
 
 from itertools import pairwise
-from math import pi
+from math import cos, pi
 from typing import Any
 
 import numpy as np
@@ -13,11 +13,13 @@ from fe_drivetrain.dynamics.gear_pairs import (
     machine_pairs,
     mesh_courses,
     mesh_stresses,
+    pitch_contacts,
     with_iso_stiffness,
 )
 from fe_drivetrain.dynamics.levels import Level, machine_system
 from fe_drivetrain.dynamics.meshing import machine_meshing, varying_equations
 from fe_drivetrain.dynamics.tables import Machine, library_machine
+from fe_drivetrain.gear.flank_stress import reduced_modulus, tooth_contact
 from fe_drivetrain.gear.pair_stiffness import constant_law
 from fe_drivetrain.validation.published_gears import nrel_5mw
 
@@ -44,6 +46,18 @@ def test_pairs_work_as_the_meshes_of_the_system_do() -> None:
         ):
             assert mesh.pressure_angle == pytest.approx(pair.working_angle, rel=1e-12)
             assert mesh.base_helix == pytest.approx(abs(pair.first.base_helix), rel=1e-12)
+
+
+def test_contacts_at_the_pitch_point_are_those_of_the_gears() -> None:
+    machine = library_machine("nrel_5mw")
+    contacts = pitch_contacts(machine)
+    for name, pair in machine_pairs(machine).items():
+        teeth = tooth_contact(pair, pair.path.pitch, 1e6, reduced_modulus())
+        of = contacts[name]
+        assert of.radius == pytest.approx(teeth.radius, rel=1e-12)
+        # 1e6 N/m in the transverse plane, on a fifth of the face
+        force = 0.2 * 1e6 * pair.face_width / cos(pair.first.base_helix)
+        assert of.under(force, 0.2).pressure == pytest.approx(teeth.pressure, rel=1e-12)
 
 
 def test_contact_ratios_are_what_varying_meshes_need() -> None:

@@ -13,33 +13,17 @@ from fe_drivetrain.histories.sites import (
     site_of_class,
     time_factors,
 )
-
-#: Al-Hamadani 2018, Table 7.1: hours in 20 years and time factors of 20 s, at 4, 5, ... 25 m/s.
-HOURS = (8733, 10545, 11916, 12817, 13251, 13247, 12856, 12146, 11194, 10080, 8878, 7655, 6467)
-HOURS += (5356, 4351, 3468, 2713, 2084, 1573, 1165, 848, 607)
-FACTORS = (1571855, 1898039, 2144818, 2307084, 2385178, 2384376, 2313997, 2186246, 2014953)
-FACTORS += (1814352, 1598001, 1377938, 1164124, 964148, 783209, 624278, 488421, 375193, 283052)
-FACTORS += (209761, 152726, 109270)
-
-#: Table 7.2 at 12, 14, ... 24 m/s: planet, ring, sun, IMS gear and pinion, HSS gear and pinion.
-TEETH = (58, 145, 116, 116, 464, 464, 1776)
-ADJUSTED = """34741 13896 17370 17370 4343 4343 1135
-27552 11021 13776 13776 3444 3444 900
-20071 8028 10036 10036 2509 2509 655
-13504 5401 6752 6752 1688 1688 441
-8421 3368 4211 4211 1053 1053 275
-4880 1952 2440 2440 610 610 159
-2633 1053 1317 1317 329 329 86"""
+from fe_drivetrain.validation import published_hours as printed
 
 
 def test_hours_and_time_factors_of_a_thesis() -> None:
     hours = Site(10.0).hours(np.arange(3.0, 26.0))
     factors = time_factors(hours, 20.0)
-    assert tuple(np.round(hours).astype(int)) == HOURS
-    assert tuple(np.round(factors).astype(int)) == FACTORS
+    assert tuple(np.round(hours).astype(int)) == printed.HOURS
+    assert tuple(np.round(factors).astype(int)) == printed.FACTORS
     assert round(float(hours.sum())) == 161950
-    for row, line in zip(factors[8::2], ADJUSTED.splitlines(), strict=True):
-        assert [round(float(row) / teeth) for teeth in TEETH] == [int(n) for n in line.split()]
+    for row, line in zip(factors[8::2], printed.ADJUSTED, strict=True):
+        assert [round(float(row) / d) for d in printed.DIVISORS.values()] == list(line)
 
 
 @pytest.mark.parametrize(

@@ -1,21 +1,20 @@
 """Contact stresses of a 2 MW and a 5 MW gearbox and their depths, beside ratios of the thesis."""
 
-from math import cos, sqrt
+from math import sqrt
 
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.dynamics import (
     Level,
-    Machine,
-    Mesh,
     library_machine,
     machine_pairs,
     machine_system,
+    pitch_contacts,
     static,
     steady_load,
 )
-from fe_drivetrain.gear import LineContact, reduced_modulus, tooth_contact
+from fe_drivetrain.gear import reduced_modulus, tooth_contact
 from fe_drivetrain.suite import Page, Record, Run
 
 TORQUES = {"synthetic_2mw": 1.055e6, "nrel_5mw": 3.946e6}  # N m, rated, of the rotor
@@ -102,17 +101,16 @@ def rows_of(name: str, torque: float) -> list[Record]:
     system = machine_system(machine, Level.TORSIONAL, held_generator=True)
     found = static(system, steady_load(machine, system, torque, np.zeros(6)))
     rows: list[Record] = []
-    for mesh, (angles, radii) in cylinders(machine).items():
-        along = 1 / (1 / radii[0] + 1 / radii[1]) / cos(angles.base_helix)
+    for pair, pitch in pitch_contacts(machine).items():
+        mesh = pair if pair.endswith("mesh") else f"{pair} 1"
         force = abs(found.force(mesh))
-        # the face in contact is longer on inclined lines by the same cosine
-        contact = LineContact(force * cos(angles.base_helix) / angles.face_width, along, STEEL)
+        contact = pitch.under(force)
         rows.append(
             {
                 "machine": name,
                 "mesh": mesh,
                 "force [kN]": force / 1e3,
-                "radius [mm]": 1e3 * along,
+                "radius [mm]": 1e3 * pitch.radius,
                 "half width [mm]": 1e3 * contact.half_width,
                 "pressure [MPa]": contact.pressure / 1e6,
                 "largest shear stress [MPa]": contact.largest_shear[0] / 1e6,
@@ -120,27 +118,6 @@ def rows_of(name: str, torque: float) -> list[Record]:
             }
         )
     return rows
-
-
-def cylinders(machine: Machine) -> dict[str, tuple[Mesh, tuple[float, float]]]:
-    """Working angles and transverse radii of curvature at the pitch point, by mesh."""
-    found = {}
-    for number, stage in enumerate(machine.stages, start=1):
-        if stage.kind == "planetary":
-            sun, ring = stage.meshes
-            r, a = stage.sun_radius, stage.centre_distance
-            planet = (a - r) * cos(sun.pressure_angle) / cos(ring.pressure_angle)
-            found[f"stage {number} sun-planet 1"] = sun, curved(sun, r, a - r)
-            found[f"stage {number} ring-planet 1"] = ring, curved(ring, planet, -(a + planet))
-        else:
-            r, a = stage.gear_radius, stage.centre_distance
-            found[f"stage {number} mesh"] = stage.meshing, curved(stage.meshing, r, a - r)
-    return found
-
-
-def curved(mesh: Mesh, one: float, two: float) -> tuple[float, float]:
-    """Radii of curvature at the pitch point, of working pitch radii."""
-    return one * np.sin(mesh.pressure_angle), two * np.sin(mesh.pressure_angle)
 
 
 def pair_radius(mesh: str) -> float:

@@ -37,10 +37,12 @@ from .flexible import ElasticHousing as ElasticHousing
 from .flexible import Flexible as Flexible
 from .flexible import Housing as Housing
 from .gear_pairs import MeshStress as MeshStress
+from .gear_pairs import PitchContact as PitchContact
 from .gear_pairs import contact_ratios as contact_ratios
 from .gear_pairs import machine_pairs as machine_pairs
 from .gear_pairs import mesh_courses as mesh_courses
 from .gear_pairs import mesh_stresses as mesh_stresses
+from .gear_pairs import pitch_contacts as pitch_contacts
 from .gear_pairs import with_iso_stiffness as with_iso_stiffness
 from .integration import AVERAGE as AVERAGE
 from .integration import LINEAR as LINEAR

@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.flexible import Flexible
+from fe_drivetrain.dynamics.gear_pairs import pitch_contacts
 from fe_drivetrain.dynamics.levels import Level, machine_system, steady_load, torsional
 from fe_drivetrain.dynamics.modes import SystemModes, system_modes
 from fe_drivetrain.dynamics.static import Static, load_sharing, static
@@ -96,6 +97,14 @@ class Asked:
         hub = np.array([0.0, 0.0, 0.0, 0.0, self.operation.moment, 0.0])
         return static(system, steady_load(self.machine, system, self.operation.torque, hub))
 
+    @cached_property
+    def turned(self) -> Static:
+        """Equilibrium at any level; at the torsional one of the torque alone."""
+        if self.loaded is not None:
+            return self.loaded
+        system = machine_system(self.machine, self.rung.level, held_generator=True)
+        return static(system, steady_load(self.machine, system, self.operation.torque, np.zeros(6)))
+
 
 Question = Callable[[Asked], float | None]
 """A number of a machine at a level; None where the level has no answer."""
@@ -160,6 +169,25 @@ def face_load(of: Asked) -> float | None:
     return load_sharing(slices_of(of.loaded, f"stage {numbers[-1]} mesh"))
 
 
+def contact_stress(of: Asked) -> float:
+    """Largest contact stress of a gear: one pair of teeth at the pitch point [MPa].
+
+    Hertz pressure of the slice of the planet that has most. A torsional level has an answer, too:
+    planets share equally there, and so does the face width.
+    """
+    largest = 0.0
+    for mesh, contact in pitch_contacts(of.machine).items():
+        stage = of.machine.stages[int(mesh.split(" ")[1]) - 1]
+        planets = range(1, stage.planets + 1) if isinstance(stage, PlanetaryData) else ()
+        for name in [f"{mesh} {k}" for k in planets] or [mesh]:
+            forces = slices_of(of.turned, name)
+            if not forces.size:
+                forces = np.array([of.turned.force(name)])
+            pressed = float((forces * np.sign(forces.sum())).max())
+            largest = max(largest, contact.under(pressed, 1 / len(forces)).pressure / 1e6)
+    return largest
+
+
 def slices_of(found: Static, mesh: str) -> Floats:
     """Forces of the slices of a mesh along the face [N]."""
     names = found.system.spring_names
@@ -171,6 +199,7 @@ QUESTIONS: Mapping[str, Question] = {
     "largest load of a planet's bearing [kN]": planet_bearing_load,
     "load sharing of the planets": planet_sharing,
     "face load of the last gear pair": face_load,
+    "largest contact stress of a gear [MPa]": contact_stress,
 }
 """What is asked most, by its name and unit."""
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import radians
+from math import cos, radians, sin
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.dynamics.springs import Mesh
 from fe_drivetrain.dynamics.tables import Machine, ParallelData, PlanetaryData
+from fe_drivetrain.gear.flank_stress import LineContact, reduced_modulus
 from fe_drivetrain.gear.involute import Gear, Pair, Rack
 from fe_drivetrain.gear.iso import iso_stiffness
 from fe_drivetrain.gear.load_factors import LoadFactors
@@ -207,3 +209,72 @@ def mesh_stresses(
             root_stress(pair, on_first, own, cutter) if known else None,
         )
     return found
+
+
+@dataclass(frozen=True)
+class PitchContact:
+    """Flanks of a mesh at its pitch point, as cylinders.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Angles and face width.
+    radius : float
+        Of relative curvature, in the normal plane [m].
+    """
+
+    mesh: Mesh
+    radius: float
+
+    def under(self, force: float, share: float = 1.0) -> LineContact:
+        """Contact of one pair of teeth, of steel.
+
+        Parameters
+        ----------
+        force : float
+            Normal to the flanks, in space [N].
+        share : float
+            Of the face width that carries it, such as 1/5 of one of five slices.
+
+        Returns
+        -------
+        LineContact
+            The face in contact is longer than the width by 1 / cos(beta_b) of inclined lines.
+        """
+        length = share * self.mesh.face_width / cos(self.mesh.base_helix)
+        return LineContact(abs(force) / length, self.radius, reduced_modulus())
+
+
+def pitch_contacts(machine: Machine) -> dict[str, PitchContact]:
+    """Contacts of all meshes at their pitch points, by the machine's own working circles.
+
+    Parameters
+    ----------
+    machine : Machine
+        Its table; profile shifts are not needed.
+
+    Returns
+    -------
+    contacts : dict[str, PitchContact]
+        By the names of `machine_pairs`.
+    """
+    found = {}
+    for number, stage in enumerate(machine.stages, start=1):
+        a = stage.centre_distance
+        if isinstance(stage, PlanetaryData):
+            sun, ring = stage.meshes
+            r = stage.sun_radius
+            # one base circle of the planet, two working circles
+            planet = (a - r) * cos(sun.pressure_angle) / cos(ring.pressure_angle)
+            found[f"stage {number} sun-planet"] = _at_pitch(sun, r, a - r)
+            found[f"stage {number} ring-planet"] = _at_pitch(ring, planet, -(a + planet))
+        else:
+            r = stage.gear_radius
+            found[f"stage {number} mesh"] = _at_pitch(stage.meshing, r, a - r)
+    return found
+
+
+def _at_pitch(mesh: Mesh, one: float, two: float) -> PitchContact:
+    """Of working pitch radii [m], negative of a ring."""
+    curvature = (1 / one + 1 / two) * cos(mesh.base_helix) / sin(mesh.pressure_angle)
+    return PitchContact(mesh, 1 / curvature)

@@ -41,6 +41,7 @@ from . import pressed_plate as pressed_plate
 from . import published_campaigns as published_campaigns
 from . import published_drivetrains as published_drivetrains
 from . import published_gears as published_gears
+from . import published_hours as published_hours
 from . import quarter_disc as quarter_disc
 from . import random_shafts as random_shafts
 from . import rated_gears as rated_gears
