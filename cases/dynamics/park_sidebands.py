@@ -165,7 +165,8 @@ def spectrum_of(values: Floats, dt: float) -> Spectrum:
     swing = (values - values.mean()) * np.hanning(len(values))
     length = PADDED * len(values)
     size = np.abs(np.fft.rfft(swing, length))
-    return Spectrum(np.fft.rfftfreq(length, dt), size, 1.0 / (dt * len(values)))
+    frequency = np.asarray(np.fft.rfftfreq(length, dt), dtype=np.float64)
+    return Spectrum(frequency, size, 1.0 / (dt * len(values)))
 
 
 def sidebands(spectrum: Spectrum, begin: float, end: float) -> tuple[float, float]:
