@@ -1,6 +1,7 @@
 """Errors as one sentence, signals, and streams whose reader went away."""
 
 import errno
+import json
 import os
 import signal
 import subprocess
@@ -29,7 +30,9 @@ def test_a_mistake_is_one_sentence(invoke: Callable[..., Result], tmp_path: Path
     assert err.splitlines()[-1] == (
         "fe-drivetrain: shaft: length is -1 but must be greater than 0: give a length"
     )
-    assert not any((tmp_path / "reports").rglob("*.json"))
+    assert not any((tmp_path / "reports").rglob("results.json"))
+    kept = json.loads((tmp_path / "reports" / "problems.json").read_text("utf-8"))
+    assert "must be greater than 0" in str(kept)
 
 
 def test_a_full_disk_exits_2(invoke: Callable[..., Result]) -> None:

@@ -32,7 +32,7 @@ def model():
 
 def test_the_assembly_is_in_balance_and_has_no_housing(model):
     assert model.mesh.part_names == ("shaft", NAME)
-    response = unit_load_response(model, "cholmod")
+    response = unit_load_response(model, "superlu")
     assert response.equilibrium_error < 1e-8
     carried = ROWS @ response.motions[f"{NAME}.ground"]
     assert np.allclose(
@@ -42,7 +42,7 @@ def test_the_assembly_is_in_balance_and_has_no_housing(model):
 
 def test_the_beam_level_agrees_with_the_assembly(model):
     scene = model.scene
-    reaction = unit_load_response(model, "cholmod").reactions[NAME]
+    reaction = unit_load_response(model, "superlu").reactions[NAME]
     springs, _ = housing_springs(scene)
     beam = shaft_level(scene, 2, springs).reaction_matrices[NAME]
     assert beam[2, 2] == pytest.approx(reaction[2, 2], rel=0.01)

@@ -17,8 +17,8 @@ from fe_drivetrain.solve.cost_model import available_memory
 
 ROOT = Path(__file__).parents[1]
 POSIX = {"fcntl", "grp", "pty", "pwd", "resource", "termios", "tty"}
-#: Run in processes of their own, started only where there are forks, and MPI with PETSc.
-APART = {"cases/stability/fault_moments.py", "fe_drivetrain/solve/petsc_ranks.py"}
+#: Runs in processes of its own, started only where there are forks.
+APART = {"cases/stability/fault_moments.py"}
 NOT_HERE = SimpleNamespace(name="nt", environ=os.environ)
 
 

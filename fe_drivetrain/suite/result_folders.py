@@ -7,7 +7,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.files import HiddenFolder
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.report.results import Problem
@@ -122,6 +122,12 @@ def _listed(case: Case, shared: Path | None) -> Iterator[None]:
     try:
         yield
         left = {}
+    except MissingToolError as error:
+        left = {case.name: Problem(str(error), "skipped")}
+        raise
+    except InputError as error:
+        left = {case.name: Problem(str(error))}
+        raise
     finally:
         write(left)
 
