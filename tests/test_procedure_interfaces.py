@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.procedure import assumed
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.procedure.failure_modes import (
     parse_catalogue,
@@ -22,24 +23,9 @@ from fe_drivetrain.procedure.interface_loads import (
     write_load_csv,
     write_load_json,
 )
-from fe_drivetrain.procedure.three_points import ThreePoints, three_point_loads
+from fe_drivetrain.procedure.three_points import three_point_loads
 
-PLACES = ThreePoints(
-    hub=-1.5,
-    bearing=0.0,
-    entrance=1.4,
-    arms=2.2,
-    output=3.1,
-    generator=4.5,
-    between_arms=2.4,
-    offset=0.5,
-    shaft_mass=8e3,
-    shaft_centre=0.4,
-    gearbox_mass=12e3,
-    gearbox_centre=2.1,
-    generator_mass=7e3,
-    ratio=95.0,
-)
+PLACES = replace(assumed.PLACES, ratio=95.0)
 
 
 @pytest.fixture(scope="module")

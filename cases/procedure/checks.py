@@ -6,12 +6,12 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure import checks_of_parts, checks_of_signals
+from fe_drivetrain.cases.procedure.assumed import PLACES
 from fe_drivetrain.cases.procedure.checks_of_parts import Found
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.procedure import (
     Excitation,
     Procedure,
-    ThreePoints,
     Twist,
     Visit,
     band_torque,
@@ -51,22 +51,6 @@ FRONT, REAR, STIFFNESS, DAMPING = 150.34, 24.0, 5296.0, 19.86
 PAIR = chain((Inertia("rotor", FRONT), Inertia("generator", REAR)), [("shaft", STIFFNESS, DAMPING)])
 REDUCED = FRONT * REAR / (FRONT + REAR)
 STEP = 0.005  # s
-PLACES = ThreePoints(
-    hub=-1.5,
-    bearing=0.0,
-    entrance=1.4,
-    arms=2.2,
-    output=3.1,
-    generator=4.5,
-    between_arms=2.4,
-    offset=0.5,
-    shaft_mass=8e3,
-    shaft_centre=0.4,
-    gearbox_mass=12e3,
-    gearbox_centre=2.1,
-    generator_mass=7e3,
-    ratio=100.0,
-)
 
 
 def interfaces() -> list[Found]:

@@ -4,13 +4,13 @@ import numpy as np
 
 from fe_drivetrain.beam import Beam, BeamSection, condensed_beam
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.assumed import PLACES
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import damped_by_ratio
 from fe_drivetrain.hub_loads import Condition, hub_loads
 from fe_drivetrain.procedure import (
     Dip,
     Excitation,
-    ThreePoints,
     TorqueTable,
     analysed,
     driven_motions,
@@ -39,22 +39,6 @@ from fe_drivetrain.validation import published_drivetrains as published
 
 TABLE = published.table("drivetrain_c")
 SPEEDS = (9.0, 18.0)  # rpm
-PLACES = ThreePoints(
-    hub=-1.5,
-    bearing=0.0,
-    entrance=1.4,
-    arms=2.2,
-    output=3.1,
-    generator=4.5,
-    between_arms=2.4,
-    offset=0.5,
-    shaft_mass=8e3,
-    shaft_centre=0.4,
-    gearbox_mass=12e3,
-    gearbox_centre=2.1,
-    generator_mass=7e3,
-    ratio=100.0,
-)
 CONTROLLER = 10.0  # Hz, of its communication
 SECOND = 1.2  # m, of a second main bearing
 TOLERANCE = 0.5e-3  # m

@@ -132,7 +132,7 @@ def mesh_response(
     ------
     InputError
         A mesh is not in the system, was eliminated with a body without mass, or has no error; or
-        errors do not repeat with their meshes alike.
+        errors do not all repeat with their meshes in the same way.
     """
     s, at = system, np.atleast_1d(np.asarray(frequencies, dtype=np.float64))
     turns = {mesh.error.turns for mesh in meshing.values() if mesh.error is not None}

@@ -165,6 +165,20 @@ def machine_seat(found: Assembly, name: str, bearing: Bearing) -> Seat:
     return seat(name, bearing, Place(body, centres[body]), found.holders[name], at)
 
 
+def seat_number(seats: Sequence[Seat], name: str) -> int:
+    """Number of a bearing among others.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    names = [seat.name for seat in seats]
+    if name not in names:
+        raise InputError(f"no rolling bearing {name!r}: use one of {', '.join(names)}")
+    return names.index(name)
+
+
 @dataclass(frozen=True)
 class OnRollers:
     """An equilibrium with rolling bearings.
@@ -202,10 +216,7 @@ class OnRollers:
         InputError
             There is none of that name.
         """
-        names = [seat.name for seat in self.seats]
-        if name not in names:
-            raise InputError(f"no rolling bearing {name!r}: use one of {', '.join(names)}")
-        return names.index(name)
+        return seat_number(self.seats, name)
 
     def radial(self, name: str) -> float:
         """Radial load of a bearing [N]."""

@@ -30,7 +30,7 @@ from fe_drivetrain.dynamics.integration import (
     at_rest,
     prepared,
 )
-from fe_drivetrain.dynamics.roller_seats import Rollers, Seat, rollers_of
+from fe_drivetrain.dynamics.roller_seats import Rollers, Seat, rollers_of, seat_number
 from fe_drivetrain.dynamics.steady_state import restoring
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.dynamics.time_steps import MOST_STEPS, Laws, law_forces, touching
@@ -65,10 +65,7 @@ class RollerMotion:
         InputError
             There is none of that name.
         """
-        names = [one.name for one in self.seats]
-        if name not in names:
-            raise InputError(f"no rolling bearing {name!r}: use one of {', '.join(names)}")
-        return names.index(name)
+        return seat_number(self.seats, name)
 
     def radial(self, name: str) -> Floats:
         """(k,) radial load of a bearing [N]."""

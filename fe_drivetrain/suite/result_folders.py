@@ -26,6 +26,11 @@ RUNNING = Problem("at work", "running")
 """Of a case whose turn it is."""
 
 
+def problem_of(error: InputError) -> Problem:
+    """Why there are no results: an input's fault, or a program that is missing."""
+    return Problem(str(error), "skipped" if isinstance(error, MissingToolError) else "failed")
+
+
 def result_folder(out: Path, case: Case) -> Path:
     """Where the results of a case go below a folder for several."""
     return out.joinpath(*case.name.split("/"))
@@ -122,11 +127,8 @@ def _listed(case: Case, shared: Path | None) -> Iterator[None]:
     try:
         yield
         left = {}
-    except MissingToolError as error:
-        left = {case.name: Problem(str(error), "skipped")}
-        raise
     except InputError as error:
-        left = {case.name: Problem(str(error))}
+        left = {case.name: problem_of(error)}
         raise
     finally:
         write(left)

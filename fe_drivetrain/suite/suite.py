@@ -10,7 +10,7 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import HiddenFolder, empty, sentence_about
 from fe_drivetrain.common.jobs import pool
 from fe_drivetrain.common.processes import Processes
@@ -22,6 +22,7 @@ from fe_drivetrain.suite.result_folders import (
     PLANNED,
     RUNNING,
     new_folder,
+    problem_of,
     put_in_place,
     result_folder,
     run_into,
@@ -174,7 +175,7 @@ def _run(
         empty(folder)  # a worker may have died half-way
         run_into(case, folder, settings, quick, named, shared)
     except InputError as error:
-        return Problem(str(error), "skipped" if isinstance(error, MissingToolError) else "failed")
+        return problem_of(error)
     except Exception as error:
         sentence = sentence_about(error) if isinstance(error, OSError) else None
         if sentence is not None:
