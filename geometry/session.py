@@ -8,7 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import gmsh
+import numpy as np
 
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 
 
@@ -57,6 +59,22 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
             ) from error
     finally:
         gmsh.finalize()
+
+
+def numbered_nodes() -> tuple[Floats, Ints]:
+    """Nodes of the open gmsh model, and which of them has a tag.
+
+    Returns
+    -------
+    points : ndarray, (n, 3)
+        In the units of the model.
+    number : ndarray
+        Row of the points by gmsh's tag; -1 where there is none.
+    """
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    number = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    number[tags] = np.arange(len(tags))
+    return np.asarray(coordinates, dtype=np.float64).reshape(-1, 3), number
 
 
 def _take_back_signals() -> None:

@@ -75,15 +75,15 @@ def _look_at_step(request: dict[str, Any]) -> dict[str, Any]:
 def _surface() -> tuple[Any, Any, Any]:
     import gmsh
 
-    tags, xyz, _ = gmsh.model.mesh.getNodes()
-    number = np.full(int(tags.max()) + 1, -1)
-    number[tags] = np.arange(len(tags))
+    from fe_drivetrain.geometry.session import numbered_nodes
+
+    points, number = numbered_nodes()
     blocks, owner = [], []
     for _, face in gmsh.model.getEntities(2):
         nodes = gmsh.model.mesh.getElementsByType(2, face)[1].reshape(-1, 3)
         blocks.append(number[nodes])
         owner.append(np.full(len(nodes), face))
-    return xyz.reshape(-1, 3), np.concatenate(blocks), np.concatenate(owner)
+    return points, np.concatenate(blocks), np.concatenate(owner)
 
 
 def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
 
     from fe_drivetrain.common.errors import InputError
     from fe_drivetrain.foreign import step_mesh, step_solid
-    from fe_drivetrain.geometry.session import gmsh_session
+    from fe_drivetrain.geometry.session import gmsh_session, numbered_nodes
 
     with gmsh_session():
         survey = step_solid.opened(request["file"], request["smallest_detail"])
@@ -111,10 +111,8 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
         )
         step_mesh.cut(survey, request)
         step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
-        tags, xyz, _ = gmsh.model.mesh.getNodes()
-        number = np.full(int(tags.max()) + 1, -1)
-        number[tags] = np.arange(len(tags))
-        arrays: dict[str, Any] = {"points": xyz.reshape(-1, 3)}
+        points, number = numbered_nodes()
+        arrays: dict[str, Any] = {"points": points}
         for dim, group in gmsh.model.getPhysicalGroups():
             kind, width = (9, 6) if dim == 2 else (11, 10)
             nodes = [

@@ -25,6 +25,7 @@ from fe_drivetrain.geometry import (
     gmsh_session,
     size_name,
 )
+from fe_drivetrain.geometry.session import numbered_nodes
 from fe_drivetrain.mesh.measures import inverted_cells, scaled_jacobians
 from fe_drivetrain.mesh.mesh import FACETS, Mesh, part_of
 from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
@@ -136,10 +137,7 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
 
 def read_gmsh(split: Sequence[str]) -> Mesh:
     """Read the mesh of the open gmsh model, doubling the bore nodes of the housings in `split`."""
-    tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    points = np.asarray(coordinates).reshape(-1, 3)
-    number = np.full(int(tags.max()) + 1, -1)
-    number[tags] = np.arange(len(tags))
+    points, number = numbered_nodes()
     names, blocks, triangles, named_points = [], [], {}, {}
     for dim, group in gmsh.model.getPhysicalGroups():
         name = gmsh.model.getPhysicalName(dim, group)

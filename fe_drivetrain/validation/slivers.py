@@ -11,7 +11,7 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, splu
 
 from fe_drivetrain.common import Floats, InputError, Ints
-from fe_drivetrain.geometry import gmsh_session
+from fe_drivetrain.geometry.session import gmsh_session, numbered_nodes
 from fe_drivetrain.interfaces import Constraint, eliminate, held_nodes
 from fe_drivetrain.mesh import Mesh, boundary
 from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
@@ -101,11 +101,9 @@ def optimised(mesh: Mesh, nodes: int = 10) -> Mesh:
         local = local.reshape(corners.shape)
         _classified(mesh.points[used], local)
         model.mesh.optimize("", True)
-        tags, coordinates, _ = model.mesh.getNodes()
+        points, number = numbered_nodes()
         cells = model.mesh.getElementsByType(4)[1].reshape(-1, 4)
-    number = np.full(int(tags.max()) + 1, -1)
-    number[tags] = np.arange(len(tags))
-    return as_mesh(np.asarray(coordinates).reshape(-1, 3), number[cells], nodes)
+    return as_mesh(points, number[cells], nodes)
 
 
 def _classified(points: Floats, cells: Ints) -> None:
