@@ -214,6 +214,14 @@ def test_what_lies_between_two_reversals_does_not_count(rng: np.random.Generator
     assert counted(fine) == counted(EXAMPLE)
 
 
+@pytest.mark.parametrize("size", [1e-313, 1e-200, 1.0, 1e200, 8e307])
+def test_turns_are_seen_whatever_the_unit(size: float) -> None:
+    """Of a product of two differences neither underflow nor overflow."""
+    cycles = rainflow_cycles(size * np.array([0.0, 1.0, 0.0, 1.0, -1.0]))
+    np.testing.assert_array_equal(cycles.ranges, size * np.array([1.0, 1.0, 1.0, 2.0]))
+    assert cycles.counts.sum() == 2.0
+
+
 def test_a_ramp_is_half_a_cycle_and_a_constant_none() -> None:
     assert counted([1.0, 2.0, 3.5]) == {2.5: 0.5}
     assert counted([1.0, 2.0]) == {1.0: 0.5}

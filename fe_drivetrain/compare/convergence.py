@@ -286,7 +286,8 @@ def observed_order(sizes: ArrayLike, values: ArrayLike) -> float:
         steps = -np.diff((h / h[0]) ** p)
         return float(first * steps[1] - second * steps[0])
 
-    if first * second <= 0.0 or excess(ORDERS[0]) * excess(ORDERS[1]) >= 0.0:
+    steepness = np.sign([excess(order) for order in ORDERS])
+    if np.sign(first) * np.sign(second) <= 0.0 or steepness.prod() >= 0.0:
         return float("nan")
     return float(brentq(excess, *ORDERS))
 
@@ -294,7 +295,7 @@ def observed_order(sizes: ArrayLike, values: ArrayLike) -> float:
 def _stands_still(h: Floats, v: Floats) -> bool:
     """Whether three values go one way, and the differences do not shrink as the sizes do."""
     first, second = v[0] - v[1], v[1] - v[2]
-    if first * second < 0.0 or second == 0.0:
+    if np.sign(first) * np.sign(second) < 0.0 or second == 0.0:
         return False
     steps = -np.diff(h ** ORDERS[0])
     return bool(abs(first) * steps[1] <= abs(second) * steps[0])

@@ -277,7 +277,8 @@ def _turning(chunks: Iterable[ArrayLike]) -> Iterator[Floats]:
             )
         values = np.concatenate([open_end, values])
         values = values[np.diff(values, prepend=np.nan) != 0.0]  # a plateau is one value
-        turns = values[1:-1][np.diff(values[:-1]) * np.diff(values[1:]) < 0.0]
+        rises = np.diff(values) > 0.0
+        turns = values[1:-1][rises[:-1] != rises[1:]]
         if len(values) and not begun:
             begun = True
             yield values[:1]

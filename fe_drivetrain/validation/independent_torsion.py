@@ -52,7 +52,7 @@ def holzer_frequencies(
     found = [
         brentq(left, a, b, xtol=1e-13, rtol=1e-14)
         for a, b, u, v in zip(grid, grid[1:], values, values[1:], strict=False)
-        if u * v < 0
+        if np.sign(u) * np.sign(v) < 0
     ]
     if len(found) != len(inertias) - (ground == 0):
         raise ValueError(f"{len(found)} frequencies found of {len(inertias)} inertias")
