@@ -1,5 +1,7 @@
 """Multigrid and its error estimate against direct solutions."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from conftest import coarse_scene
@@ -24,6 +26,7 @@ def change_unit(scene, **unit):
     return change_scene(scene, {f"bearing_units.0.{key}": value for key, value in unit.items()})
 
 
+@cache
 def cantilever(length, size, inner=0.3, linear=False):
     """A hollow shaft held at the rear; six unit loads at the rigid front."""
     section = Section(length=length, outer_diameter=0.7, inner_diameter=inner)
@@ -54,6 +57,13 @@ def energy_norm(K, x):
     return np.sqrt(np.einsum("nm,nm->m", x, K @ x))
 
 
+@pytest.fixture(scope="module")
+def chunky():
+    """A short cantilever, its loads, its hierarchy and its displacements."""
+    system, F = cantilever(2.0, 0.3)
+    return system, F, multigrid.build(system), refined(system, F)
+
+
 def refined(system, F):
     factor = direct_solvers.factorise(system.K, "superlu")
     x = factor.apply(F)
@@ -78,10 +88,8 @@ def test_estimate_is_honest_at_every_step(length, linear):
     assert np.median(ratios) < 20.0
 
 
-def test_stiffness_error_is_the_energy_error_squared():
-    system, F = cantilever(2.0, 0.3)
-    exact = refined(system, F)
-    hierarchy = multigrid.build(system)
+def test_stiffness_error_is_the_energy_error_squared(chunky):
+    system, F, hierarchy, exact = chunky
     found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-3)
     compliance = np.einsum("nm,nm->m", F, found.x)
     error = 1.0 - compliance / np.einsum("nm,nm->m", F, exact)
@@ -92,9 +100,8 @@ def test_stiffness_error_is_the_energy_error_squared():
     assert error.max() < 1e-5
 
 
-def test_preconditioner_is_symmetric_and_positive(rng):
-    system, F = cantilever(2.0, 0.3)
-    hierarchy = multigrid.build(system)
+def test_preconditioner_is_symmetric_and_positive(chunky, rng):
+    _, F, hierarchy, _ = chunky
     a, b = rng.standard_normal((2, len(F), 3))
     Ma, Mb = hierarchy.precondition(a), hierarchy.precondition(b)
     scale = np.abs(a.T @ Ma).max()
@@ -143,13 +150,12 @@ def jointed(request, spherical_mesh):
     system = reduce(
         model.mesh.points, model.mesh.cells, model.stiffness, elimination, model.springs
     )
-    return system, elimination.T.T @ model.unit_loads()
+    return system, elimination.T.T @ model.unit_loads(), multigrid.build(system)
 
 
 def test_joints_over_faces_cost_no_iterations(jointed):
     """As penalties on the coarse levels they take hundreds, or do not converge."""
-    system, F = jointed
-    made = multigrid.build(system)
+    system, F, made = jointed
     found = multigrid.conjugate_gradients(system.K, F, made.precondition, 1e-9)
     assert found.energy_error <= 1e-9
     assert found.iterations < 60
@@ -159,8 +165,7 @@ def test_joints_over_faces_cost_no_iterations(jointed):
 
 
 def test_a_joined_preconditioner_is_symmetric_and_positive(jointed, rng):
-    system, F = jointed
-    made = multigrid.build(system)
+    system, F, made = jointed
     free = system.joints().free
     a, b = rng.standard_normal((2, len(F), 3)) * free[:, None]
     Ma, Mb = made.precondition(a), made.precondition(b)
@@ -170,13 +175,11 @@ def test_a_joined_preconditioner_is_symmetric_and_positive(jointed, rng):
     assert (np.einsum("nm,nm->m", a, Ma) > 0.0).all()
 
 
-def test_columns_do_not_disturb_each_other():
+def test_columns_do_not_disturb_each_other(chunky):
     """A zero column, one of 1e-9 and one of 1e9 beside the others."""
-    system, F = cantilever(2.0, 0.3)
-    hierarchy = multigrid.build(system)
+    system, F, hierarchy, exact = chunky
     scale = np.array([1.0, 0.0, 1e-9, 1e9, 1.0, 1.0])
     found = multigrid.conjugate_gradients(system.K, F * scale, hierarchy.precondition, 1e-9)
-    exact = refined(system, F)
     assert np.abs(found.x[:, 1]).max() == 0.0
     for k in (0, 2, 3, 4, 5):
         x = found.x[:, [k]] / scale[k]
@@ -184,9 +187,9 @@ def test_columns_do_not_disturb_each_other():
         assert error < 1e-8
 
 
-def test_hierarchy_is_the_same_every_time():
-    system, F = cantilever(2.0, 0.3)
-    once, again = (multigrid.build(system).precondition(F) for _ in range(2))
+def test_hierarchy_is_the_same_every_time(chunky):
+    system, F, hierarchy, _ = chunky
+    once, again = (made.precondition(F) for made in (hierarchy, multigrid.build(system)))
     assert np.array_equal(once, again)
 
 

@@ -44,6 +44,12 @@ def tube():
     return cantilever(3.0, 0.02, 3.0, 0.8, 10)
 
 
+@pytest.fixture(scope="module")
+def patches(tube):
+    """Of the tube."""
+    return schwarz.build(tube[0])
+
+
 def iterations(system, F, options=schwarz.DEFAULTS):
     made = schwarz.build(system, options)
     found = multigrid.conjugate_gradients(system.K, F, made.precondition, 1e-9)
@@ -59,10 +65,10 @@ def energy_error(system, F, x):
     return float(np.sqrt(energy[0] / energy[1]).max())
 
 
-def test_preconditioner_is_symmetric_and_positive(tube, rng):
+def test_preconditioner_is_symmetric_and_positive(tube, patches, rng):
     system, _ = tube
     R = rng.standard_normal((system.K.shape[0], 6))
-    Z = schwarz.build(system).precondition(R)
+    Z = patches.precondition(R)
     products = R.T @ Z
     np.testing.assert_allclose(products, products.T, atol=1e-8 * np.abs(products).max())
     assert linalg.eigvalsh(0.5 * (products + products.T))[0] > 0.0
@@ -106,11 +112,10 @@ def test_a_joint_between_bodies(spherical_responses):
     assert found.iterations < 100
 
 
-def test_coarse_stiffness_is_the_galerkin_product(tube):
+def test_coarse_stiffness_is_the_galerkin_product(tube, patches):
     """Of the modes as `prolong` spreads them."""
     system, _ = tube
-    made = schwarz.build(system)
-    parts = made.partition
+    made, parts = patches, patches.partition
     first = np.concatenate([[0], np.cumsum(made.counts)])
     V = np.empty((system.K.shape[0], made.n_coarse))
     where = parts.blocks, parts.starts, made.modes, made.mode_starts, first
@@ -124,10 +129,9 @@ def test_coarse_stiffness_is_the_galerkin_product(tube):
     np.testing.assert_allclose(back, V.T @ R, atol=1e-9 * np.abs(back).max())
 
 
-def test_patches_are_solved_exactly(tube, rng):
+def test_patches_are_solved_exactly(tube, patches, rng):
     system, _ = tube
-    made = schwarz.build(system)
-    parts = made.partition
+    made, parts = patches, patches.partition
     R = rng.standard_normal((system.K.shape[0], 2))
     out = np.empty_like(R)
     schwarz.solve_patches(parts.blocks, parts.starts, made.factors, made.factor_starts, R, out)

@@ -325,8 +325,10 @@ def time_chart(rows: list[Record]) -> Chart:
 #: One option at a time.
 TRIED = {
     "as it is": Options(),
-    "smoother of degree 1": Options(degree=1),
-    "smoother of degree 3": Options(degree=3),
+    "levels in double precision": Options(single=False),
+    "smoother of degree 2 on the finest level, too": Options(degree=2),
+    "smoother of degree 3 on the finest level": Options(degree=3),
+    "smoother of degree 1 on all levels": Options(coarse_degree=1),
     "smoother from 0.1 of the largest eigenvalue": Options(smoothed=0.1),
     "smoother from 0.3 of the largest eigenvalue": Options(smoothed=0.3),
     "no linear level: aggregates of quadratic nodes": Options(linear_level=False),

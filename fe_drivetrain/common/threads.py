@@ -8,6 +8,8 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
+from typing import Any
 
 from fe_drivetrain.common.errors import InputError
 
@@ -74,12 +76,36 @@ def thread_limits(threads: int) -> dict[str, str]:
 
 
 def hold_threads() -> None:
-    """Where the user limits the cores, limit what this process imports from now on to as many."""
+    """Where the user limits the cores, limit what this process imports from now on to as many.
+
+    Idle threads of OpenBLAS sleep at once in any case: by default they spin for tens of
+    milliseconds after each call, and take the cores from compiled loops.
+    """
+    os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")  # 2^4 cycles
     if os.environ.get(CORES_VARIABLE):
         limits = thread_limits(cores())
         if "numba" in sys.modules:  # which fails at another number once its threads run
             del limits["NUMBA_NUM_THREADS"]
         os.environ.update(limits)
+
+
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """Hold the BLAS of NumPy and SciPy to one thread, at little cost.
+
+    Where it does next to nothing: afterwards its idle threads spin, and take the cores from
+    compiled loops. Those loaded after the first call are not held.
+    """
+    with _controller().limit(limits=1, user_api="blas"):
+        yield
+
+
+@cache
+def _controller() -> Any:
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 @contextmanager

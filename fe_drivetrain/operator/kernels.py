@@ -227,6 +227,26 @@ def distances(indptr: Index, indices: Index, start: int) -> Index:
     return steps
 
 
+@njit(cache=True)
+def places(
+    indptr: Index, indices: Index, rows: NDArray[np.int64], columns: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Where the blocks of some rows and columns stand in ``data``; -1 where there are none."""
+    found = np.full(len(rows), -1, np.int64)
+    for k in range(len(rows)):
+        for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
+            if indices[p] == columns[k]:
+                found[k] = p
+    return found
+
+
+@njit(cache=True)
+def invert(blocks: Floats, out: Floats) -> None:
+    """Put the inverses of symmetric (n, 3, 3) blocks into ``out``."""
+    for i in range(len(blocks)):
+        _inverse_transposed(blocks[i], out[i])
+
+
 @njit(cache=True, parallel=True)
 def keep_dofs(indptr: Index, indices: Index, data: Floats, kept: Floats, diagonal: float) -> None:
     """Zero rows and columns of degrees of freedom that are not kept, and put ``diagonal`` there.

@@ -55,6 +55,36 @@ def strains(points: Floats, cells: Ints, u: Floats, at: Floats) -> Floats:
     return found
 
 
+def stresses_of_fields(physical: Floats, moved: Floats, lame: tuple[float, float]) -> Floats:
+    """Stresses of many displacement fields, with what they have in common computed once.
+
+    Parameters
+    ----------
+    physical : Floats
+        (n_cells, n_q, 3, k) gradients of the shape functions, of `shapes.jacobian` [1/m].
+    moved : Floats
+        (n_cells, k, m, 3) displacements of the nodes of each cell in m fields [m].
+    lame : tuple[float, float]
+        Lame's constants (lambda, mu) [Pa].
+
+    Returns
+    -------
+    stresses
+        (n_cells, n_q, m, 6) as of `stresses` [Pa].
+    """
+    lam, mu = lame
+    n, n_q, _, k = physical.shape
+    m = moved.shape[2]
+    g = physical.reshape(n, 3 * n_q, k) @ moved.reshape(n, k, 3 * m)
+    g = g.reshape(n, n_q, 3, m, 3)
+    s = np.empty((n, n_q, m, 6))
+    for c, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))):
+        np.add(g[:, :, i, :, j], g[:, :, j, :, i], out=s[..., c])
+    s *= mu
+    s[..., :3] += lam / (2.0 * mu) * s[..., :3].sum(axis=-1, keepdims=True)
+    return s
+
+
 def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, float]) -> Floats:
     """Stresses at the nodes: taken where elements are best, carried to the nodes, and averaged.
 

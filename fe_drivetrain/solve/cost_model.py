@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
+from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.mesh.facets import local_facets
 from fe_drivetrain.mesh.shapes import element_kind, jacobian
 from fe_drivetrain.operator import kernels
@@ -35,10 +36,11 @@ class Direct(NamedTuple):
     each: float
 
 
+# Of SuperLU, which the grid leaves out where it is slow, those of an earlier and larger grid.
 DIRECT = {
     "superlu": Direct(0.0, 5e-7, 4.4e-9, 440.0, 1.5e-10, 1.0e-10),
-    "cholmod": Direct(0.08, 6.4e-7, 6.3e-11, 115.0, 4.4e-10, 1.0e-10),
-    "pardiso": Direct(0.0, 2.5e-7, 8.0e-11, 180.0, 3.1e-10, 2.5e-10),
+    "cholmod": Direct(0.0, 7.1e-7, 1.9e-9, 99.0, 3.9e-10, 4.0e-10),
+    "pardiso": Direct(0.0, 1.4e-7, 2.1e-10, 172.0, 2.6e-10, 1.8e-10),
 }
 
 
@@ -54,7 +56,7 @@ class Multigrid(NamedTuple):
     bytes: float
 
 
-MULTIGRID = Multigrid(0.09, 4.5e-8, 4.8e-9, 5.4e-10, 6.0)
+MULTIGRID = Multigrid(0.022, 0.0, 2.9e-9, 4.6e-10, 10.6)
 
 
 class Schwarz(NamedTuple):
@@ -74,7 +76,7 @@ class Schwarz(NamedTuple):
 
 SCHWARZ = Schwarz(0.3, 6e-5, 40.0, 7e-10, 5e-10, 1600.0, 300.0)
 
-_ORDINARY, _THIN = 22.0, 4.0  # iterations
+_ORDINARY, _THIN = 27.0, 4.0  # iterations
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,8 @@ class Cost:
 
 def predict(system: System, n_rhs: int) -> list[Cost]:
     """Costs of every solver that is installed, cheapest first among those that fit in memory."""
+    with one_blas_thread():
+        expected = iterations(system)
     n, nnz = system.K.shape[0], system.K.nnz
     w = width(system.K)
     memory = available_memory()
@@ -120,7 +124,6 @@ def predict(system: System, n_rhs: int) -> list[Cost]:
             seconds = d.start + d.per_entry * nnz + d.per_operation * work
             costs.append((method, seconds + held * (d.solve + d.each * n_rhs), held))
     m = MULTIGRID
-    expected = iterations(system)
     seconds = m.start + nnz * (m.per_entry + expected * (m.once + m.each * n_rhs))
     costs.append(("multigrid", seconds, m.bytes * nnz))
     if system.elements is not None:
@@ -135,8 +138,8 @@ def predict(system: System, n_rhs: int) -> list[Cost]:
 def iterations(system: System) -> float:
     """Iterations of multigrid to be expected, from how thin the solid is.
 
-    Sixteen to 30 were seen on shafts and assemblies of several parts; for thin tubes and slender
-    shafts see `thinness`.
+    Twenty-four to 31 were seen on shafts and assemblies of several parts; for thin tubes and
+    slender shafts see `thinness`.
     """
     thin = 0.0 if system.elements is None else _THIN * thinness(system.elements)
     return max(_ORDINARY, thin)

@@ -84,6 +84,8 @@ def _superlu(K: sparse.bsr_array) -> Factor:
 
 
 def _pardiso(K: sparse.bsr_array) -> Factor:
+    # read when it is loaded: its idle threads would spin for 200 ms, beside our loops
+    os.environ.setdefault("KMP_BLOCKTIME", "1")
     from pypardiso import PyPardisoSolver
     from pypardiso.pardiso_wrapper import PyPardisoError
 

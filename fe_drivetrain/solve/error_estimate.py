@@ -25,8 +25,9 @@ from scipy import sparse
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
+from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import ElementKind, element_kind, jacobian
-from fe_drivetrain.operator.stress import stresses
+from fe_drivetrain.operator.stress import stresses_of_fields
 
 Lame = tuple[float, float]
 
@@ -115,7 +116,7 @@ def error_energies(points: Floats, parts: Sequence[tuple[Ints, Lame]], fields: F
     total = np.zeros(fields.shape[1])
     for cells, lame in parts:
         for volumes, _, error in _errors(points, np.asarray(cells), lame, fields[: points.size]):
-            total += np.einsum("eq,meq->m", volumes, energy_density(error, lame))
+            total += np.einsum("eq,eqm->m", volumes, energy_density(error, lame))
     return total
 
 
@@ -148,13 +149,15 @@ def recovered_work(
     total = np.zeros((first.shape[1], second.shape[1]))
     for cells, (lam, mu) in parts:
         for volumes, _, d in _errors(points, np.asarray(cells), (lam, mu), columns):
-            acting, moved = d[: first.shape[1]], d[-second.shape[1] :]
+            acting, moved = d[:, :, : first.shape[1]], d[:, :, -second.shape[1] :]
             strains = moved * np.repeat([1.0, 2.0], 3)
             shrunk = lam / (3.0 * lam + 2.0 * mu) * moved[..., :3].sum(axis=-1)
             strains[..., :3] -= shrunk[..., None]
-            strains *= volumes[..., None] / (2.0 * mu)
-            work = np.einsum("aeqk,beqk->abe", acting, strains, optimize=True)
-            total += np.abs(work).sum(axis=-1)
+            strains *= volumes[..., None, None] / (2.0 * mu)
+            n, n_q = volumes.shape
+            left = np.moveaxis(acting, 2, 1).reshape(n, -1, n_q * 6)
+            right = np.swapaxes(strains, 2, 3).reshape(n, n_q * 6, -1)
+            total += np.abs(left @ right).sum(axis=0)
     return total
 
 
@@ -164,35 +167,36 @@ def _energies(
     """Energies (n_cells,) of stresses and of their difference from recovered ones, in chunks."""
     for volumes, s, error in _errors(points, cells, lame, u[: points.size, None]):
         yield (
-            np.einsum("eq,eq->e", volumes, energy_density(s[0], lame)),
-            np.einsum("eq,eq->e", volumes, energy_density(error[0], lame)),
+            np.einsum("eq,eq->e", volumes, energy_density(s[:, :, 0], lame)),
+            np.einsum("eq,eq->e", volumes, energy_density(error[:, :, 0], lame)),
         )
 
 
 def _errors(
     points: Floats, cells: Ints, lame: Lame, fields: Floats
 ) -> Iterator[tuple[Floats, Floats, Floats]]:
-    """Volumes (n_cells, n_q), stresses (m, n_cells, n_q, 6), and these less recovered ones.
+    """Volumes (n_cells, n_q), stresses (n_cells, n_q, m, 6), and these less recovered ones.
 
     Of m fields (3 n, m), in chunks of cells.
     """
+    check_nodes(cells, len(points))
     kind = element_kind(cells.shape[1])
     patches = _Patches(points, cells, kind)
-    columns = np.ascontiguousarray(fields.T)
+    columns = np.ascontiguousarray(fields.reshape(-1, 3, fields.shape[1]).swapaxes(1, 2))
+    m = columns.shape[1]
     coefficients = patches.fit(points, cells, lame, columns)
     at, weights = get_quadrature(kind.element.refdom, 4 if kind.n_corners == 4 else 5)
     blend, _ = element_kind(kind.n_corners).shape(at)
     values, gradients = kind.shape(at)
-    for rows in chunks(len(cells), max(CHUNK // (2 * len(columns)), 1)):
-        s = np.stack([stresses(points, cells[rows], u, lame, at) for u in columns])
+    for rows in chunks(len(cells), max(CHUNK // (2 * m), 1)):
+        physical, determinant = jacobian(points, cells[rows], gradients)
+        s = stresses_of_fields(physical, columns[cells[rows]], lame)
         # (n_cells, n_q, corners and terms) onto (n_cells, corners and terms, fields and stresses)
         terms = patches.terms(rows, values @ points[cells[rows]]) * blend.T[:, :, None]
         n, corners, n_q, n_terms = terms.shape
         onto = np.moveaxis(terms, 1, 2).reshape(n, n_q, corners * n_terms)
         of = coefficients[patches.local[rows]].reshape(n, corners * n_terms, -1)
-        recovered = np.moveaxis((onto @ of).reshape(n, n_q, len(columns), 6), 2, 0)
-        volumes = np.abs(jacobian(points, cells[rows], gradients)[1]) * weights
-        yield volumes, s, s - recovered
+        yield np.abs(determinant) * weights, s, s - (onto @ of).reshape(s.shape)
 
 
 def energy_density(s: Floats, lame: Lame) -> Floats:
@@ -239,16 +243,18 @@ class _Patches:
     def fit(self, points: Floats, cells: Ints, lame: Lame, fields: Floats) -> Floats:
         """(n_patches, n_terms, 6 m) coefficients that fit stresses at the elements' best points.
 
-        These are the Gauss points of one degree less (Barlow 1976). Of m fields (m, 3 n).
+        These are the Gauss points of one degree less (Barlow 1976). Of m fields (n, m, 3).
         """
         at, _ = get_quadrature(self._kind.element.refdom, self._degree + 1)
-        values, _ = self._kind.shape(at)
+        values, gradients = self._kind.shape(at)
         n, n_terms = len(self._centre), (1, 4, 10)[self._degree]
         left = np.zeros((n, n_terms * n_terms))
-        width = 6 * len(fields)
+        width = 6 * fields.shape[1]
         right = np.zeros((n, n_terms * width))
-        for rows in chunks(len(cells), max(CHUNK // (2 * len(fields)), 1)):
-            s = np.concatenate([stresses(points, cells[rows], u, lame, at) for u in fields], axis=2)
+        for rows in chunks(len(cells), max(CHUNK // (2 * fields.shape[1]), 1)):
+            physical = jacobian(points, cells[rows], gradients)[0]
+            found = stresses_of_fields(physical, fields[cells[rows]], lame)
+            s = found.reshape(*found.shape[:2], width)
             terms = self.terms(rows, values @ points[cells[rows]])
             patch = self.local[rows].ravel()
             gather = sparse.csr_array(

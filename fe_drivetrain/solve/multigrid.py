@@ -14,17 +14,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pyamg
 from scipy import linalg, sparse
-from threadpoolctl import threadpool_limits
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.operator import kernels
+from fe_drivetrain.solve.coarse_product import coarse_product
 from fe_drivetrain.solve.reduction import Joints, System, diagonal_blocks, in_blocks
 from fe_drivetrain.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
 
 MAX_ITERATIONS = 150
 
-_LANCZOS_STEPS = 12
+_LANCZOS_STEPS = 8
+
+# Diagonals whose rows single precision has the range for; no entry is larger than the diagonal's.
+_SINGLE = np.finfo(np.float32)
+_SMALLEST, _LARGEST = float(_SINGLE.tiny / _SINGLE.eps), float(_SINGLE.max)
 
 # Rows of whole vectors, and blocks of vectors that stay in the cache between two smoothing steps.
 _VECTOR, _COLUMNS = 4, 12
@@ -36,8 +41,9 @@ class Options:
 
     Attributes
     ----------
-    degree : int
-        Of the Chebyshev smoother.
+    degree, coarse_degree : int
+        Of the Chebyshev smoother on the finest level, and on the others. A degree more there takes
+        two passes over the matrix an iteration, and does not save as many; below it costs little.
     smoothed : float
         The smoother works on eigenvalues from here on, relative to the largest.
     linear_level : bool
@@ -50,15 +56,19 @@ class Options:
         Whether bodies that a joint couples keep apart in aggregates.
     coarsest : int
         Nodes or aggregates at which aggregation ends and a dense factor begins.
+    single : bool
+        Whether levels keep their stiffness in single precision, where it has the range.
     """
 
-    degree: int = 2
+    degree: int = 1
+    coarse_degree: int = 2
     smoothed: float = 0.05
     linear_level: bool = True
     strength: float = 0.0
     prolongation_smoother: str | None = "jacobi"
     apart: bool = True
     coarsest: int = 300
+    single: bool = True
 
 
 @dataclass(frozen=True)
@@ -68,11 +78,15 @@ class Level:
     Attributes
     ----------
     K : sparse.bsr_array
-        Stiffness, 3x3 blocks.
+        Stiffness, 3x3 blocks; in single precision where that has the range: half the bytes for a
+        smoother to read. Conjugate gradients have the finest one in double precision, so
+        answers are as exact. Rounding is symmetric, and so is the hierarchy.
     inverse : Floats
         (n_blocks, 3, 3) inverses of its diagonal blocks.
     largest : float
         Upper bound of the eigenvalues of diag^-1 K.
+    degree : int
+        Of its Chebyshev smoother.
     prolongation, restriction : sparse.csr_array
         To and from the next level.
     """
@@ -80,6 +94,7 @@ class Level:
     K: sparse.bsr_array
     inverse: Floats
     largest: float
+    degree: int
     prolongation: sparse.csr_array
     restriction: sparse.csr_array
 
@@ -98,6 +113,8 @@ class Hierarchy:
         matrices = [m for level in self.levels for m in (level.prolongation, level.restriction)]
         matrices += [level.K for level in self.levels[1:]]
         held = sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
+        # the finest one in double precision is the system's own
+        held += sum(L.K.data.nbytes for L in self.levels[:1] if L.K.dtype == np.float32)
         held += sum(level.inverse.nbytes for level in self.levels)
         return int(held + self.coarsest[0].nbytes)
 
@@ -157,7 +174,7 @@ def smooth(level: Level, X: Floats | None, B: Floats, options: Options) -> Float
     centre, half = 0.5 * (high + low), 0.5 * (high - low)
     momentum, step, rho = 0.0, 1.0 / centre, half / centre
     D = np.empty_like(B) if X is None else np.zeros_like(B)
-    for number in range(options.degree):
+    for number in range(level.degree):
         if X is None:
             kernels.times_blocks(level.inverse, B, step, D)
             X = D.copy()
@@ -167,7 +184,7 @@ def smooth(level: Level, X: Floats | None, B: Floats, options: Options) -> Float
                 K.indptr, K.indices, K.data, level.inverse, X, B, D, out, momentum, step
             )
             X = out
-        if number + 1 < options.degree:
+        if number + 1 < level.degree:
             following = 1.0 / (2.0 * centre / half - rho)
             momentum, step, rho = following * rho, 2.0 * following / half, following
     assert X is not None
@@ -185,14 +202,17 @@ def build(system: System, options: Options = DEFAULTS) -> Hierarchy | Joined:
     InputError
         The system is singular.
     """
-    if system.joints is None:
-        return _hierarchy(system, options)
-    joints = system.joints()
+    with one_blas_thread():
+        if system.joints is None:
+            return _hierarchy(system, options)
+        return _joined(system.joints(), options)
+
+
+def _joined(joints: Joints, options: Options) -> Joined:
     hierarchy = _hierarchy(joints.bodies, options)
     rows = joints.sums.rows
     some = np.array_split(np.arange(rows.shape[0]), -(-rows.shape[0] // _COLUMNS))
-    with threadpool_limits(1, user_api="blas"):
-        spread = np.hstack([hierarchy.precondition(rows[k].T.toarray()) for k in some])
+    spread = np.hstack([hierarchy.precondition(rows[k].T.toarray()) for k in some])
     met = rows @ spread
     try:
         factor = linalg.cho_factor(np.diag(joints.sums.flexibility) + 0.5 * (met + met.T))
@@ -206,8 +226,8 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
     K, motions, body = system.K, system.near_nullspace, system.body
     if system.prolongation is not None and options.linear_level:
         P = system.prolongation
-        levels.append(_level(K, P))
-        K = in_blocks(P.T.tobsr((3, 3)) @ (K @ P.tobsr((3, 3))))
+        levels.append(_level(K, P, options.degree, options))
+        K = coarse_product(K, P)
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
     threshold = ("symmetric", {"theta": options.strength})
@@ -224,7 +244,8 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         )
     for coarse in aggregation.levels[:-1]:
         # Six degrees of freedom an aggregate below the first level: two blocks of three.
-        levels.append(_level(in_blocks(coarse.A), coarse.P))
+        degree = options.coarse_degree if levels else options.degree
+        levels.append(_level(in_blocks(coarse.A), coarse.P, degree, options))
     last = aggregation.levels[-1].A.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)
@@ -235,14 +256,18 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         raise InputError(SINGULAR) from error
 
 
-def _level(K: sparse.bsr_array, prolongation: sparse.csr_array) -> Level:
+def _level(
+    K: sparse.bsr_array, prolongation: sparse.csr_array, degree: int, options: Options
+) -> Level:
     diagonal = diagonal_blocks(K)
-    block, i = np.nonzero(np.einsum("nii->ni", diagonal) <= 0.0)
-    diagonal[block, i, i] = 1.0
-    inverse = np.linalg.inv(diagonal).astype(np.float64, copy=False)
-
+    sizes = np.einsum("nii->ni", diagonal)  # a view
+    sizes[sizes <= 0.0] = 1.0
+    inverse = np.empty_like(diagonal)
+    kernels.invert(diagonal, inverse)
+    if options.single and sizes.min() > _SMALLEST and sizes.max() < _LARGEST:
+        K = sparse.bsr_array((K.data.astype(np.float32), K.indices, K.indptr), shape=K.shape)
     P = prolongation.tocsr()
-    return Level(K, inverse, largest_eigenvalue(K, inverse), P, P.T.tocsr())
+    return Level(K, inverse, largest_eigenvalue(K, inverse), degree, P, P.T.tocsr())
 
 
 def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
@@ -374,8 +399,7 @@ def _solved(
         F = np.pad(F, ((0, 0), (0, -count % _VECTOR)))
     found = Iteration(np.zeros_like(F), 0, 0.0)  # where all columns are zero
     errors: list[float] = []
-    # BLAS does next to nothing here, but its idle threads spin, and take the cores from the loops.
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         for found in iterates(K, F, precondition):
             errors.append(found.energy_error)
             too_long = found.iterations == MAX_ITERATIONS

@@ -147,8 +147,8 @@ def _joints(
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-    bodies = reduced_stiffness(in_blocks(K - sums.springs.tobsr((3, 3))), sums.elimination)
-    on_ground = in_blocks(bodies + ground.tocsr().tobsr((3, 3)))
+    bodies = _eliminated(_added(_copied(K), -sums.springs), sums.elimination)
+    on_ground = _added(bodies, ground.tocsr())
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 
 
@@ -178,15 +178,37 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
     """T^T K T, with the mean diagonal at eliminated degrees of freedom; K is left as it is."""
+    return _eliminated(_copied(K), elimination)
+
+
+def _copied(K: sparse.bsr_array) -> sparse.bsr_array:
+    """The same pattern with numbers of its own."""
+    return sparse.bsr_array((K.data.copy(), K.indices, K.indptr), shape=K.shape)
+
+
+def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
+    """K with a few entries added: to itself where it has places for them."""
+    blocks = few.tobsr((3, 3))
+    rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
+    columns = blocks.indices.astype(np.int64)
+    places = kernels.places(K.indptr, K.indices, rows, columns)
+    if (places < 0).any():
+        return in_blocks(K + blocks)
+    K.data[places] += blocks.data
+    return K
+
+
+def _eliminated(kept: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
+    """As `reduced_stiffness`; the stiffness is overwritten."""
     T, free = elimination.T, elimination.free
     n = len(free)
-    kept = sparse.bsr_array((K.data.copy(), K.indices, K.indptr), shape=K.shape)
-    mean = float(K.diagonal().mean())
+    mean = float(kept.diagonal().mean())
     mask = free.astype(float).reshape(-1, 3)
-    kernels.keep_dofs(kept.indptr, kept.indices, kept.data, mask, mean)
     # What eliminated degrees of freedom pass on to the others: for supports nothing, for joints
     # little.
     pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
+    rows = _rows(kept, pivots)
+    kernels.keep_dofs(kept.indptr, kept.indices, kept.data, mask, mean)
     # Degrees of freedom of reference points have no block of their own yet.
     bare = (~free & (kept.diagonal() == 0.0)).astype(float)
     if len(pivots) == 0 and not bare.any():
@@ -195,7 +217,6 @@ def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.b
         (np.ones(len(pivots)), (np.arange(len(pivots)), pivots)), shape=(len(pivots), n)
     )
     dependent = place @ T
-    rows = _rows(K, pivots)
     across = dependent.T @ rows @ sparse.diags_array(free.astype(float))
     passed = across + across.T + dependent.T @ (rows @ place.T) @ dependent
     passed = passed + mean * sparse.diags_array(bare)

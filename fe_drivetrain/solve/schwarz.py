@@ -23,10 +23,10 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 from scipy import linalg, sparse
-from threadpoolctl import threadpool_limits
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.solve import direct_solvers
 from fe_drivetrain.solve.reduction import System
@@ -132,7 +132,7 @@ def build(system: System, options: Options = DEFAULTS) -> Schwarz:
     K = system.K
     parts = partition(system.elements, options.nodes, K.shape[0] // 3)
     # Matrices are small: threads of BLAS only wait for each other.
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         found = _patches(system, parts, options)
         factors, modes = (np.concatenate([f[k].ravel() for f in found]) for k in (0, 1))
         counts = np.array([f[1].shape[1] for f in found])
