@@ -94,7 +94,7 @@ def size_name(part: str) -> str:
     """Name of the mesh size that applies to a part."""
     if part == "shaft":
         return part
-    return "housing" if part.endswith(".housing") else "bearing"
+    return "housing" if "." in part else "bearing"
 
 
 def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, set[int]]) -> None:

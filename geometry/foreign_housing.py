@@ -12,6 +12,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from fe_drivetrain.common.errors import InputError
 
 from .bearing import Bearing
+from .bolt_preload import assembly_preload, coarse_thread, yield_strength
 from .housing import Housing
 from .part import LARGEST, Part
 
@@ -22,6 +23,9 @@ UNITS = {"mm": 1e-3, "m": 1.0, "in": 0.0254}
 
 STEP_ENDINGS = (".step", ".stp")
 MESH_ENDINGS = (".msh", ".vtu", ".inp")
+
+LARGEST_PRELOAD = 1e9
+"""Of a bolt [N]."""
 
 
 class Pick(Part):
@@ -85,15 +89,40 @@ class Bolts(Part):
     As washers, the annulus round each hole on the held faces is fixed, as under bolts whose
     preload keeps the joint closed. As beams, each bolt alone carries, from the annulus round the
     hole's other end down to the held face, where the ground holds it: a joint that is open.
+    Clamped, each bolt is such a beam, tightened, and the held faces press on the ground: where the
+    preload leaves them pressed they stand on it, beside the bolts.
     """
 
     hole_radius: float = Field(gt=0, description="radius of the holes, in the file's unit")
     washer_diameter: float = Field(
         gt=0, description="outside diameter of the annulus, in that unit"
     )
-    hold: Literal["washers", "beams"] = "washers"
+    hold: Literal["washers", "beams", "clamped"] = "washers"
     diameter: float | None = Field(
-        default=None, gt=0, description="of the bolts, in the file's unit (hold 'beams' only)"
+        default=None,
+        gt=0,
+        description="of the bolts, in the file's unit (hold 'beams' and 'clamped')",
+    )
+    clamp_length: float | None = Field(
+        default=None,
+        gt=0,
+        description="of the bolts from the head to where the ground holds them, in that unit; the "
+        "hole's length where left out",
+    )
+    preload: float | None = Field(
+        default=None, gt=0, le=LARGEST_PRELOAD, description="of each bolt, tightened [N]"
+    )
+    property_class: Literal["4.6", "5.6", "6.8", "8.8", "10.9", "12.9"] | None = Field(
+        default=None, description="of the bolts, in place of their preload"
+    )
+    of_yield: float | None = Field(
+        default=None,
+        gt=0,
+        le=1,
+        description="to which share of yield they are tightened; 0.9 where left out",
+    )
+    thread_friction: float | None = Field(
+        default=None, ge=0, le=1, description="coefficient in the thread; 0.12 where left out"
     )
 
     @model_validator(mode="after")
@@ -103,7 +132,7 @@ class Bolts(Part):
                 f"bolts: washer_diameter is {self.washer_diameter:g} but must be greater than the "
                 f"hole's diameter, {2 * self.hole_radius:g}: enlarge it"
             )
-        if (self.diameter is None) == (self.hold == "beams"):
+        if (self.diameter is None) != (self.hold == "washers"):
             given = "no diameter: add it" if self.diameter is None else "a diameter: leave it out"
             raise InputError(f"bolts: hold is {self.hold!r} and there is {given}")
         if self.diameter is not None and self.diameter > 2 * self.hole_radius:
@@ -111,14 +140,57 @@ class Bolts(Part):
                 f"bolts: diameter is {self.diameter:g} but must be at most that of the hole, "
                 f"{2 * self.hole_radius:g}: reduce it"
             )
+        if self.hold == "washers" and self.clamp_length is not None:
+            raise InputError("bolts: hold is 'washers' and there is a clamp_length: leave it out")
+        pulls = [k for k in ("preload", "property_class") if getattr(self, k) is not None]
+        if len(pulls) != (self.hold == "clamped"):
+            raise InputError(
+                f"bolts: hold is {self.hold!r} and there is {' and '.join(pulls) or 'no preload'}: "
+                + (
+                    "give preload [N] or property_class, one of the two"
+                    if self.hold == "clamped"
+                    else "make hold 'clamped', or leave it out"
+                )
+            )
+        for key in ("of_yield", "thread_friction"):
+            if getattr(self, key) is not None and self.property_class is None:
+                raise InputError(f"bolts: {key} belongs to a property_class: add that")
         return self
 
+    def tightened(self, scale: float) -> float:
+        """Tension of each bolt after it is tightened.
 
-class ForeignHousing(Part):
-    """A housing from a STEP file or a mesh file: material, placement, seat and held faces.
+        Parameters
+        ----------
+        scale : float
+            Metres in the file's unit.
 
-    It is turned first, about the fixed axes x, y and z one after the other, then moved. Without
-    `translate` it is moved so that the middle of its seat is the centre of its bearing.
+        Returns
+        -------
+        float
+            [N]; given, or that of its property class, see `assembly_preload`.
+
+        Raises
+        ------
+        InputError
+            Its diameter has no coarse metric thread.
+        """
+        if self.preload is not None:
+            return self.preload
+        assert self.diameter is not None
+        assert self.property_class is not None
+        return assembly_preload(
+            coarse_thread(self.diameter * scale),
+            yield_strength(self.property_class),
+            0.9 if self.of_yield is None else self.of_yield,
+            0.12 if self.thread_friction is None else self.thread_friction,
+        )
+
+
+class ForeignFile(Part):
+    """A part from a STEP file or a mesh file: which solid, of what material, and how it is turned.
+
+    It is turned about the fixed axes x, y and z one after the other, before it is moved.
     """
 
     step: str | None = Field(default=None, min_length=1, max_length=1000)
@@ -127,14 +199,10 @@ class ForeignHousing(Part):
         default=None, description="of the file's lengths; mm for STEP where left out"
     )
     part: str | None = Field(
-        default=None, min_length=1, description="label of the solid, where a mesh has several"
+        default=None, min_length=1, description="name of one solid, where a file has several"
     )
     material: str = Field(default="ductile_iron", description="name of the material")
     rotate: Vector = (0.0, 0.0, 0.0)
-    translate: Vector | None = None
-    seat: Pick
-    held: tuple[Pick, ...] = Field(min_length=1, max_length=100)
-    bolts: Bolts | None = None
     smallest_detail: float = Field(
         default=0.0, ge=0, description="edges and faces below it are removed, in the file's unit"
     )
@@ -143,31 +211,38 @@ class ForeignHousing(Part):
     def _one_file(self) -> Self:
         if (self.step is None) == (self.mesh is None):
             raise InputError(
-                "a housing from a file has "
+                f"{self.what()} has "
                 + ("neither step nor mesh" if self.step is None else "both step and mesh")
                 + " but must have one of the two: name one file"
             )
         allowed = MESH_ENDINGS if self.step is None else STEP_ENDINGS
         if not self.file.lower().endswith(allowed):
             raise InputError(
-                f"the housing's file {self.file} must end in {' or '.join(allowed)}: give "
+                f"the file {self.file} of {self.what()} must end in {' or '.join(allowed)}: give "
                 + ("a mesh under 'mesh'" if self.step is None else "a STEP file under 'step'")
             )
         if self.step is None and self.unit is None:
             raise InputError(
-                f"the housing's mesh {self.file} has no unit: give unit: mm, m or in, the unit of "
-                "its coordinates"
+                f"the mesh {self.file} of {self.what()} has no unit: give unit: mm, m or "
+                "in, the unit of its coordinates"
             )
         if self.step is None and self.smallest_detail > 0:
             raise InputError(
-                f"the housing's mesh {self.file} has a smallest_detail of "
+                f"the mesh {self.file} of {self.what()} has a smallest_detail of "
                 f"{self.smallest_detail:g}, but nothing is removed from a mesh: leave it out"
             )
         for key in ("rotate", "translate"):
-            value = getattr(self, key)
+            value = getattr(self, key, None)
             if value is not None and max(map(abs, value)) > LARGEST:
-                raise InputError(f"the housing's {key} is {list(value)}: at most {LARGEST:g} each")
+                raise InputError(
+                    f"{key} of {self.what()} is {list(value)}, but at most {LARGEST:g} each: "
+                    "reduce it"
+                )
         return self
+
+    def what(self) -> str:
+        """What it is, for messages."""
+        return "a housing from a file"
 
     @property
     def file(self) -> str:
@@ -187,12 +262,35 @@ class ForeignHousing(Part):
         turned = Rotation.from_euler("xyz", self.rotate, degrees=True).as_matrix()
         return np.asarray(turned, dtype=np.float64)
 
+
+class ForeignHousing(ForeignFile):
+    """A housing from a STEP file or a mesh file: material, placement, seat and held faces.
+
+    Without `translate` it is moved so that the middle of its seat is the centre of its bearing. No
+    face is held where it stands on further parts, see `FurtherPart`.
+    """
+
+    translate: Vector | None = None
+    seat: Pick
+    held: tuple[Pick, ...] = Field(default=(), max_length=100)
+    bolts: Bolts | None = None
+
+    @model_validator(mode="after")
+    def _tightened(self) -> Self:
+        if self.bolts is not None and self.bolts.hold == "clamped":
+            self.bolts.tightened(self.scale)
+        return self
+
     @property
     def held_by(self) -> str:
         """How it is held, in words."""
         if self.bolts is None:
             return "held faces fixed"
-        return "fixed at the washers" if self.bolts.hold == "washers" else "held by bolts as beams"
+        return {
+            "washers": "fixed at the washers",
+            "beams": "held by bolts as beams",
+            "clamped": "clamped by preloaded bolts",
+        }[self.bolts.hold]
 
     def check_bearing(self, bearing: Bearing) -> None:
         """Refuse a seat that cannot be that of the bearing, as far as it is known without the file.
@@ -209,6 +307,34 @@ class ForeignHousing(Part):
                 f"{radius:g} m, half the bearing's raceway_diameter: change one of them, or the "
                 "unit of the file"
             )
+
+
+class Tie(Part):
+    """A face of a further part that is glued to what it lies on: the housing, or another part."""
+
+    face: Pick
+    to: str = Field(default="housing", min_length=1, max_length=100)
+
+
+class FurtherPart(ForeignFile):
+    """A part under or beside a housing, from a file: a bedplate, a torque arm, a rib.
+
+    The origin of its file comes to the centre of the unit's bearing, and then is moved by
+    `translate` [m].
+    """
+
+    name: str = Field(
+        pattern=r"^[A-Za-z][A-Za-z0-9_-]*$",
+        max_length=60,
+        description="name: letters, digits, '_' and '-'",
+    )
+    translate: Vector = (0.0, 0.0, 0.0)
+    tied: tuple[Tie, ...] = Field(min_length=1, max_length=100)
+    held: tuple[Pick, ...] = Field(default=(), max_length=100)
+
+    def what(self) -> str:
+        """What it is, for messages."""
+        return f"part {self.name!r}"
 
 
 Row = tuple[float, float, float, float, float, float]

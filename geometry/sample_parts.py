@@ -5,7 +5,9 @@ Dimensions are plausible and in round numbers; none is a catalogue's.
 
 from __future__ import annotations
 
+import math
 import os
+from collections.abc import Callable
 from itertools import product
 
 import gmsh
@@ -78,6 +80,37 @@ def split_housing() -> int:
     return _bored(body, holes)
 
 
+def cap_and_base() -> tuple[int, int]:
+    """Add the split housing to the open gmsh model as two solids, its joint open to both.
+
+    Returns
+    -------
+    tuple of int
+        Tags of the base's volume, below the bore's axis, and of the cap's.
+    """
+    occ = gmsh.model.occ
+    whole = split_housing()
+    above = occ.addBox(-1.0, -1.0, 0.0, 2.0, 2.0, 1.0)
+    cap, _ = occ.intersect([(3, whole)], [(3, above)], removeObject=False, removeTool=False)
+    base, _ = occ.cut([(3, whole)], [(3, above)])
+    return _one(base), _one(cap)
+
+
+def bedplate() -> int:
+    """Add a welded bedplate to the open gmsh model: a plate on two webs, under the other samples.
+
+    Returns
+    -------
+    int
+        Tag of the volume. Its upper side is at the height of the housings' feet.
+    """
+    occ = gmsh.model.occ
+    plate = occ.addBox(-0.30, -0.75, -CENTRE - 0.15, 0.60, 1.50, 0.15)
+    webs = [(3, occ.addBox(-0.30, y - 0.06, -CENTRE - 0.38, 0.60, 0.12, 0.23)) for y in (-0.4, 0.4)]
+    found, _ = occ.fuse([(3, plate)], webs)
+    return _one(found)
+
+
 def torque_arm() -> int:
     """Add a gearbox's torque arm to the open gmsh model: a ring, an arm to one side, an eye.
 
@@ -99,9 +132,11 @@ def torque_arm() -> int:
     return _one(found)
 
 
-PARTS = {
+PARTS: dict[str, Callable[[], int | tuple[int, ...]]] = {
     "ribbed_pillow_block": ribbed_pillow_block,
     "split_housing": split_housing,
+    "cap_and_base": cap_and_base,
+    "bedplate": bedplate,
     "torque_arm": torque_arm,
 }
 """What `write_sample` makes, by name."""
@@ -120,7 +155,7 @@ def write_sample(name: str, path: str | os.PathLike[str]) -> float:
     Returns
     -------
     float
-        Volume of the part [m^3].
+        Volume of all its solids [m^3].
 
     Raises
     ------
@@ -130,10 +165,11 @@ def write_sample(name: str, path: str | os.PathLike[str]) -> float:
     if name not in PARTS:
         raise InputError(f"there is no part {name!r}: use one of {', '.join(PARTS)}")
     with gmsh_session(name):
-        tag = PARTS[name]()
+        made = PARTS[name]()
+        tags = made if isinstance(made, tuple) else (made,)
         gmsh.model.occ.synchronize()
-        volume = float(gmsh.model.occ.getMass(3, tag))
-        write_step(path, [tag])
+        volume = math.fsum(gmsh.model.occ.getMass(3, tag) for tag in tags)
+        write_step(path, tags)
     return volume
 
 

@@ -1,14 +1,25 @@
 """Bands of assemblies: influence functions, recovered errors, and what a series of meshes shows."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from conftest import coarse_scene
 
+from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.compare.convergence import grid_convergence, scattered_band
 from fe_drivetrain.fidelity.adviser import Quantity, recovered_errors
-from fe_drivetrain.fidelity.assembly_bands import assembly_band, motion_error, reaction_error
+from fe_drivetrain.fidelity.assembly_bands import (
+    assembly_band,
+    cached_reaction_errors,
+    motion_error,
+    reaction_error,
+)
 from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.response.influence_fields import reaction_influences
+from fe_drivetrain.response.influence_fields import (
+    influences_of_all_reactions,
+    reaction_influences,
+)
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.solve.error_estimate import SAFETY, recovery_estimate
@@ -39,6 +50,32 @@ def test_ground_that_moves_lifts_each_load_by_its_reaction(solved: tuple[Model, 
         found = reaction_influences(model, name, range(6)).T @ model.unit_loads()
         expected = response.reactions[name]
         np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-8 * np.abs(expected).max())
+
+
+def test_the_last_supports_influences_are_what_the_others_leave_of_rigid_motions(
+    solved: tuple[Model, Response],
+) -> None:
+    """Each against its own solution; a motion of ground that nothing holds does nothing."""
+    model, _ = solved
+    together = influences_of_all_reactions(model)
+    assert list(together) == ["main_bearing", "gearbox"]
+    for name, found in together.items():
+        own = reaction_influences(model, name, range(6))[: model.mesh.points.size]
+        np.testing.assert_allclose(found, own, atol=1e-7 * np.abs(own).max())
+
+
+def test_errors_of_all_reactions_are_those_of_each_and_are_kept(
+    solved: tuple[Model, Response], tmp_path: Path
+) -> None:
+    model, response = solved
+    first, kept = cached_reaction_errors(model, response, Cache(tmp_path))
+    assert not kept
+    again, kept = cached_reaction_errors(model, response, Cache(tmp_path))
+    assert kept
+    for name, found in first.items():
+        np.testing.assert_array_equal(found, again[name])
+        each = reaction_error(model, response, name, range(6), np.eye(10))
+        np.testing.assert_allclose(found, each, atol=1e-6 * each.max())
 
 
 def test_work_of_errors_is_their_energy_on_themselves(solved: tuple[Model, Response]) -> None:

@@ -16,9 +16,9 @@ from fe_drivetrain.solve.condensation import followed
 from fe_drivetrain.validation.random_shafts import random_scene
 
 
-@pytest.mark.parametrize("seed", [2, 4, 5])
+@pytest.mark.parametrize("seed", [1, 2, 5])
 def test_the_meridians_band_holds_what_higher_orders_on_finer_meshes_say(seed: int) -> None:
-    """Seeds 4 (sharp) and 5 (fillets): the last change of order alone is less than the error."""
+    """Seeds 1 (sharp) and 5 (fillets): the last change of order alone is less than the error."""
     scene = random_scene(seed)
     body, band = banded_meridian(scene)
     widest = max(piece.outer_diameter for piece in scene.shaft.pieces)

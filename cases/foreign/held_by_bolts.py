@@ -29,7 +29,7 @@ METHOD = "superlu"  # a rigid face couples many nodes, which a direct solver tak
 STIFF = (1e13, 5e12)  # Pa: housings that are stiff against their bolts, of two moduli
 
 _SCENE = """
-title: {name} from a STEP file
+title: {title}
 shaft: {{front: -2.145, sections: [{{length: 4.76, outer_diameter: 0.4}}]}}
 bearing_units:
   - bearing: {{name: main_bearing, kind: ring}}
@@ -43,11 +43,16 @@ gearbox: {{stiffness: [4.0e6, 8.0e7, 8.0e7, rigid, 0, 0]}}
 """
 
 
+def in_scene(title: str, file: Path, bolts: str) -> Scene:
+    """A housing from a STEP file, held by its underside, under the ring of a shaft."""
+    return parse_scene(_SCENE.format(title=title, file=file, bolts=bolts))
+
+
 def held(folder: Path, name: str, way: str, size: float) -> Scene:
     """A sample housing in a scene, held in one of the ways, on a mesh of a size [m]."""
-    text = _SCENE.format(name=HOUSINGS[name], file=folder / f"{name}.step", bolts=WAYS[way])
+    title, file = f"{HOUSINGS[name]} from a STEP file", folder / f"{name}.step"
     sizes = {"mesh.housing": size, "mesh.bearing": 0.12, "mesh.bearing_edge": 0.12}
-    return change_scene(parse_scene(text), {**sizes, "mesh.elements_per_turn": 8})
+    return change_scene(in_scene(title, file, WAYS[way]), {**sizes, "mesh.elements_per_turn": 8})
 
 
 def stiffness(scene: Scene) -> Floats:

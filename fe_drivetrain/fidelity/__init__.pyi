@@ -3,6 +3,8 @@ from .adviser import Quantity as Quantity
 from .adviser import advise as advise
 from .adviser import banded_assembly as banded_assembly
 from .assembly_bands import LEAST_ORDER as LEAST_ORDER
+from .assembly_bands import all_reaction_errors as all_reaction_errors
+from .assembly_bands import cached_reaction_errors as cached_reaction_errors
 from .assembly_bands import reaction_error as reaction_error
 from .bearing_units import UnitBounds as UnitBounds
 from .bearing_units import banded_unit as banded_unit
@@ -31,6 +33,7 @@ from .energy_sensitivities import energy_slopes as energy_slopes
 from .energy_sensitivities import hub_elasticities as hub_elasticities
 from .energy_sensitivities import moment_elasticities as moment_elasticities
 from .energy_sensitivities import total as total
+from .foot_opening import foot_warnings as foot_warnings
 from .ladder import LevelModel as LevelModel
 from .ladder import assembly_level as assembly_level
 from .ladder import housing_springs as housing_springs

@@ -219,7 +219,7 @@ class Advice:
 
     def _of_band(self) -> str:
         band = self.top.band
-        return "" if band is None else f". On the assembly's band: {band.sentence()}"
+        return "." if band is None else f". On the assembly's band: {band.sentence()}."
 
 
 def advise(

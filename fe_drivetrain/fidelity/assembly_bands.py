@@ -22,9 +22,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.made_by import source_hash
 from fe_drivetrain.compare.convergence import DOUBTFUL, Behaviour, grid_convergence
 from fe_drivetrain.fidelity.shaft_bands import APART
-from fe_drivetrain.response.influence_fields import reaction_influences
+from fe_drivetrain.response.cached import solved_content
+from fe_drivetrain.response.influence_fields import (
+    influences_of_all_reactions,
+    reaction_influences,
+)
+from fe_drivetrain.response.makers import mesh_hash, solved_by
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 from fe_drivetrain.solve.error_estimate import SAFETY, Lame, recovered_work
@@ -45,6 +52,7 @@ _SHOWN: dict[Behaviour, str] = {
     "oscillatory": "values of three meshes go up and down: they show no order of convergence",
     "divergent": "values of three meshes do not converge: their differences do not shrink",
 }
+_FILE = "assembly_bands.py"  # of the estimate, beside the rooms that make a solution
 _TWO = "of coarser meshes there is only one, which shows no order of convergence"
 _NONE = (
     f"coarser meshes cannot be made, or their elements are not {LEAST_RATIO:g} times as large: "
@@ -172,6 +180,60 @@ def reaction_error(
     influences = reaction_influences(model, name, components)
     u = _displacements(response, columns)
     return recovered_work(model.mesh.points, _parts(model), influences, u)
+
+
+def all_reaction_errors(model: Model, response: Response) -> dict[str, Floats]:
+    """`reaction_error` of all components of every support to each unit load, solved together.
+
+    Parameters
+    ----------
+    model, response : Model, Response
+        A solved scene.
+
+    Returns
+    -------
+    dict[str, Floats]
+        (6, n) by the name of each bearing and "gearbox", to n unit loads [N, N m].
+    """
+    influences = influences_of_all_reactions(model)
+    u = _displacements(response, np.eye(len(model.loads)))
+    together = np.hstack(list(influences.values()))
+    work = recovered_work(model.mesh.points, _parts(model), together, u)
+    return dict(zip(influences, work.reshape(-1, 6, u.shape[1]), strict=True))
+
+
+def cached_reaction_errors(
+    model: Model, response: Response, cache: Cache | None = None
+) -> tuple[dict[str, Floats], bool]:
+    """`all_reaction_errors`, taken from the cache where they were estimated before.
+
+    Parameters
+    ----------
+    model, response : Model, Response
+        A solved scene.
+    cache : Cache or None
+        The user's if not given.
+
+    Returns
+    -------
+    dict[str, Floats]
+        As of `all_reaction_errors`, the same to the last bit whether kept or not.
+    bool
+        Whether they were kept.
+    """
+    used = user_cache() if cache is None else cache
+    content = {
+        "errors of reactions": solved_content(model.scene),
+        "mesh": mesh_hash(model.mesh),
+        "method": response.diagnostics.method,
+        "made by": solved_by() | {"estimate": source_hash({"fe_drivetrain.fidelity": {_FILE}})},
+    }
+    kept = used.load("solutions", content)
+    if kept is not None and set(kept) == {*model.scene.bearing_names, "gearbox"}:
+        return {name: kept[name] for name in (*model.scene.bearing_names, "gearbox")}, True
+    found = {n: np.ascontiguousarray(e) for n, e in all_reaction_errors(model, response).items()}
+    used.keep("solutions", content, found)
+    return found, False
 
 
 def _parts(model: Model) -> list[tuple[Ints, Lame]]:

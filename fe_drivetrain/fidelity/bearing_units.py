@@ -16,10 +16,12 @@ from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.made_by import source_hash
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import wrench_transport
-from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts, tied
+from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs, mesh_parts, tied
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
-from fe_drivetrain.response.cached import solved_by, solved_content
+from fe_drivetrain.response.cached import solved_content
+from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
+from fe_drivetrain.response.makers import solved_by
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
@@ -27,6 +29,8 @@ from fe_drivetrain.solve.coupled_solid import CoupledSolid, coupled_solid, point
 from fe_drivetrain.solve.error_estimate import SAFETY, recovery_estimate
 
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
+
+_COUPLINGS: tuple[Coupling, Coupling] = ("rigid", "averaged")
 
 #: How the joint itself moves the faces.
 _PRESCRIBED: dict[str, Coupling] = {
@@ -82,6 +86,42 @@ def unit_stiffness(
         lambda: (_solved_unit(scene, name, coupling, method, ring).stiffness,),
     )
     return found
+
+
+def unit_stiffnesses(
+    scene: Scene, name: str, method: str = "auto", cache: Cache | None = None
+) -> dict[Coupling, Floats]:
+    """`unit_stiffness` with each of the two couplings, on one mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of the bearing.
+    method : str
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+    cache : Cache or None
+        Where they may come from, the same to the last bit; the user's if not given.
+
+    Returns
+    -------
+    dict[Coupling, Floats]
+        (6, 6) with a face that is "rigid", and "averaged" [N/m, N, N m/rad].
+    """
+    if (given := _given(scene, name)) is not None:
+        return {"rigid": given, "averaged": given}
+
+    def solved() -> tuple[Floats, ...]:
+        together = _unit_mesh(scene, name)
+        rigid, averaged = (
+            _solved_unit(scene, name, coupling, method, together=together).stiffness
+            for coupling in _COUPLINGS
+        )
+        return rigid, averaged
+
+    found = _kept(scene, {"stiffnesses of": name, "method": method}, cache, solved)
+    return dict(zip(_COUPLINGS, found, strict=True))
 
 
 def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
@@ -148,8 +188,9 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         return UnitBounds(given, given, 0.0)
 
     def solved() -> tuple[Floats, ...]:
-        stiff = _solved_unit(scene, name, "rigid")
-        soft = _solved_unit(scene, name, "averaged").stiffness
+        together = _unit_mesh(scene, name)
+        stiff = _solved_unit(scene, name, "rigid", together=together)
+        soft = _solved_unit(scene, name, "averaged", together=together).stiffness
         return soft, stiff.stiffness, np.array(_mesh_band(scene, stiff))
 
     soft, stiff, mesh = _kept(scene, {"bounds of": name}, cache, solved)
@@ -208,18 +249,30 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     return SAFETY * float(max(shares))
 
 
-def _solved_unit(
-    scene: Scene, name: str, coupling: Coupling, method: str = "auto", ring: bool = True
-) -> _SolvedUnit:
-    """A bearing and its housing without the shaft, see `unit_stiffness`."""
+def _unit_mesh(scene: Scene, name: str, ring: bool = True) -> Tied:
+    """Bearing and housing without the shaft, with the ring where that gives."""
     unit = scene.bearing_unit(name)
     seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
     bearing = unit.bearing.model_copy(update={"bore_diameter": seat})
     alone = unit.model_copy(update={"bearing": bearing})
     with_ring = unit.ring_on_housing and ring
-    together = tied([alone] if with_ring else [], mesh_parts(None, [alone], scene.mesh))
+    return tied([alone], mesh_parts(None, [alone], scene.mesh), with_ring)
+
+
+def _solved_unit(
+    scene: Scene,
+    name: str,
+    coupling: Coupling,
+    method: str = "auto",
+    ring: bool = True,
+    together: Tied | None = None,
+) -> _SolvedUnit:
+    """A bearing and its housing without the shaft, see `unit_stiffness`."""
+    unit = scene.bearing_unit(name)
+    with_ring = unit.ring_on_housing and ring
+    together = _unit_mesh(scene, name, ring) if together is None else together
     mesh = together.mesh
-    parts = [name, f"{name}.housing"] if with_ring else [f"{name}.housing"]
+    parts = [*([name] if with_ring else []), *unit.housing_parts]
     coupling = _PRESCRIBED.get(unit.interface, coupling)
     if with_ring:
         face = f"{name}.bore"
@@ -241,6 +294,8 @@ def _solved_unit(
     springs = bolt_springs(unit, mesh, n_dofs)
     if not springs:
         held.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
+    elif is_clamped(unit):
+        held += foot_holds(scene, unit, mesh, n_dofs)[1]
     held += together.conditions(n_dofs)
     if unit.rollers is not None:
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)

@@ -290,8 +290,8 @@ def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozen
     for unit in scene.bearing_units:
         bearing = unit.bearing
         bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
-        ring, housing = solids_of_unit(unit, bore, scene.mesh)
-        solids = {} if unit.condensed is not None else {f"{bearing.name}.housing": housing}
+        solids = solids_of_unit(unit, bore, scene.mesh)
+        ring = solids.pop(bearing.name)
         if bearing.name not in on_shaft:
             solids[bearing.name] = ring
         for part, solid in solids.items():

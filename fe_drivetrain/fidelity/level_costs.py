@@ -86,7 +86,7 @@ def forecast(model: Model) -> list[Forecast]:
         name = unit.bearing.name
         if unit.condensed is not None:
             continue
-        parts = [name, f"{name}.housing"] if unit.ring_on_housing else [f"{name}.housing"]
+        parts = [*([name] if unit.ring_on_housing else []), *unit.housing_parts]
         system = _of_parts(model, parts, model.mesh.face_nodes(f"{name}.housing.base"))
         units.append(_predicted(1, TITLES[1], system, _OF_A_POINT))
     if units:

@@ -4,7 +4,10 @@ from .assembly import bolt_stiffness as bolt_stiffness
 from .assembly import mesh_parts as mesh_parts
 from .assembly import solids_of_unit as solids_of_unit
 from .assembly import tied as tied
-from .housing import PlacedHousing as PlacedHousing
+from .foot import ClampedFoot as ClampedFoot
+from .foot import FootState as FootState
+from .from_file import PlacedPart as PlacedPart
+from .further_parts import placed_part as placed_part
 from .housing import placed_housing as placed_housing
 from .reading import LIMITS as LIMITS
 from .reading import Limits as Limits

@@ -11,6 +11,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
+from fe_drivetrain.foreign.further_parts import joined, placed_part, tie_faces, tie_of
 from fe_drivetrain.foreign.housing import placed_housing
 from fe_drivetrain.geometry import (
     NO_BANDS,
@@ -77,6 +78,11 @@ def mesh_parts(
     for unit in units:
         if unit.foreign is not None:
             mesh = beside(mesh, placed_housing(unit.foreign, unit.bearing, sizes, cache).mesh)
+    for unit in units:
+        for part in unit.parts:
+            mesh = beside(mesh, placed_part(part, unit.bearing, sizes, cache).mesh)
+        if unit.parts:
+            mesh = joined(mesh, unit)
     return mesh
 
 
@@ -111,8 +117,8 @@ class Tied(NamedTuple):
         return found
 
 
-def tied(units: Sequence[BearingUnit], mesh: Mesh) -> Tied:
-    """Tie bonded bearings to housings from files; others share nodes with theirs.
+def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: bool = True) -> Tied:
+    """Tie bonded bearings to housings from files, others share nodes with theirs; and all parts.
 
     Parameters
     ----------
@@ -120,18 +126,23 @@ def tied(units: Sequence[BearingUnit], mesh: Mesh) -> Tied:
         The bearing units.
     mesh : Mesh
         As `mesh_parts` made it.
+    rings : bool
+        Whether bearings are tied, too; else further parts alone.
     """
-    ties = []
+    ties: list[Constraint] = []
     for unit in units:
-        if unit.foreign is None or unit.interface != "bonded":
+        if not rings or unit.foreign is None or unit.interface != "bonded":
             continue
         name = unit.bearing.name
         slave, master = _finer_first(unit, mesh)
         # standard multipliers would couple each node of the face with each
         ties.append(mortar_tie(f"{name} tie", mesh.points, slave, master, mesh.points.size, "dual"))
-    if not ties:
-        return Tied(mesh, ())
-    return Tied(replace(mesh, points=settled(mesh.points, *ties)), tuple(ties))
+    faces = [pair for unit in units for pair in tie_faces(unit)]
+    ties += [tie_of(own, mesh.points, mesh.faces[own], mesh.faces[other]) for own, other in faces]
+    points = settled(mesh.points, *ties)
+    for _ in faces:  # a slave's face may be the master of another part's
+        points = settled(points, *ties)
+    return Tied(replace(mesh, points=points), tuple(ties))
 
 
 def _finer_first(unit: BearingUnit, mesh: Mesh) -> tuple[Ints, Ints]:
@@ -164,10 +175,11 @@ def bolt_springs(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> list[tuple[Refer
         "NAME.bolt K" with (6, 6) [N/m, N, N m/rad]; empty where nothing is held so.
     """
     housing, name = unit.foreign, unit.bearing.name
-    if housing is None or housing.bolts is None or housing.bolts.hold != "beams":
+    if housing is None or housing.bolts is None or housing.bolts.hold == "washers":
         return []
     assert housing.bolts.diameter is not None
     diameter = housing.bolts.diameter * housing.scale
+    clamp_length = housing.bolts.clamp_length
     found = []
     heads = [face for face in mesh.faces if face.startswith(f"{name}.housing.head ")]
     for number in sorted(int(face.rpartition(" ")[2]) for face in heads):
@@ -175,18 +187,21 @@ def bolt_springs(unit: BearingUnit, mesh: Mesh, n_dofs: int) -> list[tuple[Refer
         nodes = mesh.face_nodes(face)
         weights = face_weights(mesh.points, mesh.faces[face], len(mesh.points), MEANS)[nodes]
         head, foot = (
-            np.array(_middle(mesh, f"{name}.housing.{end} {number}")) for end in ("head", "foot")
+            face_middle(mesh, f"{name}.housing.{end} {number}") for end in ("head", "foot")
         )
+        if clamp_length is not None:
+            along = (head - foot) / np.linalg.norm(head - foot)
+            foot = head - clamp_length * housing.scale * along
         point = averaged_point(f"{name}.bolt {number}", nodes, weights, mesh.points, head, n_dofs)
         found.append((point, bolt_stiffness(diameter, head, foot)))
     return found
 
 
-def _middle(mesh: Mesh, face: str) -> tuple[float, float, float]:
+def face_middle(mesh: Mesh, face: str) -> Floats:
+    """(3,) centroid of a face of a mesh [m]."""
     nodes = mesh.face_nodes(face)
     weights = face_weights(mesh.points, mesh.faces[face], len(mesh.points), MEANS)[nodes]
-    x, y, z = (weights @ mesh.points[nodes] / weights.sum()).tolist()
-    return x, y, z
+    return np.asarray(weights @ mesh.points[nodes] / weights.sum(), dtype=np.float64)
 
 
 def bolt_stiffness(
@@ -241,32 +256,36 @@ def base_centre(unit: BearingUnit, mesh: Mesh) -> Floats:
     mesh : Mesh
         With its housing.
     """
-    if unit.foreign is None:
+    if unit.foreign is None and not unit.parts:
         return np.array([unit.bearing.x, 0.0, -unit.block.centre_height])
-    return np.array(_middle(mesh, f"{unit.bearing.name}.housing.base"))
+    return face_middle(mesh, f"{unit.bearing.name}.housing.base")
 
 
-def solids_of_unit(
-    unit: BearingUnit, bore_diameter: float, sizes: MeshSizes
-) -> tuple[Solid, Solid]:
-    """Volume, centre and inertia of a bearing and of its housing, see `unit_solids`.
+def solids_of_unit(unit: BearingUnit, bore_diameter: float, sizes: MeshSizes) -> dict[str, Solid]:
+    """Volume, centre and inertia of a bearing, of its housing and of further parts, by name.
 
     Parameters
     ----------
     unit : BearingUnit
-        The bearing unit.
+        The bearing unit; a housing that is a stiffness alone is no solid.
     bore_diameter : float
         Of the bearing [m].
     sizes : MeshSizes
-        Of the scene; a housing from a file is measured on its mesh.
+        Of the scene; parts from files are measured on their meshes.
     """
-    if unit.condensed is not None:
-        nothing = Solid(0.0, (unit.bearing.x, 0.0, 0.0), (0.0,) * 9)
-        return bearing_solid(unit.bearing, bore_diameter), nothing
-    if unit.foreign is None:
-        return unit_solids(unit.bearing, unit.block, bore_diameter)
-    mesh = placed_housing(unit.foreign, unit.bearing, sizes).mesh
+    name, bearing = unit.bearing.name, unit.bearing
+    found = {name: bearing_solid(bearing, bore_diameter)}
+    if unit.foreign is not None:
+        mesh = placed_housing(unit.foreign, bearing, sizes).mesh
+        found[f"{name}.housing"] = _solid_of(mesh)
+    elif unit.condensed is None:
+        found[f"{name}.housing"] = unit_solids(bearing, unit.block, bore_diameter)[1]
+    for part in unit.parts:
+        found[f"{name}.{part.name}"] = _solid_of(placed_part(part, bearing, sizes).mesh)
+    return found
+
+
+def _solid_of(mesh: Mesh) -> Solid:
     volume, centre, inertia = mass_moments(mesh.points, mesh.cells)
     x, y, z = centre.tolist()
-    housing = Solid(volume, (x, y, z), tuple(inertia.ravel().tolist()))
-    return bearing_solid(unit.bearing, bore_diameter), housing
+    return Solid(volume, (x, y, z), tuple(inertia.ravel().tolist()))

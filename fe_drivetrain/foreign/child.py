@@ -88,14 +88,12 @@ def _surface() -> tuple[Any, Any, Any]:
 
 def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
     """A mesh of curved tetrahedra in mm, its faces, and the survey."""
-    import gmsh
-
     from fe_drivetrain.common.errors import InputError
     from fe_drivetrain.foreign import step_mesh, step_solid
-    from fe_drivetrain.geometry.session import gmsh_session, numbered_nodes
+    from fe_drivetrain.geometry.session import gmsh_session
 
     with gmsh_session():
-        survey = step_solid.opened(request["file"], request["smallest_detail"])
+        survey = step_solid.opened(request["file"], request["smallest_detail"], request["part"])
         seats = step_solid.seat_cylinders(survey)
         tags = step_solid.picked(survey, request["seat"], "seat")
         seat = next((s for s in seats if set(s["tags"]) & set(tags)), None)
@@ -111,19 +109,43 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
         )
         step_mesh.cut(survey, request)
         step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
-        points, number = numbered_nodes()
-        arrays: dict[str, Any] = {"points": points}
-        for dim, group in gmsh.model.getPhysicalGroups():
-            kind, width = (9, 6) if dim == 2 else (11, 10)
-            nodes = [
-                gmsh.model.mesh.getElementsByType(kind, entity)[1].reshape(-1, width)
-                for entity in gmsh.model.getEntitiesForPhysicalGroup(dim, group)
-            ]
-            name = gmsh.model.getPhysicalName(dim, group)
-            arrays["cells" if dim == 3 else name] = number[np.concatenate(nodes)]
+        arrays = _grouped()
         survey.pop("faces")
     arrays["survey"] = _text(survey | {"seat": seat})
     return arrays
+
+
+def _grouped() -> dict[str, Any]:
+    """Nodes, cells and facets of the open mesh by their physical groups."""
+    import gmsh
+
+    from fe_drivetrain.geometry.session import numbered_nodes
+
+    points, number = numbered_nodes()
+    arrays: dict[str, Any] = {"points": points}
+    for dim, group in gmsh.model.getPhysicalGroups():
+        kind, width = (9, 6) if dim == 2 else (11, 10)
+        nodes = [
+            gmsh.model.mesh.getElementsByType(kind, entity)[1].reshape(-1, width)
+            for entity in gmsh.model.getEntitiesForPhysicalGroup(dim, group)
+        ]
+        name = gmsh.model.getPhysicalName(dim, group)
+        arrays["cells" if dim == 3 else name] = number[np.concatenate(nodes)]
+    return arrays
+
+
+def _mesh_further_part(request: dict[str, Any]) -> dict[str, Any]:
+    """A mesh of curved tetrahedra in mm of a part without a seat, its faces, and the survey."""
+    from fe_drivetrain.foreign import step_mesh, step_solid
+    from fe_drivetrain.geometry.session import gmsh_session
+
+    with gmsh_session():
+        survey = step_solid.opened(request["file"], request["smallest_detail"], request["part"])
+        step_mesh.name_faces(survey, request)
+        step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
+        arrays = _grouped()
+        survey.pop("faces")
+    return arrays | {"survey": _text(survey)}
 
 
 def _held(survey: dict[str, Any], request: dict[str, Any]) -> list[int]:
@@ -138,7 +160,12 @@ def _read_mesh(request: dict[str, Any]) -> dict[str, Any]:
     return read(request["file"])
 
 
-_ACTIONS = {"look": _look_at_step, "mesh step": _mesh_step, "read mesh": _read_mesh}
+_ACTIONS = {
+    "look": _look_at_step,
+    "mesh step": _mesh_step,
+    "mesh further part": _mesh_further_part,
+    "read mesh": _read_mesh,
+}
 
 if __name__ == "__main__":
     sys.exit(main(*sys.argv[1:]))

@@ -17,6 +17,7 @@ import numpy as np
 from fe_drivetrain.common.errors import InputError
 
 MOST_NODES = 3_000_000
+_FARTHEST = 1e9  # any coordinate, in the file's unit
 _FORMATS = {".msh": "gmsh", ".vtu": "vtu", ".inp": "abaqus"}
 _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 _TRIANGLES = ("triangle", "triangle6")
@@ -41,7 +42,8 @@ def read(path: str) -> dict[str, Any]:
     except MemoryError:
         raise
     except (Exception, SystemExit) as error:
-        reason = " ".join(str(error).split())[:150].rstrip(".") or type(error).__name__
+        said = "" if isinstance(error, SystemExit) else " ".join(str(error).split())
+        reason = said[:150].rstrip(".") or "it is damaged, or no such file"
         raise InputError(
             f"{name} cannot be read as a mesh ({reason}): write it again, whole, as "
             f"{_FORMATS[suffix]}"
@@ -80,8 +82,15 @@ def read(path: str) -> dict[str, Any]:
             f"{name}: {len(lost)} nodes have no finite position, the first node {lost[0]}: write "
             "the mesh again"
         )
+    far = used[np.abs(points[used]).max(axis=1) > _FARTHEST]
+    if len(far):
+        raise InputError(
+            f"{name}: node {far[0]} is at ({', '.join(f'{x:.3g}' for x in points[far[0]])}), but "
+            f"coordinates must be at most {_FARTHEST:g}: write the mesh again"
+        )
     first = np.cumsum([0, *(len(blocks[k]) for k in solids)])
     cells = np.concatenate([blocks[k] for k in solids])
+    _refuse_doubles(name, points, cells)
     linear = cells.shape[1] == 4
     found: dict[str, Any] = {}
     for label, members in _sets(mesh).items():
@@ -96,6 +105,19 @@ def read(path: str) -> dict[str, Any]:
     if linear:
         points, cells = _with_middles(points, cells)
     return {"points": points, "cells": cells, "linear": np.array(linear), **found}
+
+
+def _refuse_doubles(name: str, points: Any, cells: Any) -> None:
+    """Refuse elements that stand on the corners of others."""
+    corners = np.sort(cells[:, :4], axis=1)
+    _, at, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
+    if (count > 1).any():
+        first = int(at[count > 1].min())
+        x, y, z = points[cells[first, :4]].mean(axis=0)
+        raise InputError(
+            f"{name}: {int((count - 1).sum())} of its {len(cells)} elements stand where another "
+            f"does, the first near ({x:.4g}, {y:.4g}, {z:.4g}): leave out the doubles"
+        )
 
 
 def _sets(mesh: Any) -> dict[str, dict[int, Any]]:

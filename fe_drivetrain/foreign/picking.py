@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,6 +77,11 @@ class Surface:
             )
         return np.flatnonzero(found)
 
+    def picked_all(self, picks: Sequence[Pick], what: str) -> Ints:
+        """Numbers of the facets of all picks, ascending; see `picked`."""
+        found = [np.zeros(0, dtype=np.int64), *(self.picked(pick, what) for pick in picks)]
+        return np.asarray(np.unique(np.concatenate(found)), dtype=np.int64)
+
     def labels(self) -> str:
         """Labels of faces, in words."""
         found = [k.partition(" ")[2] for k in self.sets if k.startswith(("face ", "nodes "))]
@@ -134,23 +139,3 @@ class Surface:
         graph = sparse.coo_array((np.ones(len(one)), (one, two)), shape=(k, k))
         face = connected_components(graph, directed=False)[1]
         return np.asarray(face == face[start], dtype=np.bool_)
-
-    def circles(self, facets: Ints, radius: float) -> Floats:
-        """(m, 3) centres of the round holes of a radius in some facets."""
-        corners = self.facets[facets, :3]
-        n = len(self.points)
-        ends = np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        edges, count = np.unique(ends[:, 0] * n + ends[:, 1], return_counts=True)
-        rim = edges[count == 1]
-        nodes, local = np.unique(np.concatenate([rim // n, rim % n]), return_inverse=True)
-        first, second = local[: len(rim)], local[len(rim) :]
-        graph = sparse.coo_array((np.ones(len(rim)), (first, second)), shape=(len(nodes),) * 2)
-        loops, loop = connected_components(graph, directed=False)
-        found = []
-        for number in range(loops):
-            at = self.points[nodes[loop == number]]
-            middle = (at.min(axis=0) + at.max(axis=0)) / 2
-            away = np.linalg.norm(at - middle, axis=1)
-            if np.abs(away - radius).max() < 0.1 * radius:
-                found.append(middle)
-        return np.array(found).reshape(-1, 3)

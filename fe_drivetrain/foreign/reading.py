@@ -59,7 +59,7 @@ def read_in_process(
     Parameters
     ----------
     action : str
-        "look", "mesh step" or "read mesh", see `child`.
+        "look", "mesh step", "mesh further part" or "read mesh", see `child`.
     path : str or Path
         The file.
     request : Mapping[str, Any]

@@ -1,4 +1,4 @@
-"""The solid of a STEP file divided where a bearing and bolts touch it, and meshed, in mm.
+"""The solids of a STEP file divided where a bearing and bolts touch it, and meshed, in mm.
 
 This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
 """
@@ -14,7 +14,6 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_solid import (
-    SAME,
     VOLUME_TOLERANCE,
     distance,
     picked,
@@ -22,6 +21,7 @@ from fe_drivetrain.foreign.step_solid import (
     seat_cylinders,
     where,
 )
+from fe_drivetrain.foreign.step_solids import became, outside, placed
 
 LARGEST_MESH = 400_000
 """Most elements of a part."""
@@ -44,7 +44,7 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
         Tags of the faces "bore", "seat" and "base", and of "head 1", "head 2", ... .
     """
     occ, name = gmsh.model.occ, survey["name"]
-    ((_, volume),) = gmsh.model.getEntities(3)
+    solids = gmsh.model.getEntities(3)
     seat_tags = picked(survey, request["seat"], "seat")
     (seat, *others) = [s for s in seat_cylinders(survey) if set(s["tags"]) & set(seat_tags)] or [{}]
     if not seat or others:
@@ -73,44 +73,39 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
         ((_, slab),), _ = occ.intersect([(3, occ.addSphere(*seat["centre"], radius))], [(3, slab)])
     rings, groups = [], []
     for hole in holes:
-        for which in ("foot", "head") if request["bolts"]["hold"] == "beams" else ("foot",):
+        for which in ("foot", "head") if _has_heads(request) else ("foot",):
             ring = _annulus(hole[which], hole["axis"], request["bolts"])
             rings.append(ring)
             groups.append(f"{which} {hole['number']}")
     objects = [(2, t) for t in seat["tags"]] + [(2, t) for t in base_tags]
-    heads = [hole["head face"] for hole in holes if request["bolts"]["hold"] == "beams"]
+    heads = [hole["head face"] for hole in holes if _has_heads(request)]
     objects += [(2, t) for t in dict.fromkeys(heads)]
-    mass = occ.getMass(3, volume)
-    _, pieces = occ.fragment([(3, volume)], [(3, slab), *((2, r) for r in rings), *objects])
+    were = [placed(ring) for ring in rings]
+    mass = math.fsum(occ.getMass(3, t) for _, t in solids)
+    _, pieces = occ.fragment(solids, [(3, slab), *((2, r) for r in rings), *objects])
     occ.synchronize()
-    bodies = [t for d, t in pieces[0] if d == 3]
-    if len(bodies) != 1 or abs(occ.getMass(3, bodies[0]) / mass - 1) > VOLUME_TOLERANCE:
+    bodies = [t for piece in pieces[: len(solids)] for d, t in piece if d == 3]
+    left = math.fsum(occ.getMass(3, t) for t in bodies)
+    if len(bodies) != len(solids) or abs(left / mass - 1) > VOLUME_TOLERANCE:
         raise InputError(
             f"{name}: the solid does not stay whole where the bearing's sides cut its seat: the "
             f"bearing overlaps it there, or the seat of radius {radius:.6g} mm is not round"
         )
-    body = bodies[0]
-    surface = {t for _, t in gmsh.model.getBoundary([(3, body)], combined=False, oriented=False)}
+    gmsh.model.removeEntities([e for e in gmsh.model.getEntities(3) if e[1] not in bodies])
+    surface = set(outside())
     n = len(seat["tags"])
-    at = 2 + len(rings)
-    faces_of = {face["tag"]: face for face in survey["faces"]}
-
-    def became(tag: int, piece: Any) -> set[int]:
-        # what stays whole is in no history: it has its area and its middle still
-        if piece:
-            return {t for d, t in piece if d == 2} & surface
-        old = faces_of[tag]
-        return {
-            t
-            for t in surface
-            if abs(occ.getMass(2, t) / old["area"] - 1) < 1e-6
-            and math.dist(occ.getCenterOfMass(2, t), old["middle"]) < SAME * survey["size"]
-        }
-
-    after = pieces[at:]
-    on_seat = set().union(*map(became, seat["tags"], after[:n]))
-    on_base = set().union(*map(became, base_tags, after[n : n + len(base_tags)]))
-    on_ring = [{t for d, t in piece if d == 2} & surface for piece in pieces[2:at]]
+    at = len(solids) + 1 + len(rings)
+    cut_faces = [*seat["tags"], *base_tags]
+    was = {face["tag"]: (face["area"], face["middle"]) for face in survey["faces"]}
+    after = [
+        became(was[tag], piece, survey["size"]) & surface
+        for tag, piece in zip(cut_faces, pieces[at : at + len(cut_faces)], strict=True)
+    ]
+    on_seat, on_base = set().union(*after[:n]), set().union(*after[n:])
+    on_ring = [
+        became(ring, piece, survey["size"]) & surface
+        for ring, piece in zip(were, pieces[at - len(rings) : at], strict=True)
+    ]
     faces: dict[str, list[int]] = {"seat": sorted(on_seat)}
     bore = []
     for t in on_seat:
@@ -120,11 +115,13 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
     faces["bore"] = sorted(bore)
     if request.get("bolts"):
         feet = [r for r, g in zip(on_ring, groups, strict=True) if g.startswith("foot")]
-        on_base &= set().union(*feet)
+        if request["bolts"]["hold"] != "clamped":
+            on_base &= set().union(*feet)
         for under, group in zip(on_ring, groups, strict=True):
-            if request["bolts"]["hold"] == "beams":
+            if _has_heads(request):
                 faces[group] = sorted(under)
-    faces["base"] = sorted(on_base)
+    if base_tags:
+        faces["base"] = sorted(on_base)
     for key, tags in faces.items():
         if not tags:
             raise InputError(
@@ -137,13 +134,37 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
             f"{name}: its seat covers {length:.6g} mm of the bearing's width of {width:.6g} mm, "
             "but must cover all of it: move the part, or make the bearing narrower"
         )
-    for d, t in gmsh.model.getEntities(3):
-        if t != body:
-            gmsh.model.removeEntities([(d, t)])
-    gmsh.model.addPhysicalGroup(3, [body], name="body")
+    gmsh.model.addPhysicalGroup(3, bodies, name="body")
     for key, tags in faces.items():
         gmsh.model.addPhysicalGroup(2, tags, name=f"body.{key}")
     return faces
+
+
+def _has_heads(request: dict[str, Any]) -> bool:
+    """Whether bolts are bodies that pull at the holes' upper ends."""
+    return bool(request["bolts"]["hold"] != "washers")
+
+
+def name_faces(survey: dict[str, Any], request: dict[str, Any]) -> None:
+    """Name the tied and held faces of a part without a seat, "body.tie 1" ... and "body.held"."""
+    name = survey["name"]
+    faces = {
+        f"tie {k}": picked(survey, pick, "tied face") for k, pick in enumerate(request["tied"], 1)
+    }
+    if request["held"]:
+        held = [t for pick in request["held"] for t in picked(survey, pick, "held face")]
+        faces["held"] = list(dict.fromkeys(held))
+    tags = [t for found in faces.values() for t in found]
+    if len(set(tags)) < len(tags):
+        twice = next(t for t in tags if tags.count(t) > 1)
+        middle = next(f["middle"] for f in survey["faces"] if f["tag"] == twice)
+        raise InputError(
+            f"{name}: the face round {_xyz(middle)} mm is picked twice, to be tied or held: pick "
+            "each face once"
+        )
+    gmsh.model.addPhysicalGroup(3, [t for _, t in gmsh.model.getEntities(3)], name="body")
+    for key, found in faces.items():
+        gmsh.model.addPhysicalGroup(2, found, name=f"body.{key}")
 
 
 def _check_seat(
@@ -221,7 +242,7 @@ def bolt_holes(
                 and abs((head - np.array(f["middle"])) @ axis) < tolerance
                 and distance(f["tag"], head.tolist()) < 1.01 * seat["radius"]
             ]
-            if bolts["hold"] == "beams" and not tops:
+            if _has_heads(request) and not tops:
                 raise InputError(
                     f"{survey['name']}: the hole at {_xyz(foot)} mm does not end on a plane face, "
                     "on which a bolt's head could press: hold 'washers'"
@@ -261,7 +282,7 @@ def _annulus(place: Sequence[float], axis: Sequence[float], bolts: dict[str, Any
 
 
 def mesh(survey: dict[str, Any], size: float, per_turn: int, optimise: bool) -> None:
-    """Mesh the one solid with curved second-order tetrahedra of a size [mm].
+    """Mesh the solids with curved second-order tetrahedra of a size [mm].
 
     Moving their nodes where they fold over (optimise) takes ten times as long.
     """

@@ -1,4 +1,4 @@
-"""A STEP file's solid in the open gmsh model, in mm: healed, described, picked, cut and meshed.
+"""A STEP file's solids in the open gmsh model, in mm: healed, glued, described and picked.
 
 This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
 """
@@ -16,11 +16,14 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.step_solids import MOST_SOLIDS, glue, keep, outside, solids
 
 VOLUME_TOLERANCE = 1e-4
 """Relative change of a volume by healing that is refused."""
 
 _MOST_FACES = 20_000
+_LEAST_VOLUME = 1e-9  # of the cube of its size
+_FARTHEST = 1e9  # any number of a place, in the file's unit
 _ALIGNED = 1e-6  # sine of the angle between directions that are the same
 SAME = 1e-6  # of a solid's size: places that are the same
 _SURFACES = {  # as STEP and gmsh call them
@@ -32,11 +35,15 @@ _SURFACES = {  # as STEP and gmsh call them
 }
 
 
-def opened(path: str, smallest_detail: float = 0.0) -> dict[str, Any]:
-    """Import and heal a STEP file of one solid; what is known of it, for `Survey`."""
+def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> dict[str, Any]:
+    """Import and heal the solids of a STEP file, or one of them; what is known, for `Survey`.
+
+    Several solids are glued: they share the faces in which they touch.
+    """
     name, occ = Path(path).name, gmsh.model.occ
     for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):
         gmsh.option.setNumber(f"Geometry.OCC{option}", 0)
+    _refuse_odd_numbers(path)
     gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
     try:
@@ -48,20 +55,40 @@ def opened(path: str, smallest_detail: float = 0.0) -> dict[str, Any]:
         ) from None
     occ.synchronize()
     before = _counted()
-    if before["solids"] != 1:
+    if before["solids"] == 0 and before["faces"]:
         raise InputError(
-            f"{name} has {before['solids']} solids but must have one: save the one part, as a "
-            "solid, in a file of its own"
+            f"{name} has {before['faces']} faces that enclose no solid{_free_edges()}: close the "
+            "shell in the CAD program, and save it as a solid"
         )
+    if not 1 <= before["solids"] <= MOST_SOLIDS:
+        raise InputError(
+            f"{name} has {before['solids']} solids but must have 1 to {MOST_SOLIDS}: save the "
+            "parts that carry, as solids, in a file of their own"
+        )
+    if part is not None:
+        keep(name, part)
+        before = _counted()
     if before["faces"] > _MOST_FACES:
         raise InputError(
             f"{name} has {before['faces']} faces but must have at most {_MOST_FACES}: leave out "
             "threads, lettering and other small details"
         )
+    box = _box()
+    if abs(before["volume"]) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
+        x, y, z = ((a + b) / 2 for a, b in zip(box[:3], box[3:], strict=True))
+        raise InputError(
+            f"{name}: its solid round ({x:.4g}, {y:.4g}, {z:.4g}) mm encloses "
+            f"{before['volume']:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
+            "cross; repair it in the CAD program"
+        )
     colours = {t: _colour(t) for _, t in gmsh.model.getEntities(2)}
     labels = _labels(path)
+    small = smallest_detail > 0
+    # healed together, touching solids would be sewn into none
+    each = [[s] for s in gmsh.model.getEntities(3)] if before["solids"] > 1 else [[]]
     try:
-        occ.healShapes([], smallest_detail or 1e-8, True, smallest_detail > 0, smallest_detail > 0)
+        for one in each:
+            occ.healShapes(one, smallest_detail or 1e-8, True, small, small)
     except Exception as error:
         raise InputError(
             f"{name} cannot be healed ({reason(error)}{where(reason(error))}): repair that "
@@ -70,14 +97,20 @@ def opened(path: str, smallest_detail: float = 0.0) -> dict[str, Any]:
     occ.synchronize()
     after = _counted()
     change = abs(after["volume"] - before["volume"]) / max(abs(before["volume"]), 1e-300)
-    if after["solids"] != 1 or not change <= VOLUME_TOLERANCE or not after["volume"] > 0:
+    if (
+        after["solids"] != before["solids"]
+        or not change <= VOLUME_TOLERANCE
+        or not after["volume"] > 0
+    ):
         raise InputError(
-            f"{name} has {before['solids']} solid of {before['volume']:.9g} mm^3 before and "
-            f"{after['solids']} of {after['volume']:.9g} mm^3 after healing, but must have one of "
-            f"the same volume, to {VOLUME_TOLERANCE:g}: repair its faces in the CAD program"
+            f"{name} has {before['words']} of {before['volume']:.9g} mm^3 before and "
+            f"{after['solids']} of {after['volume']:.9g} mm^3 after healing, but must have as many "
+            f"of the same volume, to {VOLUME_TOLERANCE:g}: repair its faces in the CAD program"
         )
-    faces = [_face(t) for _, t in gmsh.model.getEntities(2)]
     kept = after["faces"] == before["faces"]
+    if after["solids"] > 1:
+        colours = glue(name, math.dist(_box()[:3], _box()[3:]), colours if kept else {})
+    faces = [_face(t) for t in outside()]
     for number, face in enumerate(faces):
         face["colour"] = colours.get(face["tag"], "") if kept else ""
         same = (
@@ -93,10 +126,43 @@ def opened(path: str, smallest_detail: float = 0.0) -> dict[str, Any]:
         "name": name,
         "before": before,
         "after": after,
+        "solids": solids(),
         "box": _box(),
         "faces": faces,
         "size": math.dist(_box()[:3], _box()[3:]),
     }
+
+
+def _refuse_odd_numbers(path: str) -> None:
+    """Refuse places that are no numbers or far away: the reader of STEP files hangs on them."""
+    text = Path(path).read_text("latin-1")
+    for number, values in re.findall(
+        r"#(\d+)\s*=\s*(?:CARTESIAN_POINT|DIRECTION)\s*\(\s*'[^']*'\s*,\s*\(([^()]*)\)", text
+    ):
+        try:
+            sound = all(abs(float(value)) <= _FARTHEST for value in values.split(","))
+        except ValueError:
+            sound = False
+        if not sound:
+            raise InputError(
+                f"{Path(path).name}: its entity #{number} is at ({' '.join(values.split())[:80]}), "
+                f"but must have numbers of at most {_FARTHEST:g}: export it again, whole"
+            )
+
+
+def _free_edges() -> str:
+    """Where the faces of a shell end, in words."""
+    free = [
+        edge
+        for _, edge in gmsh.model.getEntities(1)
+        if len(gmsh.model.getAdjacencies(1, edge)[0]) == 1
+        and gmsh.model.getType(1, edge) != "Unknown"
+    ]
+    if not free:
+        return ""
+    x, y, z = gmsh.model.occ.getCenterOfMass(1, free[0])
+    at = f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
+    return f"; {len(free)} edges belong to one face alone, the first round {at}"
 
 
 def reason(error: Exception) -> str:
@@ -106,12 +172,13 @@ def reason(error: Exception) -> str:
 
 
 def _counted() -> dict[str, Any]:
-    solids = gmsh.model.getEntities(3)
+    there = gmsh.model.getEntities(3)
     return {
-        "solids": len(solids),
+        "solids": len(there),
+        "words": f"{len(there)} solid{'s' if len(there) > 1 else ''}",
         "faces": len(gmsh.model.getEntities(2)),
         "edges": len(gmsh.model.getEntities(1)),
-        "volume": math.fsum(gmsh.model.occ.getMass(3, t) for _, t in solids),
+        "volume": math.fsum(gmsh.model.occ.getMass(3, t) for _, t in there),
         "area": math.fsum(gmsh.model.occ.getMass(2, t) for _, t in gmsh.model.getEntities(2)),
     }
 
@@ -259,7 +326,9 @@ def _nearest(faces: Sequence[dict[str, Any]], pick: dict[str, Any]) -> str:
     given = " and ".join(f"{key} {value}" for key, value in pick.items())
     if "radius" in pick:
         radii = sorted({round(f["radius"], 4) for f in faces if f.get("hole")})
-        there = ", ".join(f"{r:g}" for r in radii[:20]) or "none"
+        if not radii:
+            return f"no bore has {given}, for there are no bores: give the part with its seat"
+        there = ", ".join(f"{r:g}" for r in radii[:20])
         return f"no bore has {given}; radii of bores are {there} mm: use one of these"
     if "label" in pick or "colour" in pick:
         (key,) = pick

@@ -11,6 +11,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.holes import cylinders, planes
+from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, STEP_ENDINGS
 from fe_drivetrain.mesh.measures import mass_moments, scaled_jacobians
@@ -96,18 +98,31 @@ def _of_step(path: Path) -> Survey:
     low, high = np.reshape(data["box"], (2, 3))
     if len(found["triangles"]):
         low, high = found["points"].min(axis=0), found["points"].max(axis=0)
+    rows: list[tuple[str, ...]]
     lines = [
-        f"{path.name}: {after['solids']} solid, {after['faces']} faces, {after['edges']} edges, "
+        f"{path.name}: {after['words']}, {after['faces']} faces, {after['edges']} edges, "
         f"{after['volume'] / 1e6:.6g} dm^3, {after['area'] / 1e6:.4g} m^2",
         f"box: {_xyz(low)} to {_xyz(high)} mm",
-        f"before healing: {before['solids']} solid, {before['faces']} faces, "
+        f"before healing: {before['words']}, {before['faces']} faces, "
         f"{before['volume'] / 1e6:.6g} dm^3",
     ]
+    if after["solids"] > 1:
+        lines += ["", "Solids, glued where they touch; one alone by 'part', its name [mm]:"]
+        rows = [
+            (
+                f"solid {number}",
+                repr(solid["name"]),
+                f"{solid['volume'] / 1e6:.6g} dm^3",
+                f"centre {_xyz(solid['centre'])}",
+            )
+            for number, solid in enumerate(data["solids"][:_MOST_ROWS], 1)
+        ]
+        lines += _table(rows, after["solids"])
     if "unmeshed" in data:
         lines.append(f"gmsh cannot mesh it: {data['unmeshed']}")
     lines += ["", "Bores, the widest first; one of them is the seat [mm]:"]
     marks: list[Mark] = []
-    rows: list[tuple[str, ...]] = []
+    rows = []
     for number, seat in enumerate(data["seats"][:_MOST_ROWS], 1):
         x, y, z = (seat["length"] / 2 * np.array(seat["axis"])).tolist()
         marks.append(Mark(f"S{number}", tuple(seat["centre"]), (x, y, z)))
@@ -191,23 +206,61 @@ def _proposal(
 def _of_mesh(path: Path) -> Survey:
     found = read_in_process("read mesh", path, {})
     points, cells = found["points"], found["cells"]
-    volume, _, _ = mass_moments(points, cells)
+    worst = float(scaled_jacobians(points, cells).min())
+    sound = worst > 0.0
+    volume = f"{mass_moments(points, cells)[0]:.6g}" if sound else "unknown"
     used = points[np.unique(cells)]
     body = Mesh(points, cells, np.zeros(len(cells), dtype=np.int64), ("body",), {}, {})
     outside = boundary(body)
     low, high = used.min(axis=0), used.max(axis=0)
     kind = "of 4 nodes, which get straight edges" if found["linear"] else "of 10 nodes"
-    worst = float(scaled_jacobians(points, cells).min())
     lines = [
         f"{path.name}: {len(cells)} tetrahedra {kind}, {len(used)} nodes",
-        f"box: {_xyz(low)} to {_xyz(high)}, volume {volume:.6g}, in the file's unit",
+        f"box: {_xyz(low)} to {_xyz(high)}, volume {volume}, in the file's unit",
         f"worst scaled Jacobian: {worst:.3g}" + (": elements fold over" if worst <= 0 else ""),
     ]
+    surface = Surface(path.name, points, outside, {})
+    marks: list[Mark] = []
+    lines += ["", "Cylinders, holes first, the widest first, in the file's unit:"]
+    rows: list[tuple[str, ...]] = []
+    round_faces = cylinders(surface) if sound else []
+    for number, one in enumerate(round_faces[:_MOST_ROWS], 1):
+        x, y, z = (one.length / 2 * one.axis).tolist()
+        marks.append(Mark(f"S{number}", _triple(one.centre), (x, y, z)))
+        rows.append(
+            (
+                f"S{number}",
+                "hole" if one.hole else "outside",
+                f"radius: {one.radius:.7g}",
+                f"axis: {_list(one.axis)}",
+                f"point: {_list(one.centre)}",
+                f"length {one.length:.6g}",
+            )
+        )
+    lines += _table(rows, len(round_faces))
+    lines += ["", "Planes, the largest first; the part is held by one or more of them:"]
+    rows, flat = [], planes(surface) if sound else []
+    for number, (size, middle, normal) in enumerate(flat[:_MOST_ROWS], 1):
+        marks.append(Mark(f"P{number}", _triple(middle), normal=_triple(normal)))
+        rows.append(
+            (
+                f"P{number}",
+                f"area {size:.4g}",
+                f"point: {_list(middle)}",
+                f"normal: {_list(normal)}",
+            )
+        )
+    lines += [*_table(rows, len(flat)), ""]
     for what, prefix in (("solids", "solid "), ("faces", "face "), ("sets of nodes", "nodes ")):
         names = sorted(key.removeprefix(prefix) for key in found if key.startswith(prefix))
         more = f" and {len(names) - _MOST_ROWS} more" if len(names) > _MOST_ROWS else ""
         lines.append(f"{what} by label: {', '.join(names[:_MOST_ROWS]) or 'none'}{more}")
-    return Survey("\n".join(lines) + "\n", points, outside[:, :3], ())
+    return Survey("\n".join(lines) + "\n", points, outside[:, :3], tuple(marks))
+
+
+def _triple(values: Floats) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 def _tags(face: Mapping[str, Any]) -> tuple[str, str]:

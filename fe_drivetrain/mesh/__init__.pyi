@@ -13,6 +13,7 @@ from .facets import MEANS as MEANS
 from .facets import face_weights as face_weights
 from .facets import facet_points as facet_points
 from .facets import local_facets as local_facets
+from .facets import outside as outside
 from .facets import volume_weights as volume_weights
 from .files import write as write
 from .generation import generate as generate
@@ -32,6 +33,7 @@ from .measures import jacobians as jacobians
 from .measures import lattice as lattice
 from .measures import mean_size as mean_size
 from .measures import quality as quality
+from .measures import scaled_jacobians as scaled_jacobians
 from .measures import volume as volume
 from .mesh import FACETS as FACETS
 from .mesh import Mesh as Mesh

@@ -23,6 +23,8 @@ SAME_PLACE = 1e-7
 """Nodes closer than this, relative to the shortest edges there, are at the same place."""
 
 
+Joints = Iterable[str | tuple[str, str]]
+
 _SAMPLE = 1000  # elements that tell how long short edges are
 
 
@@ -55,9 +57,7 @@ class Fault:
     sentence: str
 
 
-def refuse_unsound(
-    mesh: Mesh, faces: Iterable[str] = (), joints: Iterable[str] | None = None
-) -> None:
+def refuse_unsound(mesh: Mesh, faces: Iterable[str] = (), joints: Joints | None = None) -> None:
     """Refuse a mesh that has a fault; arguments as of `find_faults`.
 
     Raises
@@ -71,9 +71,7 @@ def refuse_unsound(
         raise InputError(f"{faults[0].sentence}{others}")
 
 
-def find_faults(
-    mesh: Mesh, faces: Iterable[str] = (), joints: Iterable[str] | None = None
-) -> list[Fault]:
+def find_faults(mesh: Mesh, faces: Iterable[str] = (), joints: Joints | None = None) -> list[Fault]:
     """All that is wrong with a mesh.
 
     Parameters
@@ -82,9 +80,9 @@ def find_faults(
         Any.
     faces : Iterable[str]
         Names of the faces that loads, supports and interfaces need.
-    joints : Iterable[str] or None
-        Names of the bearings whose outer face has nodes of its own at the places of its housing's;
-        all where not given.
+    joints : Joints or None
+        Bearings whose outer face has nodes of its own at the places of its housing's, and pairs of
+        faces that are tied; all bearings where not given.
 
     Returns
     -------
@@ -95,7 +93,7 @@ def find_faults(
         return faults
     facets = _Facets.of(mesh)
     bearings = {n.removesuffix(".outer") for n in mesh.faces if n.endswith(".outer")}
-    apart = bearings if joints is None else set(joints)
+    apart: Joints = bearings if joints is None else set(joints)
     return [
         *_scale(mesh),
         *_inverted(mesh),
@@ -374,10 +372,10 @@ def _of_no_common_cell(mesh: Mesh, pairs: Ints) -> Ints:
     return pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], together)]
 
 
-def _cracks(mesh: Mesh, joints: Iterable[str]) -> list[Fault]:
+def _cracks(mesh: Mesh, joints: Joints) -> list[Fault]:
     pairs = coincident(mesh)
-    for bearing in joints:
-        sides = [f"{bearing}.outer", f"{bearing}.housing.bore"]
+    for joint in joints:
+        sides = (f"{joint}.outer", f"{joint}.housing.bore") if isinstance(joint, str) else joint
         if len(pairs) == 0 or not all(side in mesh.faces for side in sides):
             continue
         inner, outer = (np.zeros(len(mesh.points), dtype=bool) for _ in sides)
@@ -473,8 +471,10 @@ def _faces(mesh: Mesh, facets: _Facets, needed: Iterable[str]) -> list[Fault]:
         if not _has_part(name, mesh) or len(triangles) == 0:
             continue
         part = part_of(name, mesh.part_names)
-        owner = mesh.part_names.index(part)
-        strange = np.flatnonzero(~facets.found(triangles[:, :3], mesh.part, owner))
+        unknown = np.ones(len(triangles), dtype=np.bool_)
+        for owner in _owners(name, part, mesh):
+            unknown &= ~facets.found(triangles[:, :3], mesh.part, owner)
+        strange = np.flatnonzero(unknown)
         if len(strange):
             centre = mesh.points[triangles[strange[0], :3]].mean(axis=0)
             sentence = (
@@ -484,6 +484,14 @@ def _faces(mesh: Mesh, facets: _Facets, needed: Iterable[str]) -> list[Fault]:
             )
             faults.append(Fault("wrong face", part, len(strange), -1, _tuple(centre), sentence))
     return faults
+
+
+def _owners(face: str, part: str, mesh: Mesh) -> list[int]:
+    """Parts that a face's facets may be of: its own, and where a unit stands its further parts."""
+    unit = f"{part.partition('.')[0]}."
+    base = face == f"{unit}housing.base"
+    names = enumerate(mesh.part_names)
+    return [k for k, name in names if name == part or (base and name.startswith(unit))]
 
 
 def _has_part(face: str, mesh: Mesh) -> bool:

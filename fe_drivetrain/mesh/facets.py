@@ -85,6 +85,17 @@ def local_facets(n_nodes: int) -> Ints:
     return np.array(rows)[:, : {8: 4, 20: 8, 27: 9}[n_nodes]]
 
 
+def outside(cells: Ints) -> Ints:
+    """(nf, m) facets, turned outward, that belong to one of the cells (ne, k) only."""
+    local = local_facets(cells.shape[1])
+    facets = cells[:, local].reshape(-1, local.shape[1])
+    corners = 3 if local.shape[1] in (3, 6) else 4
+    key = np.sort(facets[:, :corners], axis=1)
+    _, first, count = np.unique(key, axis=0, return_index=True, return_counts=True)
+    found: Ints = facets[np.sort(first[count == 1])]
+    return found
+
+
 @dataclass(frozen=True)
 class FacetPoints:
     """Quadrature points on facets.

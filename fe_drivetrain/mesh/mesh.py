@@ -10,7 +10,7 @@ from skfem import MeshTet2
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.facets import local_facets
+from fe_drivetrain.mesh.facets import local_facets, outside
 
 FACETS = local_facets(10)
 """Local nodes of the four facets of a tetrahedron, turned outward: corners, then mid-sides."""
@@ -83,9 +83,4 @@ def part_of(face: str, part_names: Sequence[str]) -> str:
 def boundary(mesh: Mesh, part: str | None = None) -> Ints:
     """Facets (nf, 6), turned outward, that belong to one cell only of the mesh or of a part."""
     cells = mesh.cells if part is None else mesh.cells[mesh.part_cells(part)]
-    facets = cells[:, FACETS].reshape(-1, 6)
-    _, first, count = np.unique(
-        np.sort(facets[:, :3], axis=1), axis=0, return_index=True, return_counts=True
-    )
-    outside: Ints = facets[np.sort(first[count == 1])]
-    return outside
+    return outside(cells)

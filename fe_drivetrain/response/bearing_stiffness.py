@@ -107,9 +107,8 @@ def tilt_stiffness(
             f"the housing of {bearing!r} is a stiffness alone: its tilt stiffness is that of the "
             "scene: read it there"
         )
-    energy = sum(
-        response.strain_energy[part][load, load] for part in (bearing, f"{bearing}.housing")
-    )
+    parts = [bearing, *model.scene.bearing_unit(bearing).housing_parts]
+    energy = sum(response.strain_energy[part][load, load] for part in parts)
     found = {
         "averaged seat": float(1.0 / response.motions[f"{bearing}.seat"][load, load]),
         "energy": float(1.0 / energy),
@@ -172,7 +171,9 @@ def bearing_unit_stiffness(response: Response, bearing: str) -> Floats:
         motion = np.linalg.solve(to_rear, response.motions["gearbox"][:, :6])
         compliance = motion @ np.linalg.inv(wrench)
     else:
-        energy = response.strain_energy[bearing] + response.strain_energy[f"{bearing}.housing"]
+        energies = response.strain_energy
+        own = [part for part in energies if part == bearing or part.startswith(f"{bearing}.")]
+        energy = np.sum([energies[part] for part in own], axis=0)
         # Hub loads that make a pure force at the bearing's centre: with a bending moment there,
         # the ring would store more energy by stiffening the shaft than all else by its give.
         arm = response.positions["hub"] - response.positions[bearing]

@@ -164,10 +164,17 @@ def housing_solid(scene: Scene, name: str, bearing: Bearing) -> HousingSolid:
     unit = scene.bearing_unit(name)
     seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
     inner = unit.bearing.model_copy(update={"bore_diameter": seat})
-    if unit.foreign is not None and unit.foreign.held_by == "held by bolts as beams":
+    bolts = unit.foreign.bolts if unit.foreign is not None else None
+    if bolts is not None and bolts.hold != "washers":
         raise InputError(
-            f"{name}.housing stands on bolts as beams, but for rollers on its bore it must be "
-            "fixed: hold 'washers'"
+            f"{name}.housing stands on bolts as bodies (hold {bolts.hold!r}), but for rollers on "
+            "its bore it must be fixed: hold 'washers'"
+        )
+    if unit.parts:
+        raise InputError(
+            f"{name}.housing has further parts ({', '.join(p.name for p in unit.parts)}), but for "
+            "rollers on its bore it must stand by itself: leave the parts out, or put them into "
+            "one STEP file with the housing"
         )
     alone = unit.model_copy(update={"bearing": inner, "interface": "rigid"})
     mesh = mesh_parts(None, [alone], scene.mesh)

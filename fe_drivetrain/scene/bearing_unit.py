@@ -21,6 +21,7 @@ from fe_drivetrain.geometry import (
     Bearing,
     CondensedHousing,
     ForeignHousing,
+    FurtherPart,
     Housing,
 )
 
@@ -107,8 +108,8 @@ class Rollers(Keys):
 class BearingUnit(Keys):
     """A bearing, its housing, and the interface between the two.
 
-    What rests on the ground is the housing's base, or an elastic bedplate, as springs at the
-    centre of the base.
+    What rests on the ground is the housing's base and the held faces of further parts, or these
+    parts alone; or an elastic bedplate, as springs at the centre of all that.
     """
 
     bearing: Bearing
@@ -117,6 +118,12 @@ class BearingUnit(Keys):
     stiffness: _Spring | None = None
     rollers: Rollers | None = None
     bedplate: Springs | None = None
+    parts: tuple[FurtherPart, ...] = Field(
+        default=(), max_length=50, description="further parts from files, tied to the housing"
+    )
+    stands_on: Literal["ground", "parts"] = Field(
+        default="ground", description="whether the ground holds the housing's own base, too"
+    )
     catalogue: str | None = Field(
         default=None,
         min_length=1,
@@ -128,6 +135,15 @@ class BearingUnit(Keys):
     def ring_on_housing(self) -> bool:
         """Whether the bearing's ring counts to the housing, where the shaft is solved apart."""
         return self.interface in ("bonded", "rollers") and self.condensed is None
+
+    @property
+    def housing_parts(self) -> dict[str, Housing | ForeignHousing | FurtherPart]:
+        """The solids behind its bearing by their names in the mesh; none of a stiffness alone."""
+        if isinstance(self.housing, CondensedHousing):
+            return {}
+        name = self.bearing.name
+        further = {f"{name}.{part.name}": part for part in self.parts}
+        return {f"{name}.housing": self.housing, **further}
 
     @property
     def block(self) -> Housing:
@@ -180,6 +196,7 @@ class BearingUnit(Keys):
             )
         if self.foreign is not None:
             _check_foreign(self, self.foreign)
+        _check_parts(self)
         if self.stiffness is not None:
             _check_spring(name, self.stiffness)
         if self.rollers is not None:
@@ -194,12 +211,84 @@ def _check_foreign(unit: "BearingUnit", housing: ForeignHousing) -> None:
             f"bearing {name!r} has interface 'sliding', which needs a housing meshed with it, but "
             "one from a file: make the interface 'averaged' or 'rigid'"
         )
-    if unit.bedplate is not None and housing.bolts is not None and housing.bolts.hold == "beams":
+    if unit.bedplate is not None and housing.bolts is not None and housing.bolts.hold != "washers":
         raise ValueError(
-            f"bearing {name!r} has a bedplate and bolts as beams, which stand on the ground: hold "
-            "'washers', or leave the bedplate out"
+            f"bearing {name!r} has a bedplate and bolts that hold it as {housing.bolts.hold!r}, "
+            "which stand on the ground: hold 'washers', or leave the bedplate out"
         )
     housing.check_bearing(unit.bearing)
+
+
+_TAKEN = ("housing", "outer", "bore", "seat", "joint", "base", "ground", "bolt", "roller")
+
+
+def _check_parts(unit: "BearingUnit") -> None:
+    """Refuse further parts that cannot be told apart, hang in the air, or hold what stands."""
+    name, parts, housing = unit.bearing.name, {p.name: p for p in unit.parts}, unit.foreign
+    if unit.condensed is not None and parts:
+        raise ValueError(
+            f"bearing {name!r} has a housing of a stiffness alone, to which no part can be tied: "
+            "put the parts into the stiffness, or give the housing as a solid"
+        )
+    if len(parts) < len(unit.parts) or set(parts) & set(_TAKEN):
+        raise ValueError(
+            f"parts of bearing {name!r} are named {', '.join(p.name for p in unit.parts)}, but "
+            f"each must have a name of its own, and none of {', '.join(_TAKEN)}: rename one"
+        )
+    for part in unit.parts:
+        for tie in part.tied:
+            if tie.to not in ({"housing", *parts} - {part.name}):
+                known = ", ".join(["housing", *(p for p in parts if p != part.name)])
+                raise ValueError(
+                    f"part {part.name!r} of bearing {name!r} is tied to {tie.to!r}, but must be "
+                    f"tied to one of {known}: correct 'to'"
+                )
+    near = {"housing"}
+    while more := {
+        p.name
+        for p in unit.parts
+        if p.name not in near
+        and (
+            near & {t.to for t in p.tied}
+            or any(t.to == p.name for q in near - {"housing"} for t in parts[q].tied)
+        )
+    }:
+        near |= more
+    if loose := [p for p in parts if p not in near]:
+        raise ValueError(
+            f"part {loose[0]!r} of bearing {name!r} is tied to no part that is tied to the "
+            "housing, but all must hang together: tie it to the housing or to one of these"
+        )
+    held = [p.name for p in unit.parts if p.held]
+    if unit.stands_on == "parts" and not held:
+        raise ValueError(
+            f"bearing {name!r} stands on parts, of which none has a held face: give one of them "
+            "'held', or leave stands_on out"
+        )
+    if housing is not None and (unit.stands_on == "parts") == bool(housing.held):
+        raise ValueError(
+            f"bearing {name!r} stands on {'parts' if housing.held else 'the ground'} and its "
+            + (
+                "housing has held faces: leave these out, or stands_on"
+                if housing.held
+                else "housing has no held face: give it 'held', or stands_on: parts"
+            )
+        )
+    if housing is not None and housing.bolts is not None and not housing.held:
+        raise ValueError(
+            f"bearing {name!r} stands on parts and its housing has bolts to the ground: leave the "
+            "bolts out"
+        )
+    bolts = None if housing is None else housing.bolts
+    if (
+        bolts is not None
+        and parts
+        and (bolts.hold == "clamped" or (held and bolts.hold == "beams"))
+    ):
+        raise ValueError(
+            f"bearing {name!r} has bolts that hold it as {bolts.hold!r}, and further parts: hold "
+            "'washers', or leave the parts out"
+        )
 
 
 def _check_spring(name: str, stiffness: tuple[Any, ...]) -> None:

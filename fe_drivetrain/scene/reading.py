@@ -157,12 +157,13 @@ def _changed_mapping(text: str, changes: Mapping[str, Any] | None, source: str) 
 def _beside(folder: Path, units: Any) -> None:
     """Take the names of files in a scene's file as from its own folder."""
     for unit in units if isinstance(units, list) else []:
-        housing = unit.get("housing") if isinstance(unit, dict) else None
-        if not isinstance(housing, dict):
+        if not isinstance(unit, dict):
             continue
-        for key in ("step", "mesh"):
-            if isinstance(housing.get(key), str):
-                housing[key] = str(folder / housing[key])
+        parts = unit.get("parts")
+        for part in (unit.get("housing"), *(parts if isinstance(parts, list) else ())):
+            for key in ("step", "mesh"):
+                if isinstance(part, dict) and isinstance(part.get(key), str):
+                    part[key] = str(folder / part[key])
 
 
 def _name_bearings(units: Any) -> None:

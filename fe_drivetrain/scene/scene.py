@@ -12,7 +12,6 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.geometry import (
     Band,
-    CondensedHousing,
     Housing,
     MeshSizes,
     Shaft,
@@ -166,8 +165,7 @@ class Scene(Keys):
         used = [("shaft", self.shaft.material)]
         for unit in self.bearing_units:
             used.append((unit.bearing.name, unit.bearing.material))
-            if not isinstance(unit.housing, CondensedHousing):
-                used.append((f"{unit.bearing.name}.housing", unit.housing.material))
+            used += [(part, solid.material) for part, solid in unit.housing_parts.items()]
             if unit.interface in SPHERICAL_JOINTS and unit.bearing.kind != "spherical":
                 raise ValueError(
                     f"bearing {unit.bearing.name!r} of kind {unit.bearing.kind!r} cannot have the "
@@ -209,9 +207,9 @@ class Scene(Keys):
         unit = self.bearing_unit(name)
         if not housing:
             return unit.bearing.material
-        if isinstance(unit.housing, CondensedHousing):
+        if unit.condensed is not None:
             raise InputError(f"{part} is a stiffness alone, and has no material: leave it out")
-        return unit.housing.material
+        return unit.housing_parts[part].material
 
     @property
     def blocks(self) -> dict[str, Housing]:

@@ -1,0 +1,149 @@
+"""A bedplate and a torque arm from STEP, tied to a housing, against one file and a beam."""
+
+import gmsh
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats, stiffness_transport
+from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.foreign import bolt_stiffness
+from fe_drivetrain.geometry import bedplate, gmsh_session, write_sample, write_step
+from fe_drivetrain.report import NoPictureError, picture_of_deformation
+from fe_drivetrain.response import build_model, mesh_scene, unit_load_response
+from fe_drivetrain.scene import MATERIALS, Scene, change_scene, library_scene
+from fe_drivetrain.suite import Page, Record, Run
+
+NAME, UNIT = "main_bearing", "bearing_units.main_bearing"
+SIZES, QUICK_SIZES = (0.2, 0.1), (0.3, 0.25)  # m, the finer last
+STIFF = (5e12, 1e13)  # Pa: moduli of bedplates that hardly give
+BAR, ROOT, END = 0.2, np.array([0.0, 0.41, -0.15]), np.array([0.0, 1.61, -0.15])  # m: a round arm
+MOTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
+FOOT, GROUND = ({"point": [0, 0, z], "normal": [0, 0, 1]} for z in (-420, -800))  # mm
+
+
+def with_part(scene: Scene, file: str, tied: Record, held: Record, material: str) -> Scene:
+    """The scene with a further part that alone carries the housing."""
+    part = {"name": "part", "step": file, "material": material}
+    ties = {"tied": [{"face": tied}], "held": [held]}
+    return change_scene(scene, {f"{UNIT}.stands_on": "parts", f"{UNIT}.parts": [part | ties]})
+
+
+def of_modulus(scene: Scene, key: str, modulus: float) -> Scene:
+    """The scene with another modulus of its housing or part."""
+    given = {"youngs_modulus": modulus, "poisson_ratio": 0.3, "density": 7100}
+    return change_scene(scene, {"materials.stiff": given, f"{UNIT}.{key}.material": "stiff"})
+
+
+def give(scene: Scene) -> Floats:
+    """(6, 6) compliance of the unit, its seat held in shape."""
+    return np.asarray(np.linalg.inv(unit_stiffness(scene, NAME, "rigid")))
+
+
+def beyond(one: Floats, other: Floats) -> float:
+    """Largest relative difference of the diagonals."""
+    return float(np.abs(np.diag(one) / np.diag(other) - 1.0).max())
+
+
+@case(
+    "Parts beside a housing: a bedplate and a torque arm from STEP, tied",
+    source="the same two solids in one STEP file, glued; a Timoshenko beam (Cowper 1966)",
+)
+def run(run: Run, page: Page) -> None:
+    """Stand the library's housing on a bedplate and on an arm, and compare with what is known."""
+    coarse, fine = QUICK_SIZES if run.quick else SIZES
+    sizes = {"housing": fine, "bearing": 0.2, "bearing_edge": 0.2, "shaft": 0.3}
+    sizes |= {"elements_per_turn": 8 if run.quick else 12}
+    ground = library_scene("main_bearing_bonded")
+    ground = change_scene(ground, {f"mesh.{key}": size for key, size in sizes.items()})
+    unit, files = ground.bearing_units[0], {n: str(run.folder / f"{n}.step") for n in "pob"}
+    write_sample("bedplate", files["p"])
+    with gmsh_session():
+        write_step(files["o"], [unit.block.build(unit.bearing).volume, bedplate()])
+    on_plate = with_part(ground, files["p"], FOOT, GROUND, "ductile_iron")
+    one = {"step": files["o"], "seat": {"radius": 300}, "held": [GROUND]}
+    with run.step("bedplate, tied and glued"):
+        glued = change_scene(ground, {f"{UNIT}.housing": one})
+        K, whole = give(on_plate), give(glued)
+        by_mesh = (
+            np.diag(give(change_scene(glued, {"mesh.housing": coarse}))) / np.diag(whole) - 1.0
+        )
+    for k in (2, 4, 5):
+        page.equals(
+            f"on the bedplate, tied: compliance {MOTIONS[k]} [{'mm/MN' if k < 3 else 'mrad/MN m'}]",
+            float(K[k, k]) * 1e9,
+            float(whole[k, k]) * 1e9,
+            within=abs(float(by_mesh[k])),
+            why=f"what a mesh of {coarse:g} m in place of {fine:g} m changes of the reference: "
+            "nodes of the joint that both sides have are a change of mesh, too",
+            source="both solids in one STEP file, glued where they touch",
+        )
+    with run.step("stiff bedplates"):
+        fixed = give(ground)
+        stiff = [give(of_modulus(on_plate, "parts.0", E)) for E in STIFF]
+    away = [beyond(found, fixed) for found in (K, *stiff)]
+    page.holds(
+        "the stiffer the bedplate, the nearer to the fixed foot",
+        away[0] > away[1] > away[2],
+        why="what holds the foot gives less",
+        source="minimum of the potential energy",
+    )
+    page.vanishes(
+        "compliance on a bedplate that does not give, less that of the fixed foot, relative",
+        beyond((STIFF[1] * stiff[1] - STIFF[0] * stiff[0]) / (STIFF[1] - STIFF[0]), fixed),
+        within=away[1] * away[2],
+        why="extrapolated from two moduli: of a series in one over the modulus, the remainder is "
+        "of the order of the product of what is left at each",
+        source="the same housing, held at its foot",
+    )
+    found = {"fixed foot": fixed, "bedplate": K}
+    if not run.quick:
+        found["arm, stiff housing"] = check_arm(run, page, ground, files["b"])
+        picture(run, page, on_plate)
+    rows: list[Record] = [
+        {"stands on": name} | dict(zip(MOTIONS, (np.diag(c) * 1e9).tolist(), strict=True))
+        for name, c in found.items()
+    ]
+    page.section("Compliance at the seat")
+    page.table("Seat held in shape [mm/MN, mrad/MN m]", rows)
+    page.text("Tied faces are glued all over: no joint opens or slides.")
+    page.answer(
+        f"On its bedplate the seat tilts {K[4, 4] / fixed[4, 4]:.2g} times as much as on a fixed "
+        f"foot. Tied to it, the housing is as stiff as glued to it within "
+        f"{100 * beyond(K, whole):.2g} %; a coarser mesh changes {100 * abs(by_mesh).max():.2g} %."
+    )
+
+
+def check_arm(run: Run, page: Page, ground: Scene, file: str) -> Floats:
+    """A stiff housing on a round torque arm alone, which is a beam."""
+    with gmsh_session():
+        write_step(file, [gmsh.model.occ.addCylinder(*ROOT, *(END - ROOT), BAR / 2)])
+    ends = [{"point": (1000 * x).tolist(), "normal": [0, 1, 0]} for x in (ROOT, END)]
+    with run.step("torque arm"):
+        arm = with_part(of_modulus(ground, "housing", STIFF[1]), file, ends[0], ends[1], "steel")
+        found = give(arm)
+    root = bolt_stiffness(BAR, ROOT, END, MATERIALS["steel"])
+    exact, length = np.linalg.inv(stiffness_transport(root, ROOT)), float((END - ROOT)[1])
+    bending = length**3 / (3 * MATERIALS["steel"].youngs_modulus * np.pi * BAR**4 / 64)
+    for k in (2, 3):
+        unit = "mm/MN" if k < 3 else "mrad/MN m"
+        page.equals(
+            f"stiff housing on an arm: compliance {MOTIONS[k]} [{unit}]",
+            float(found[k, k]) * 1e9,
+            float(exact[k, k]) * 1e9,
+            within=float(1.0 - bending / np.linalg.inv(root)[2, 2]),
+            why="the share of shear in the beam's deflection, by which a beam knows its clamped "
+            "ends at best",
+            source="a round cantilever with Cowper's shear coefficient",
+        )
+    return found
+
+
+def picture(run: Run, page: Page, scene: Scene) -> None:
+    """The housing on its bedplate under a force at the hub, exaggerated."""
+    model, file = build_model(scene, mesh_scene(scene)), run.folder / "deformed.png"
+    down = -np.eye(len(model.loads))[model.loads.index("hub.Fz")]
+    try:
+        factor = picture_of_deformation(model, unit_load_response(model), down, file, "1 N down")
+        page.image(f"1 N down at the hub, displacements times {factor:.3g}", "deformed.png")
+    except NoPictureError as error:
+        page.note(f"no picture: {error}")
