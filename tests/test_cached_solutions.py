@@ -14,7 +14,7 @@ from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.made_by import arithmetic, source_hash
 from fe_drivetrain.fidelity import bearing_units
 from fe_drivetrain.fidelity.bearing_units import unit_bounds, unit_stiffness
-from fe_drivetrain.response import cached
+from fe_drivetrain.response import cached, makers
 from fe_drivetrain.response.cached import cached_response, solved_content
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
@@ -107,7 +107,7 @@ def test_another_mesh_solver_or_maker_is_solved_again(
     assert not cached_response(moved, cache=cache).kept
     assert not cached_response(bonded_model, "superlu", cache=cache).kept
     assert not cached_response(bonded_model, seed=1, cache=cache).kept
-    monkeypatch.setattr(cached, "_programs", lambda: {"code": "of an older version"})
+    monkeypatch.setattr(makers, "_programs", lambda: {"code": "of an older version"})
     assert not cached_response(bonded_model, cache=cache).kept
     assert len(solves) == 5
 

@@ -20,9 +20,12 @@ from fe_drivetrain.fidelity.ladder import (
 )
 from fe_drivetrain.fidelity.level_costs import forecast
 from fe_drivetrain.fidelity.over_loads import imbalance
-from fe_drivetrain.response.influence_fields import reaction_influences
+from fe_drivetrain.response.influence_fields import (
+    influences_of_all_reactions,
+    reaction_influences,
+)
 from fe_drivetrain.response.model import Model, mesh_scene
-from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.nose import Nose
 from fe_drivetrain.scene.scene import Scene, coarser_scene
 
@@ -160,6 +163,19 @@ def test_a_motion_between_shaft_and_nose_is_the_influence_of_a_bearings_force(
         (moved,) = (model.unit_loads().T @ influence).T
         expected = response.reactions[name][component]
         np.testing.assert_allclose(moved, expected, atol=1e-7 * np.abs(expected).max())
+
+
+def test_a_nose_stands_still_when_all_that_is_on_it_moves_rigidly(
+    assembly: tuple[LevelModel, Model, Response],
+) -> None:
+    _, model, _ = assembly
+    together = influences_of_all_reactions(model, "superlu")
+    response = unit_load_response(model, "superlu")
+    loads = model.unit_loads()[: model.mesh.points.size]
+    for name, found in together.items():
+        expected = response.reactions[name][:, 6:9]  # gravity, which acts on nodes alone
+        moved = found.T @ loads[:, 6:9]
+        np.testing.assert_allclose(moved, expected, atol=1e-9 * model.mass.sum(), err_msg=name)
 
 
 def test_moduli_and_bearings_are_all_that_gives(

@@ -4,6 +4,7 @@ import csv
 
 import numpy as np
 import pytest
+from conftest import QuickRun
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -24,14 +25,11 @@ from fe_drivetrain.compare.pareto import (
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.shaft_section import Grading
-from fe_drivetrain.report.results import read_results
 from fe_drivetrain.response.bearing_stiffness import PLANES, tilt_stiffness, without_gearbox
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.solve import solvers
-from fe_drivetrain.suite.case import find_cases
-from fe_drivetrain.suite.result_folders import run_case
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.validation.growing_shafts import (
     STEPPED,
@@ -217,15 +215,10 @@ def test_parts_may_be_one_or_all(tmp_path):
     assert parts_of(Run({"parts": "growth"}, True, tmp_path)) == ["growth"]
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    out = tmp_path_factory.mktemp("reports") / "work_precision"
-    run_case(find_cases("work_precision")[0], out, quick=True)
-    return out
-
-
-def test_quick_run_measures_every_element_and_writes_its_page(folder):
-    results = read_results(folder / "results.json")
+@pytest.mark.quick("performance/work_precision")
+def test_quick_run_measures_every_element_and_writes_its_page(quick_run: QuickRun):
+    results = quick_run("performance/work_precision")
+    folder = quick_run.folder / "performance" / "work_precision"
     with (folder / "shaft_choices.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert {row["element"] for row in rows} == set(ELEMENTS)

@@ -280,7 +280,7 @@ def show_growth(page: Page, grown: Sequence[Grown], curved: Sequence[Outcome]) -
         for solver, cost, n, values in exponents
     ]
     page.table(
-        "Exponents b of cost = a n^b, fitted in logarithms",
+        "Exponents of a power of n that costs follow, fitted in logarithms",
         [row for row in fitted if not np.isnan(row[2])],
         ["solver", "cost", "exponent", "from unknowns", "to unknowns"],
     )

@@ -2,39 +2,23 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, replace
-from functools import cache as once
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.common.made_by import arithmetic, source_hash, versions
-from fe_drivetrain.foreign.housing import file_digest
-from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.foreign.from_file import file_digest
+from fe_drivetrain.response.makers import mesh_hash, solved_by
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.solvers import Diagnostics
 
 Arrays = dict[str, NDArray[Any]]
-
-_ROOMS = (
-    "common",
-    "geometry",
-    "scene",
-    "mesh",
-    "operator",
-    "interfaces",
-    "foreign",
-    "solve",
-    "response",
-)
-_PACKAGES = ("numpy", "scipy", "numba", "pyamg", "scikit-sparse", "pypardiso", "mkl", "gmsh")
 
 
 def cached_response(
@@ -67,7 +51,7 @@ def cached_response(
     used = user_cache() if cache is None else cache
     content = {
         "scene": solved_content(model.scene),
-        "mesh": _mesh_hash(model.mesh),
+        "mesh": mesh_hash(model.mesh),
         "method": method,
         "seed": seed,
         "made by": solved_by(),
@@ -100,33 +84,11 @@ def solved_content(scene: Scene) -> dict[str, Any]:
     for unit, described in zip(scene.bearing_units, content["bearing_units"], strict=True):
         if unit.foreign is not None:  # what is in the file counts, not where it is
             described["housing"] |= {"step": None, "mesh": file_digest(unit.foreign.file)}
+        for part, data in zip(unit.parts, described["parts"], strict=True):
+            data |= {"step": None, "mesh": file_digest(part.file)}
     for loaded in (content["gearbox"], *content["load_points"]):
         del loaded["weight"]
     return content
-
-
-def solved_by() -> dict[str, Any]:
-    """The programs that make a solution, with all that decides on its last digits."""
-    return _programs() | {"arithmetic": arithmetic()}
-
-
-@once
-def _programs() -> dict[str, Any]:
-    return {
-        "code": source_hash({f"fe_drivetrain.{room}": None for room in _ROOMS}),
-        "packages": versions(_PACKAGES),
-    }
-
-
-def _mesh_hash(mesh: Mesh) -> str:
-    """SHA-256 of a mesh: nodes, cells, parts, faces and named points."""
-    found = hashlib.sha256()
-    names = [mesh.part_names, list(mesh.faces), mesh.named_points]
-    found.update(json.dumps(names, ensure_ascii=True).encode())
-    for array in (mesh.points, mesh.cells, mesh.part, *mesh.faces.values()):
-        found.update(f"{array.dtype.str}{array.shape}".encode())
-        found.update(array.tobytes())
-    return found.hexdigest()
 
 
 def _to_arrays(response: Response) -> Arrays:

@@ -13,7 +13,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
-from fe_drivetrain.interfaces.constraints import eliminate
+from fe_drivetrain.interfaces.constraints import Elimination, eliminate
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import solve
@@ -42,15 +42,70 @@ def reaction_influences(
         (n_dofs, k), one a component.
     """
     elimination = eliminate(model.constraints, model.n_dofs)
-    chosen = np.eye(6)[:, list(components)]
+    loads, given = _moved_ground(model, elimination, name, np.eye(6)[:, list(components)])
+    return _solved(model, elimination, loads, given, method)
+
+
+def influences_of_all_reactions(model: Model, method: str = "auto") -> dict[str, Floats]:
+    """Displacements of the nodes by `reaction_influences` of every support, solved together.
+
+    If the ground under all supports moves as one, everything on it moves rigidly. So one support's
+    influences are what those of the others leave of rigid motions; it is the one whose ground has
+    the most motions that do something, and the others are all that is solved.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    method : str
+        Solver, see `fe_drivetrain.solve.solvers.solve`.
+
+    Returns
+    -------
+    dict[str, Floats]
+        (3 n_nodes, 6) by the name of each bearing and "gearbox".
+    """
+    elimination = eliminate(model.constraints, model.n_dofs)
+    names = [*model.scene.bearing_names, "gearbox"]
+    moved = {name: _moved_ground(model, elimination, name, np.eye(6)) for name in names}
+    acting = {name: loads.any(axis=0) | given.any(axis=0) for name, (loads, given) in moved.items()}
+    left = max(names, key=lambda name: acting[name].sum())
+    solved = [name for name in names if name != left]
+    loads, given = (np.hstack([moved[name][k][:, acting[name]] for name in solved]) for k in (0, 1))
+    points = model.mesh.points
+    columns = _solved(model, elimination, loads, given, method)[: points.size]
+    ends = np.cumsum([acting[name].sum() for name in solved])[:-1]
+    found = {}
+    for name, of in zip(solved, np.split(columns, ends, axis=1), strict=True):
+        found[name] = np.zeros((points.size, 6))
+        found[name][:, acting[name]] = of
+    centre = _centre(model, left)
+    found[left] = rigid_motions(points, centre)
+    if model.scene.nose is not None:  # it stands still: its bearings move against it
+        nose = np.unique(model.mesh.cells[model.mesh.part_cells("nose")])
+        found[left].reshape(-1, 3, 6)[nose] = 0.0
+    for name in solved:
+        found[left] -= found[name] @ wrench_transport(_centre(model, name) - centre).T
+    return {name: found[name] for name in names}
+
+
+def _centre(model: Model, name: str) -> Floats:
+    """(3,) what the motions of the ground under a support turn about."""
+    return model.points["gearbox" if name == "gearbox" else f"{name}.seat"].position
+
+
+def _moved_ground(
+    model: Model, elimination: Elimination, name: str, chosen: Floats
+) -> tuple[Floats, Floats]:
+    """Loads and displacements given (n_dofs, k) by motions (6, k) of the ground under a support."""
     loads = np.zeros((model.n_dofs, chosen.shape[1]))
     moved: dict[str, Floats] = {}
     on_nose = {bearing.name for bearing in model.scene.nose_bearings}
     standing = ["gearbox"] if name == "gearbox" else model.standing(name)
     standing = [f"{name}.joint"] if name in on_nose else standing
+    centre = _centre(model, name)
     for stands_on in standing:
         point = model.points[stands_on]
-        centre = model.points["gearbox" if name == "gearbox" else f"{name}.seat"].position
         motion = wrench_transport(point.position - centre).T @ chosen
         for at, k in model.springs:
             if at.name == stands_on:
@@ -59,9 +114,14 @@ def reaction_influences(
             moved[f"{stands_on} reaction"] = motion[list(model.held[stands_on])]
     if not standing:
         base = model.mesh.points[model.mesh.face_nodes(f"{name}.housing.base")]
-        centre = model.points[f"{name}.seat"].position
         moved[f"{name}.housing.base"] = rigid_motions(base, centre) @ chosen
-    given = elimination.particular(moved) if moved else np.zeros_like(loads)
+    return loads, elimination.particular(moved) if moved else np.zeros_like(loads)
+
+
+def _solved(
+    model: Model, elimination: Elimination, loads: Floats, given: Floats, method: str
+) -> Floats:
+    """(n_dofs, k) displacements under loads, on top of those that are given."""
     stiffness = model.stiffness
     system = reduce(model.mesh.points, model.mesh.cells, stiffness, elimination, model.springs)
     right = elimination.T.T @ (loads - stiffness @ given)

@@ -11,6 +11,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts, tied
+from fe_drivetrain.foreign.further_parts import tie_faces
 from fe_drivetrain.geometry import Band
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
@@ -28,6 +29,7 @@ from fe_drivetrain.mesh.facets import MEANS, face_weights, volume_weights
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.side_by_side import beside, renamed
 from fe_drivetrain.operator.incompressible import assemble_unlocked, warn_of_averaging
+from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
 from fe_drivetrain.scene.bearing_unit import BearingUnit, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.scene import Scene
@@ -69,7 +71,8 @@ class Model:
     points : Mapping[str, ReferencePoint]
         Reference points by name: "hub", "gearbox", "NAME.seat" for each bearing, the load points by
         their names; where there are
-        such, "NAME.base" (on a bedplate that gives), "NAME.bolt K" (bolts as beams, to ground) or
+        such, "NAME.base" (on a bedplate that gives), "NAME.bolt K" (bolts as beams, to ground),
+        "NAME.foot K" (patches of a clamped foot that are pressed) or
         "NAME.ground" (of a housing that is a stiffness alone),
         "NAME.joint" or "NAME.roller K", whose
         motion is that of the bearing against its housing, or of the shaft against its nose; and
@@ -100,9 +103,10 @@ class Model:
     warnings: tuple[str, ...] = ()
 
     def standing(self, name: str) -> list[str]:
-        """Reference points that a bearing's housing stands on: a bedplate, or bolts; else none."""
+        """Reference points that a bearing's housing stands on: a bedplate, bolts, or a foot."""
         given = (f"{name}.base", f"{name}.ground")
-        return [p for p in self.points if p in given or p.startswith(f"{name}.bolt ")]
+        kinds = (f"{name}.bolt ", f"{name}.foot ")
+        return [p for p in self.points if p in given or p.startswith(kinds)]
 
     @property
     def loads(self) -> tuple[str, ...]:
@@ -179,7 +183,8 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     """
     units = scene.bearing_units
     apart = [u.bearing.name for u in units if u.interface != "bonded" or u.foreign is not None]
-    refuse_unsound(mesh, needed_faces(scene), apart)
+    ties = [pair for unit in units for pair in tie_faces(unit)]
+    refuse_unsound(mesh, needed_faces(scene), [*apart, *ties])
     n = len(mesh.points)
     extra: dict[str, int] = {}  # degrees of freedom beside the nodes' own
     for name, coupling in (("hub", scene.hub.coupling), ("gearbox", scene.gearbox.coupling)):
@@ -254,6 +259,11 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
         if bolts := bolt_springs(unit, mesh, n_dofs):
             springs += bolts
             points |= {point.name: point for point, _ in bolts}
+            if is_clamped(unit):
+                pressed, holds = foot_holds(scene, unit, mesh, n_dofs)
+                conditions += holds
+                points |= {point.name: point for point in pressed}
+                held |= {point.name: (0, 1, 2) for point in pressed}
         elif unit.bedplate is None:
             conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
         else:

@@ -25,7 +25,7 @@ from fe_drivetrain.fidelity.quantities import (
     without_zeros,
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft, meridian_shaft
-from fe_drivetrain.response.cached import solved_by
+from fe_drivetrain.response.makers import solved_by
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.uncertainty.resolver import Resolver
 from fe_drivetrain.uncertainty.response_surface import UnitSurface, touching, unit_surface

@@ -10,7 +10,8 @@ from typing import TypeVar
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
-from fe_drivetrain.fidelity.bearing_units import unit_stiffness
+from fe_drivetrain.common.threads import cores
+from fe_drivetrain.fidelity.bearing_units import unit_stiffness, unit_stiffnesses
 from fe_drivetrain.fidelity.ladder import shaft_level
 from fe_drivetrain.fidelity.quantities import Solved
 from fe_drivetrain.fidelity.shafts import condensed_shaft, ringed_shaft
@@ -30,7 +31,7 @@ def unit_content(scene: Scene, name: str) -> str:
             unit.model_copy(update={"bearing": bearing.model_copy(update={"x": 0.0})}),
             scene.shaft.seat_diameter(bearing.x, bearing.width, name),
             scene.material_of(name),
-            scene.material_of(f"{name}.housing"),
+            [scene.material_of(part) for part in unit.housing_parts],
             scene.mesh,
         )
     )
@@ -95,6 +96,8 @@ class Resolver:
     ) -> list[Floats]:
         """(6, 6) stiffness of a bearing unit in each of several scenes.
 
+        Both bounds are solved on each mesh: the other one is asked for next.
+
         Parameters
         ----------
         scenes : sequence of Scene
@@ -104,20 +107,21 @@ class Resolver:
         report : callable
             Called with the number of a scene before its stiffness is there, the first being 1.
         """
-        contents = [f"{self.coupling} {unit_content(scene, name)}" for scene in scenes]
+        contents = [unit_content(scene, name) for scene in scenes]
         missing = {
             content: scene
             for content, scene in zip(contents, scenes, strict=True)
-            if content not in self.springs
+            if f"{self.coupling} {content}" not in self.springs
         }
-        # one after the other on this machine: each takes all cores
-        items = ((scene, name, self.coupling) for scene in missing.values())
-        solved = mapped(_unit_stiffness, items, 1)
+        # side by side, since most of the time goes into meshes, which take one core each
+        items = ((scene, name) for scene in missing.values())
+        solved = mapped(_unit_bounds, items, cores())
         for number, content in enumerate(contents, 1):
             report(number)
-            if content not in self.springs:
-                self.springs[content] = next(solved)
-        return [self.springs[content] for content in contents]
+            if f"{self.coupling} {content}" not in self.springs:
+                for coupling, stiffness in next(solved).items():
+                    self.springs[f"{coupling} {content}"] = stiffness
+        return [self.springs[f"{self.coupling} {content}"] for content in contents]
 
     def _body(self, scene: Scene) -> Condensed:
         modulus = scene.material_of("shaft").youngs_modulus
@@ -129,8 +133,8 @@ class Resolver:
         return replace(body, stiffness=body.stiffness * (modulus / first))
 
 
-def _unit_stiffness(_report: Progress, scene: Scene, name: str, coupling: Coupling) -> Floats:
-    return unit_stiffness(scene, name, coupling=coupling)
+def _unit_bounds(_report: Progress, scene: Scene, name: str) -> dict[Coupling, Floats]:
+    return unit_stiffnesses(scene, name)
 
 
 _T = TypeVar("_T")

@@ -15,7 +15,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -132,6 +131,8 @@ def unit_surface(
     InputError
         A value within the spread does not give a valid scene.
     """
+    from scipy.stats import qmc
+
     keys = tuple(spreads)
     nominal = np.array(nominal_values(scene, keys))
     known = [distribution(s, v) for s, v in zip(spreads.values(), nominal.tolist(), strict=True)]

@@ -12,13 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import stats
-from scipy.stats import qmc
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import value_by_key
-from fe_drivetrain.geometry import CondensedHousing
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.scene.scene import Scene, Spread
@@ -88,6 +85,8 @@ class Samples:
         ends = np.quantile(self.values, [outside, 1.0 - outside])
         errors = [0.0, 0.0]
         if self.varies:
+            from scipy import stats
+
             errors = [
                 float(
                     stats.bootstrap(
@@ -267,6 +266,8 @@ def sample(
     """
     check_spreads(scene)
     keys = tuple(scene.uncertainty)
+    from scipy.stats import qmc
+
     quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
     inputs = np.column_stack([d.ppf(q) for d, q in zip(_spreads(scene), quantiles.T, strict=True)])
     values = evaluated_rows(
@@ -356,7 +357,9 @@ def variance_shares(
     """
     keys = tuple(distributions)
     d = len(keys)
-    quantiles = qmc.Sobol(d=2 * d, rng=seed).random(count)
+    from scipy import stats
+
+    quantiles = stats.qmc.Sobol(d=2 * d, rng=seed).random(count)
     spreads = list(distributions.values())
     A, B = (
         np.column_stack([spread.ppf(q) for spread, q in zip(spreads, half.T, strict=True)])
@@ -379,6 +382,8 @@ def variance_shares(
 
 def distribution(spread: Spread, nominal: float) -> Any:
     """scipy's distribution of a value."""
+    from scipy import stats  # half a second, which what draws no samples need not wait for
+
     if spread.uniform is not None:
         half = spread.uniform * abs(nominal)
         return stats.uniform(nominal - half, 2 * half)
@@ -409,8 +414,7 @@ def _evaluated(
 def _with_materials(scene: Scene) -> Scene:
     used = {scene.shaft.material}
     for unit in scene.bearing_units:
-        used |= {unit.bearing.material}
-        if not isinstance(unit.housing, CondensedHousing):
-            used.add(unit.housing.material)
+        solids = (unit.bearing, *unit.housing_parts.values())
+        used |= {solid.material for solid in solids}
     own = {name: MATERIALS[name] for name in used if name in MATERIALS}
     return scene.model_copy(update={"materials": own | dict(scene.materials)})

@@ -1,0 +1,179 @@
+"""From the command to the report: what a user waits for, imports and compiling included."""
+
+from __future__ import annotations
+
+import json
+import statistics
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import CACHE_VARIABLE, InputError, MissingToolError, run_python
+from fe_drivetrain.suite import Page, Record, Run
+
+_PROGRAM = "import sys; from fe_drivetrain.commands import main; sys.exit(main())"
+REPEATS, QUICK_REPEATS = 5, 2
+
+FIRST, SECOND, ALONE = "compiled now, nothing kept", "all kept", "compiled before, nothing kept"
+
+
+class Wait(NamedTuple):
+    """A command, what was there before it, and how long it may take [s]."""
+
+    command: tuple[str, ...]
+    before: str
+    goal: float
+
+
+_STUDY = ("run", "main_bearing/rmse")
+WAITS = (
+    Wait(_STUDY, FIRST, 40.0),
+    Wait(_STUDY, SECOND, 10.0),
+    Wait(("advise", "main_bearing_bonded"), ALONE, 8.0),
+    Wait(("uncertainty", "main_bearing_bonded_uncertain"), ALONE, 15.0),
+)
+#: Decided by statics: imports and the report are all that takes time.
+_STATICS = ("advise", "main_bearing_spherical")
+QUICK = (Wait(_STATICS, FIRST, 8.0),)
+
+
+class Took(NamedTuple):
+    """One run: wall time and time of all its processes on processors [s], and its results."""
+
+    wall: float
+    processors: float
+    results: dict[str, Any]
+
+
+def waited(wait: Wait, folder: Path, fresh: bool) -> Took:
+    """Run a command in a process of its own, and wait for its report.
+
+    Parameters
+    ----------
+    wait : Wait
+        Which.
+    folder : Path
+        Holds what is kept from one run to the next: compiled loops, meshes, solutions.
+    fresh : bool
+        Whether nothing is taken from the cache of meshes and solutions, nor kept in it.
+    """
+    import resource  # which Windows does not have
+
+    with TemporaryDirectory() as out:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        start = time.perf_counter()
+        done = run_python(
+            *("-c", _PROGRAM, *wait.command, "--out", f"{out}/results"),
+            environment={
+                "NUMBA_CACHE_DIR": str(folder / "compiled"),
+                CACHE_VARIABLE: "off" if fresh else str(folder / "kept"),
+            },
+        )
+        wall = time.perf_counter() - start
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        file = Path(out, "results", "results.json")
+        # 1 says that a check fails, which is an answer, too
+        if done.returncode not in (0, 1) or not file.is_file():
+            raise InputError(f"{' '.join(wait.command)} gave no answer: {done.stderr[-500:]}")
+        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return Took(wall, spent, json.loads(file.read_text()))
+
+
+def measured(run: Run, wait: Wait, repeats: int) -> list[Took]:
+    """A command several times, each time with the same things there before it."""
+    name = f"{' '.join(wait.command)}, {wait.before}"
+    found = []
+    with run.step(name), TemporaryDirectory() as folder:
+        if wait.before != FIRST:
+            waited(wait, Path(folder), wait.before == ALONE)
+        for number in range(repeats):
+            run.report(f"{name} ({number + 1} of {repeats})")
+            if wait.before == FIRST:
+                with TemporaryDirectory() as empty:
+                    found.append(waited(wait, Path(empty), False))
+            else:
+                found.append(waited(wait, Path(folder), wait.before == ALONE))
+    return found
+
+
+@case(
+    "Start to answer: what a user waits for, imports and compiling included",
+    source="wall time of commands in processes of their own",
+    settings=("repeats",),
+    alone=True,
+)
+def run(run: Run, page: Page) -> None:
+    """Time the study, the adviser and the uncertainty of a main bearing."""
+    try:
+        import resource  # noqa: F401
+    except ImportError:
+        raise MissingToolError(
+            "this system does not say what time its processes take: run it on Linux"
+        ) from None
+    repeats = int(run.settings.get("repeats", QUICK_REPEATS if run.quick else REPEATS))
+    if repeats < 1:
+        raise InputError(f"repeats = {repeats}: give 1 or more")
+    waits = QUICK if run.quick else WAITS
+    found = {wait: measured(run, wait, repeats) for wait in waits}
+    rows = [row_of(wait, took) for wait, took in found.items()]
+    for command in dict.fromkeys(wait.command for wait in waits):
+        verdicts = [
+            [(v["quantity"], v["passed"]) for v in took.results["verdicts"]]
+            for wait, all_of in found.items()
+            for took in all_of
+            if wait.command == command
+        ]
+        page.holds(
+            f"{' '.join(command)}: every run has the same checks with the same verdicts",
+            all(found == verdicts[0] for found in verdicts),
+            why="what is compiled or kept may change the time, not the answer",
+            source="the first run",
+        )
+    page.answer(
+        *(
+            f"{' '.join(wait.command)}, {wait.before}: {row['median [s]']:.3g} s, for a goal of "
+            f"{wait.goal:g} s."
+            for wait, row in zip(waits, rows, strict=True)
+        )
+    )
+    page.section("What a user waits for")
+    page.table(
+        f"Wall time of {repeats} run{'s' * (repeats > 1)} each, on this machine, with whatever "
+        "else it was doing; time on processors is that of all processes, the median",
+        rows,
+    )
+    page.text(
+        f"{FIRST.capitalize()}: the first run of a fresh installation. {SECOND.capitalize()}: the "
+        "same command once more. " + f"{ALONE.capitalize()}: a scene that was never solved."
+    )
+    page.section("Where it goes")
+    page.table("The longest steps of the last run of each, in whatever process", steps_of(found))
+    page.data("waits", rows)
+
+
+def row_of(wait: Wait, took: list[Took]) -> Record:
+    """A row of the table of waits."""
+    wall = [one.wall for one in took]
+    return {
+        "command": " ".join(wait.command),
+        "before": wait.before,
+        "goal [s]": wait.goal,
+        "least [s]": min(wall),
+        "median [s]": statistics.median(wall),
+        "most [s]": max(wall),
+        "on processors [s]": statistics.median(one.processors for one in took),
+    }
+
+
+def steps_of(found: dict[Wait, list[Took]], most: int = 6) -> list[Record]:
+    """Rows of the longest steps."""
+    rows: list[Record] = []
+    for wait, took in found.items():
+        times = sorted(took[-1].results["times"].items(), key=lambda item: -item[1])
+        rows += [
+            {"command": " ".join(wait.command), "before": wait.before, "step": k, "time [s]": t}
+            for k, t in times[:most]
+        ]
+    return rows
