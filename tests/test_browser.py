@@ -166,6 +166,26 @@ def test_a_page_fits_is_open_to_all_and_asks_for_nothing_but_its_files(
     assert serious == []
 
 
+def test_long_names_of_cases_and_files_break_on_a_narrow_screen(
+    browser: Any, reports: Path, tmp_path: Path
+) -> None:
+    long = "stability/a_case_whose_name_is_as_long_as_any"
+    shutil.copytree(reports / "group/one", tmp_path / long)
+    (tmp_path / long / "deformed.3d.json").write_text("{}")
+    content = results("plain", case=long, title="Title", sections=[])
+    (tmp_path / long / "results.json").write_text(content.model_dump_json(), "utf-8")
+    for _ in range(2):  # the command for all runs stands where there were others
+        record_run(tmp_path, content)
+    write_page(tmp_path / long, tmp_path)
+    context = browser.new_context(viewport={"width": NARROW, "height": 900})
+    page = context.new_page()
+    page.goto((tmp_path / long / "report.html").as_uri())
+    assert page.is_visible("text=lists every run")
+    assert page.is_visible("text=what the page shows in three dimensions")
+    assert page.evaluate("document.documentElement.scrollWidth") <= NARROW
+    context.close()
+
+
 def test_cases_are_searched_filtered_and_sorted(browser: Any, reports: Path) -> None:
     with Opened(browser, reports / "index.html") as opened:
         page = opened.page

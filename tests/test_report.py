@@ -290,6 +290,11 @@ def test_axes_are_equal_where_equal_is_a_diagonal_and_have_no_prefixes(tmp_path:
     assert layout["yaxis"]["scaleanchor"] == "x"
     assert layout["yaxis"]["title"] == {"text": "F [kN]"}
     assert layout["template"]["layout"]["yaxis"]["exponentformat"] == "power"
+    flat = [{**line, "y": [0.1 * v for v in line["x"]]} for line in lines("equal", "beam")]
+    for axes in ({}, {"xaxis": {"type": "log"}, "yaxis": {"type": "log"}}):
+        both = drawn(tmp_path, *flat, **axes)["layout"]
+        # a square, although one varies ten times as much as the other
+        assert both["xaxis"]["range"] == both["yaxis"]["range"]
     assert "scaleanchor" not in drawn(tmp_path, *lines("beam"))["layout"].get("yaxis", {})
 
 
@@ -298,8 +303,19 @@ def test_labels_of_a_logarithmic_axis_leave_each_other_room(
     tmp_path: Path, most: float, tick: object
 ) -> None:
     trace = {"type": "scatter", "x": [1.0, most], "y": [0, 1]}
-    layout = drawn(tmp_path, trace, xaxis={"type": "log"})["layout"]
-    assert layout["xaxis"]["dtick"] == tick
+    axis = drawn(tmp_path, trace, xaxis={"type": "log"})["layout"]["xaxis"]
+    assert axis["dtick"] == tick
+    # 200, not a 2 whose power of ten nobody knows
+    assert axis.get("tickformat") == (None if isinstance(tick, int) else ",~r")
+
+
+def test_labels_between_powers_of_ten_are_whole_numbers(tmp_path: Path) -> None:
+    trace = {"type": "scatter", "x": [2.1e-7, 6e-7], "y": [3e8, 7e8]}
+    axes = {"xaxis": {"type": "log"}, "yaxis": {"type": "log"}}
+    layout = drawn(tmp_path, trace, **axes)["layout"]
+    for axis, at, text in (("xaxis", 3e-7, "3 × 10⁻⁷"), ("yaxis", 4e8, "4 × 10⁸")):
+        labels = dict(zip(layout[axis]["tickvals"], layout[axis]["ticktext"], strict=True))
+        assert labels[at].replace("\u00a0", " ") == text
 
 
 def test_the_policy_allows_the_scripts_of_the_page_and_nothing_else(tmp_path: Path) -> None:
@@ -528,4 +544,6 @@ def test_a_density_has_all_of_the_time_and_points_the_right_way() -> None:
     x, y = np.meshgrid(heat["x"], heat["y"])
     assert_allclose((shares * x).sum() / 100.0, right.mean(), rtol=0.02)
     assert_allclose((shares * y).sum() / 100.0, up.mean(), rtol=0.02)
+    # most of the plane that is shown is of the cloud, however far from zero it is
+    assert max(heat["x"]) - min(heat["x"]) < 1.1 * np.ptp(right)
     assert np.isfinite(density_chart("nothing", [0.0], [0.0], "kN").figure["data"][0]["x"]).all()

@@ -10,10 +10,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.mesh.mesh import boundary
 from fe_drivetrain.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report import solid_view
-from fe_drivetrain.report.solid_view import write_solid_view
+from fe_drivetrain.report.solid_view import Parts, write_solid_view
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 
@@ -139,3 +140,29 @@ def test_a_surface_of_the_largest_size_takes_less_than_3_mb() -> None:
     triangles = solid_view.MOST_TRIANGLES
     vertices = 0.5 * triangles
     assert (14.0 * vertices + 12.0 * triangles) * 8.0 / 6.0 < LIMIT
+
+
+@pytest.mark.parametrize("nodes", [4, 8, 10, 20, 27])
+def test_parts_of_other_elements_are_closed_and_have_their_volume(
+    nodes: int, tmp_path: Path
+) -> None:
+    other = brick((2, 1, 1), nodes)
+    shell = brick((1, 2, 2), 27, lambda p: p + np.eye(3)[0])
+    points = np.concatenate([other.points, shell.points])
+    parts = Parts(points, {"one": other.cells, "two": shell.cells + len(other.points)})
+    pulled = 1e-3 * points * [1.0, -0.3, -0.3]
+    lame = dict.fromkeys(parts.cells, STEEL)
+    path = tmp_path / "mixed.json"
+    assert write_solid_view(parts, {"pulled": pulled}, lame, path)
+    view = json.loads(path.read_text("utf-8"))
+    triangles = decoded(view, "triangles", "<u4").reshape(-1, 3)
+    at = vertices(view)
+    for part in view["parts"]:
+        own = at[triangles[part["first"] : part["first"] + part["count"]]]
+        inside = np.einsum("na,na->", own[:, 0], np.cross(own[:, 1], own[:, 2])) / 6.0
+        assert_allclose(inside, 1.0, rtol=1e-3)
+    # uniaxial: E times the strain
+    lam, mu = STEEL
+    strain = np.array([1e-3, -0.3e-3, -0.3e-3])
+    stress = lam * strain.sum() + 2.0 * mu * strain
+    assert_allclose(view["loads"][0]["greatest"], stress[0] - stress[1], rtol=1e-6)

@@ -22,6 +22,7 @@ from fe_drivetrain.common.typeset import typeset
         ("converged to 1e-8", "converged to 10⁻⁸"),
         ("5.4e-07 of it", "5.4\u00a0×\u00a010⁻⁷ of it"),
         ("(3.657 ± 0.016)e7 N", "(3.657 ± 0.016)\u00a0×\u00a010⁷ N"),
+        ("200 um of clearance [um], not umbra", "200 µm of clearance [µm], not umbra"),
         ("-8.4 to +2.2 %", "\u22128.4 to +2.2\u00a0%"),
     ],
 )

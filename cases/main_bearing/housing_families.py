@@ -28,7 +28,7 @@ from fe_drivetrain.validation.housing_dimensions import (
 ORDER, QUICK_ORDER = 2, 1
 #: Walls of the three curves [m], and members on each.
 WALLS, MEMBERS = (0.07, 0.11, 0.15), 6
-QUICK_WALLS, QUICK_MEMBERS = (0.11,), 2
+QUICK_WALLS, QUICK_MEMBERS = (0.11,), 1
 CLOUD, QUICK_CLOUD = 300, 40
 #: Relative: half of the last digit of 145 MN m/rad is 0.34 %, and one mesh and the next differ by
 #: some tenths of a percent where no dimension has changed.

@@ -103,10 +103,35 @@ def write_files(
             )
 
 
-def statistics_of(reaction: Floats) -> Floats:
-    """(6, 4) least, mean, largest and standard deviation of (..., 6) samples of a reaction."""
-    flat = reaction.reshape(-1, 6)
-    return np.column_stack([flat.min(0), flat.mean(0), flat.max(0), flat.std(0)])
+def statistics_of(reaction: Floats) -> tuple[Floats, Floats]:
+    """Least, mean, largest and standard deviation of m histories of n samples of a reaction.
+
+    Parameters
+    ----------
+    reaction : Floats
+        (m, n, 6) [N, N m].
+
+    Returns
+    -------
+    whole, each
+        (6, 4) over all samples, and (m, 6, 4) over each history.
+    """
+    # along rows that are whole in memory, and once: several times faster than across them
+    each = np.stack([_of_rows(np.ascontiguousarray(history.T)) for history in reaction])
+    least, mean, largest, deviation = np.moveaxis(each, 2, 0)
+    whole = np.column_stack(
+        [
+            least.min(0),
+            mean.mean(0),
+            largest.max(0),
+            np.sqrt((deviation**2).mean(0) + mean.var(0)),
+        ]
+    )
+    return whole, each
+
+
+def _of_rows(rows: Floats) -> Floats:
+    return np.column_stack([rows.min(1), rows.mean(1), rows.max(1), rows.std(1)])
 
 
 def statistics_section(
@@ -159,9 +184,8 @@ def _write_statistics(
         for kind, of in solved.items():
             for name in of.response.reactions:
                 reaction = reaction_of(of, name, hub.loads, self_weight)
-                whole = statistics_of(reaction)
-                by_history = [*zip(hub.names, map(statistics_of, reaction), strict=True)]
-                for history, found in [("all", whole), *by_history]:
+                whole, each = statistics_of(reaction)
+                for history, found in [("all", whole), *zip(hub.names, each, strict=True)]:
                     for component, unit, row in zip(FORCES, _UNITS, found, strict=True):
                         numbers = [f"{value:.9g}" for value in row]
                         table.writerow([kind, history, name, component, unit, *numbers])

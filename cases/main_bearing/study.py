@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.fidelity import reaction_error
+from fe_drivetrain.fidelity import cached_reaction_errors
 from fe_drivetrain.mesh import Mesh, MeshQuality, quality, write
 from fe_drivetrain.response import (
     LOADS,
@@ -205,12 +205,12 @@ def solve_scene(
         if response.kept:
             step.name += ", from the cache"
     run.report(f"{label}: {response.diagnostics.method}, {response.diagnostics.reason}")
-    errors = {}
+    errors: dict[str, Floats] = {}
     if recovered:
-        with run.step(f"errors of reactions from recovered stresses ({label})"):
-            each = np.eye(len(model.loads))
-            for name in (*scene.bearing_names, "gearbox"):
-                errors[name] = reaction_error(model, response, name, range(6), each)
+        with run.step(f"errors of reactions from recovered stresses ({label})") as step:
+            errors, kept = cached_reaction_errors(model, response)
+            if kept:
+                step.name += ", from the cache"
     return Solved(scene, replace(model, part_stiffness={}), response, mesh_quality, errors)
 
 

@@ -30,6 +30,7 @@ QUICK_RADII = (1.0,)
 MEASURED = 6.0
 
 OF = {"torsion": shafts.TORSION, "bending": shafts.ROTATION, "tension": shafts.AXIAL}
+BLUE = "#0072b2"
 DASHES = {"torsion": "solid", "bending": "dash", "tension": "dot"}
 
 
@@ -265,11 +266,11 @@ def show_steps(page: Page, found: Map) -> None:
     page.chart(
         f"Error of the beam's flexibility, step {step:g}; shaded is where bending is within 5 %",
         [
-            dashed(name + words, lengths, np.abs(percent[name][shown]), DASHES[name], width)
+            dashed(name + words, lengths, np.abs(percent[name][shown]), DASHES[name], colour)
             for name in OF
-            for percent, words, width in (
-                (found.error, "", 2.5),
-                (found.corrected, " with extra length", 1.0),
+            for percent, words, colour in (
+                (found.error, "", "black"),
+                (found.corrected, " with extra length", BLUE),
             )
         ],
         along,

@@ -41,7 +41,7 @@ def run(run: Run, page: Page) -> None:
         DAMPING,
         low=1.0,
         criterion="motion does not grow",
-        beyond="it grows by e^(pi e / 2) in each natural period without damping, until teeth part",
+        beyond="it grows by exp(pi e / 2) in each natural period without damping, until teeth part",
         program="integrates it as it is; frequency response and modes with a mean stiffness do not "
         "see it",
         remedy="damping, or a contact ratio nearer to a whole number",

@@ -6,6 +6,7 @@ from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT, TURN
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation import shaft_theory as theory
+from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.exact_shafts import flexed, neutral_shear, tip_deflection
 
 STEEL = MATERIALS["steel"]
@@ -42,6 +43,10 @@ def solve(tube: theory.Tube, refinement: int) -> Record:
 def run(run: Run, page: Page) -> None:
     """Exact tractions on both ends."""
     page.section("Saint-Venant's flexure")
+    page.image(
+        "Shaft with a bore of half its diameter",
+        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, 0.5 * OUTER)),
+    )
     inputs.show_inputs(
         page,
         ("outer diameter", OUTER, "m", inputs.SIZE),

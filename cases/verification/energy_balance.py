@@ -67,6 +67,7 @@ def run(run: Run, page: Page) -> None:
         groups = {part: dict(zip(LABELS, share, strict=True)) for part, share in shares.items()}
         title = f"{kind}: where the work of each load is stored"
         page.add(bars(title, groups, "share of the work [%]", stacked=True))
+    page.image(f"The {kind} scene, as meshed here", run.sketch(model.mesh))
     page.table("Work of each load and energy stored", rows)
     page.answer(
         "Half the work of the loads is found again in parts and springs to "

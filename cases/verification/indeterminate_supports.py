@@ -11,6 +11,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import Tube, parabola_shortfall
 from fe_drivetrain.validation.solid_shafts import LOCAL, Compliance, Supported, local_compliance
 from fe_drivetrain.validation.supported_shafts import Load, SupportedShaft
@@ -73,6 +74,10 @@ def run(run: Run, page: Page) -> None:
         f"solid's largest reactions differ from them by at most {100 * largest:.2f} %."
     )
     page.section("Indeterminate supports")
+    page.image(
+        "The shaft",
+        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)),
+    )
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),

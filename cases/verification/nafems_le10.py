@@ -3,11 +3,20 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.interfaces import Constraint
 from fe_drivetrain.operator import pressure
+from fe_drivetrain.report import Parts, Solid, write_solid_view
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped
 from fe_drivetrain.validation.elliptic_plate import EllipticPlate
-from fe_drivetrain.validation.loaded_blocks import face_loads, graded, solve_block, supports
+from fe_drivetrain.validation.loaded_blocks import (
+    LoadedBlock,
+    face_loads,
+    graded,
+    solve_block,
+    supports,
+)
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=0.0)
 PLATE = EllipticPlate(inner=(2.0, 1.0), outer=(3.25, 2.75), thickness=0.6)  # m
@@ -24,23 +33,44 @@ STRESS, PRESSED = "sigma_yy at D [MPa]", "load on the plate [MN]"
 
 
 def solve(nodes: int, divisions: tuple[int, int, int]) -> Record:
-    """One mesh, with elements finer towards D and towards both faces of the plate."""
+    """What one mesh gives."""
+    found, F, held = loaded(nodes, divisions)
+    reaction = found.static.reactions["supports"].reshape(-1, 3)[:, 2].sum()
+    load = float(F[2::3].sum())
+    return {
+        "element": NAMES[nodes],
+        "unknowns": found.block.points.size - len(held.pivots),
+        STRESS: float(found.stress[found.node(*POINT_D), 1]) / 1e6,
+        PRESSED: -load / 1e6,
+        "imbalance": (float(reaction) + load) / load,
+    }
+
+
+def loaded(nodes: int, divisions: tuple[int, int, int]) -> tuple[LoadedBlock, Floats, Constraint]:
+    """One mesh, with elements finer towards D and towards both faces; its load and supports."""
     edges = graded(divisions, 1.5, "x0", "y0", "z0", "z1")
     plate = PLATE.quarter(divisions, nodes, edges)
     outer = plate.face_nodes("x1")
     middle_line = outer[np.abs(plate.points[outer, 2]) < 1e-9]
     held = supports(plate, (middle_line, "z"), y0="y", y1="x", x1="xy")
     F = face_loads(plate, z1=pressure(PRESSURE))
-    found = solve_block(plate, STEEL, F, held)
-    reaction = found.static.reactions["supports"].reshape(-1, 3)[:, 2].sum()
-    load = float(F[2::3].sum())
-    return {
-        "element": NAMES[nodes],
-        "unknowns": plate.points.size - len(held.pivots),
-        STRESS: float(found.stress[found.node(*POINT_D), 1]) / 1e6,
-        PRESSED: -load / 1e6,
-        "imbalance": (float(reaction) + load) / load,
-    }
+    return solve_block(plate, STEEL, F, held), F, held
+
+
+def in_three_dimensions(run: Run, page: Page) -> None:
+    """A coarse mesh of the plate as it is bent, to be turned."""
+    found, _, _ = loaded(27, QUICK_DIVISIONS[1])
+    plate = Parts(found.block.points, {"plate": found.block.cells})
+    still = run.sketch(found.block)
+    page.image("Quarter of the plate, as meshed for the view below", still)
+    write_solid_view(
+        plate,
+        {"1 MPa on the upper face": found.u},
+        {"plate": STEEL.lame},
+        run.folder / "plate.3d.json",
+    )
+    caption = "The plate under 1 MPa: displacements and von Mises stress"
+    page.add(Solid(caption=caption, file="plate.3d.json", still=still))
 
 
 @case(
@@ -82,6 +112,7 @@ def run(run: Run, page: Page) -> None:
     page.sweep(
         STRESS, rows, "unknowns", STRESS, by="element", log="x", reference=nafems, table=shown
     )
+    in_three_dimensions(run, page)
     page.text(
         "A quarter of the plate, half the thickness above and below z = 0, pressed on its upper "
         "face. Symmetry at x = 0 and at y = 0; the outer face is fixed along x and y, and along z "

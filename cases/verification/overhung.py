@@ -8,6 +8,7 @@ from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inp
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import Tube
 from fe_drivetrain.validation.solid_shafts import local_compliance
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
@@ -71,6 +72,10 @@ def run(run: Run, page: Page) -> None:
     met = ", ".join(f"{r['quantity']} {100 * (r['solid'] / r['frame'] - 1):+.3f} %" for r in rows)
     page.answer(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
     page.section("Overhung shaft")
+    page.image(
+        "The shaft",
+        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)),
+    )
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),

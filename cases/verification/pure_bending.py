@@ -6,6 +6,7 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import shaft_theory as theory
+from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.exact_shafts import bent
 
 STEEL = MATERIALS["steel"]
@@ -76,6 +77,10 @@ def run(run: Run, page: Page) -> None:
         f"{worst:.1g} of the exact field, over the largest displacement."
     )
     page.section("Pure bending")
+    page.image(
+        "The bored shaft",
+        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)),
+    )
     curved = "curvature", CURVATURE, "1/m", "chosen: 40 MPa at the skin"
     show_uniform(page, OUTER, BORE, ("length", LENGTH, "m"), curved, steel=STEEL)
     title = "Anticlastic bending: sideways displacement of the skin round the shaft, at mid length"

@@ -60,6 +60,7 @@ def run(run: Run, page: Page) -> None:
         powers, down = np.log10(np.maximum(asymmetry, 1e-18)), {"autorange": "reversed"}
         page.add(heat_map(title, LOADS, LOADS, powers, AXES, (-18, -8), yaxis=down))
         rows.append(row)
+    page.image(f"The {kind} scene, as meshed here", run.sketch(model.mesh))
     page.table("Both scenes", rows)
     worst = {row["scene"]: row[WORK] for row in rows}
     page.answer(

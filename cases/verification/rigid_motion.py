@@ -68,6 +68,7 @@ def run(run: Run, page: Page) -> None:
         f"{max(row[REACTION] for row in rows):.0e} of reaction: round-off."
     )
     page.section("Rigid motions")
+    page.image("The housing of the main bearing, the last of the bodies", run.sketch(body))
     page.text(
         "One face is moved as a rigid body (of the quarter ring its plane end, of the housing its "
         "base), everything else is free. The rest must follow without stress, and no force may be "

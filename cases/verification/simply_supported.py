@@ -7,6 +7,7 @@ from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, sh
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import Tube
 from fe_drivetrain.validation.solid_shafts import local_compliance, mesh_band
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
@@ -70,6 +71,10 @@ def run(run: Run, page: Page) -> None:
         + f" at L = {L / OUTER:g} D."
     )
     page.section("Simple supports")
+    page.image(
+        "The shaft",
+        run.sketch(solid_shafts.straight((0.0, L), OUTER)),
+    )
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", SIZE),

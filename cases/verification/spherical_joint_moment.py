@@ -75,6 +75,7 @@ def run(run: Run, page: Page) -> None:
         "Reactions are those of statics (Eq 3.1) to round-off, and say nothing about the mesh.",
     )
     page.section("What the joint carries")
+    page.image("Shaft, bearing and housing, as meshed here", run.sketch(spherical))
     title = "Moment that the interface carries about the joint's centre"
     page.chart(title, points, "unit load", "moment [N m]", "y")
     title = "Force through the joint for unit hub loads, its moment, and the distance of its line "

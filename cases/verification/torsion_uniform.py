@@ -8,6 +8,7 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped
 from fe_drivetrain.validation import shaft_theory as theory
+from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.exact_shafts import twisted
 from fe_drivetrain.validation.solid_shafts import meshed_moment
 
@@ -74,6 +75,10 @@ def run(run: Run, page: Page) -> None:
         "round a turn, solid and bored; what is left is what parabolas miss of the circle."
     )
     page.section("Torsional stiffness")
+    page.image(
+        "The bored shaft",
+        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)),
+    )
     length = "length", LENGTH, "m", "chosen: the answer does not depend on it"
     show_uniform(page, OUTER, BORE, length, steel=STEEL)
     curves = [trace(of, column(r, TURN), column(r, ERROR), True) for of, r in grouped(rows, SHAFT)]

@@ -73,6 +73,10 @@ def run(run: Run, page: Page) -> None:
         f"psi (target 7527) and a largest shear of {last[SHEAR] * 1e6 / PSI:.0f} psi (3777)."
     )
     page.section("Stresses and motions")
+    page.image(
+        "The bar, clamped at its end on the left behind the root",
+        run.sketch(round_bar(DIAMETER, LENGTH, 8, 14)),
+    )
     page.targets("By mesh", MeshSeries(rows, ROUND), targets)
     page.text(
         "The bar continues two diameters behind its root and is clamped there, so that the clamp's "

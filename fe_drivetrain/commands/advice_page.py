@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.fidelity.ablation import Effect, effects
 from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.report.charts import chart, rounded, trace
+from fe_drivetrain.report.pictures.sketch import shaft_with_rings
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.scene.scene import Scene
@@ -95,6 +96,11 @@ def tornado(advice: Advice, level: str, found: Sequence[Effect]) -> Section:
     -------
     Section
     """
+    title = "Influence of each detail"
+    if not any(effect.change for effect in found):
+        details = ", ".join(effect.detail for effect in found)
+        none = f"No detail changes {advice.quantity.name} at level {level}: {details}."
+        return Section(title=title, items=[Text(text=none)])
     shown = list(reversed(found))
     bars = {
         "type": "bar",
@@ -117,7 +123,7 @@ def tornado(advice: Advice, level: str, found: Sequence[Effect]) -> Section:
         columns=["detail left out", "change [%]"],
         rows=[[effect.detail, 100 * effect.change] for effect in found],
     )
-    return Section(title="Influence of each detail", items=[figure, table])
+    return Section(title=title, items=[figure, table])
 
 
 _NOTE = (
@@ -209,6 +215,8 @@ def advised(
         advice = advise(scene, quantity, tolerance, to_the_top, run.report)
     chosen = None if advice.chosen is None else advice.results[advice.chosen]
     page.sections.append(ladder(advice))
+    bodies = shaft_with_rings(scene)
+    page.image("Shaft and bearing rings", run.sketch(*bodies, file="shaft.png"))
     level = 2 if chosen is not None and chosen.model.level == 2 else 1
     if advice.springs:
         with run.step("details"):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.fidelity.level_costs import forecast
+from fe_drivetrain.geometry import FurtherPart
 from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
 from fe_drivetrain.report.pictures.model import with_prefix
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
@@ -151,6 +152,11 @@ def _size(scene: Scene, part: str) -> str:
         )
     name, _, housing = part.partition(".")
     unit = scene.bearing_unit(name)
+    solid = unit.housing_parts.get(part)
+    if isinstance(solid, FurtherPart):
+        onto = ", ".join(dict.fromkeys(tie.to for tie in solid.tied))
+        held = ", held" if solid.held else ""
+        return f"from {Path(solid.file).name}, tied to {onto}{held}"
     if housing and unit.foreign is not None:
         return f"from {Path(unit.foreign.file).name}, {unit.foreign.held_by}"
     if housing:

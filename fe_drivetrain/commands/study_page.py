@@ -17,6 +17,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.compare.time_weighted import weighted_statistics
 from fe_drivetrain.export.formats.stiffness_file import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.export.formats.summary import summary, write_summary
+from fe_drivetrain.fidelity.foot_opening import foot_warnings
 from fe_drivetrain.fidelity.over_loads import (
     Levels,
     imbalance,
@@ -96,7 +97,8 @@ def studied(
         page.answer(
             "Quick: on a coarser mesh than the scene's, for a first look; figures will change."
         )
-    page.answer(loads.statement, *model.warnings)
+    opening = foot_warnings(scene, response, driving, loads.weights, loads.gravity)
+    page.answer(loads.statement, *model.warnings, *opening)
     page.section("Scene")
     _pictures(run, page, model, response, factors)
     describe(page, model)

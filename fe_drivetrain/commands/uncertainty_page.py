@@ -345,7 +345,10 @@ def _histogram(number: Number, samples: Samples) -> Chart:
         )
     ]
     return chart(
-        f"{number.name} over the samples", [bars, *lines], x=f"[{number.unit}]", y="samples"
+        f"{number.name} over the samples",
+        [bars, *lines],
+        x=f"{number.name} [{number.unit}]",
+        y="samples",
     )
 
 

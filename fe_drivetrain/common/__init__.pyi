@@ -36,3 +36,4 @@ from .spatial import stiffness_transport as stiffness_transport
 from .spatial import wrench_transport as wrench_transport
 from .threads import CORES_VARIABLE as CORES_VARIABLE
 from .threads import cores as cores
+from .threads import held_to_one_thread as held_to_one_thread

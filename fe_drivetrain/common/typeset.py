@@ -17,6 +17,7 @@ _FACTOR = re.compile(r"(?<=\d\))e([+-]?\d+)\b")
 _POWER = re.compile(
     r"\^(?:(-?\d+/\d+)(?![\w.])|(-?\d+(?:\.\d+)?)(?!\d)|([hkmnpT])\b|\(([-+\d./hkmnpT ]+)\))"
 )
+_MICROMETRES = re.compile(r"(\d[ \u00a0]?|\[)um\b")
 _NEGATIVE = re.compile(r"(?<![\w.=\"'\])-])-(?=\d)")
 
 
@@ -27,7 +28,7 @@ def superscript(power: int | str) -> str:
 
 @lru_cache(maxsize=65536)
 def typeset(text: str) -> str:
-    """Text with m^2 as m², h^p as hᵖ, 1e-8 as 10⁻⁸, 3.4e+08 as 3.4 × 10⁸, and minus signs.
+    """Text with m^2 as m², h^p as hᵖ, 1e-8 as 10⁻⁸, 3.4e+08 as 3.4 × 10⁸, um as µm, minus signs.
 
     A number and its % stay on one line. What is to be typed again, as ``--set key=-4e5``, is
     left alone. What was set before is known: pages that list cases are written again and again.
@@ -35,6 +36,7 @@ def typeset(text: str) -> str:
     text = _SCIENTIFIC.sub(_power_of_ten, text)
     text = _FACTOR.sub(lambda found: f"\u00a0×\u00a010{superscript(int(found[1]))}", text)
     text = re.sub(r"(?<=\d) ?%", "\u00a0%", text)
+    text = _MICROMETRES.sub(r"\1µm", text)
     text = _POWER.sub(lambda found: superscript(found[found.lastindex or 0]), text)
     return _NEGATIVE.sub(MINUS, text)
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import cycle
 from typing import Any
 
-from fe_drivetrain.common.typeset import typeset
+from fe_drivetrain.common.typeset import THIN_SPACE, typeset
 
 PALETTE = (
     "#0072b2",
@@ -63,6 +63,8 @@ _OF_METHODS = {
 # line styles of the traces that come after as many as there are colours
 _DASHES = ("solid", "dash", "dot", "dashdot")
 _DECADES = 8  # with labels on a logarithmic axis, at most
+_FULL, _FEW = 2.0, 0.7  # decades from which powers of ten, or 1, 2 and 5, are labels enough
+_PLAIN = (1e-3, 1e6)  # numbers that are written without a power of ten, as in tables
 _AXIS = {
     # no prefixes: 5 nano on an axis of kN is no unit
     "exponentformat": "power",
@@ -90,6 +92,7 @@ _CHART_TEMPLATE: dict[str, Any] = {
         "modebar": {"orientation": "v"},
         "legend": LEGEND,
         "hovermode": "closest",
+        "separators": f".{THIN_SPACE}",
         "hoverlabel": {"align": "left"},
         "colorscale": {"sequential": "Viridis", "sequentialminus": "Viridis"},
         "xaxis": _AXIS,
@@ -130,19 +133,47 @@ def styled(traces: Sequence[Mapping[str, Any]], layout: Mapping[str, Any]) -> di
         if own.get("type") == "log":
             layout[f"{axis}axis"] = {**_log_ticks(axis, plain), **own}
     if any(trace.get("name") == "equal" for trace in plain):
-        # the diagonal is one
-        layout["yaxis"] = {"scaleanchor": "x", "constrain": "domain", **layout.get("yaxis", {})}
-        layout["xaxis"] = {"constrain": "domain", **layout.get("xaxis", {})}
+        # the diagonal is one, and of a square, however little one of the two varies
+        same = _range_of_both(plain, layout.get("xaxis", {}).get("type") == "log")
+        layout["yaxis"] = {**same, "scaleanchor": "x", **layout.get("yaxis", {})}
+        layout["xaxis"] = {**same, **layout.get("xaxis", {})}
     found: dict[str, Any] = _finite({"data": _coloured(plain), "layout": layout})
     return found
 
 
 def _log_ticks(axis: str, traces: list[dict[str, Any]]) -> dict[str, Any]:
-    """Labels of a logarithmic axis that do not run into each other: decades, or 1, 2 and 5."""
+    """Labels of a logarithmic axis that do not run into each other: decades, or 1, 2 and 5.
+
+    Between decades they are whole numbers: a 2 alone says nothing of its power of ten.
+    """
     values = [v for trace in traces for v in trace.get(axis, []) if is_number(v) and v > 0]
-    decades = math.log10(max(values) / min(values)) if values else 0.0
-    every = math.ceil(decades / _DECADES)
-    return {"dtick": every if decades >= 2 else "D2" if decades >= 1 else "D1"}
+    low, high = (min(values), max(values)) if values else (1.0, 1.0)
+    decades = math.log10(high / low)
+    if decades >= _FULL:
+        return {"dtick": math.ceil(decades / _DECADES)}
+    leading = (1, 2, 5) if decades >= _FEW else range(1, 10)
+    if low >= _PLAIN[0] and high < _PLAIN[1]:
+        return {"dtick": "D2" if decades >= _FEW else "D1", "tickformat": ",~r"}
+    powers = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 1)
+    shown = [(n, power) for power in powers for n in leading]
+    return {
+        "tickmode": "array",
+        "tickvals": [float(f"{n}e{power}") for n, power in shown],
+        "ticktext": [typeset(f"{n}e{power}") for n, power in shown],
+    }
+
+
+def _range_of_both(traces: list[dict[str, Any]], logarithmic: bool) -> dict[str, Any]:
+    """One range for both axes, with a little room; of logarithms where these are the axes'."""
+    values = [v for t in traces for axis in "xy" for v in t.get(axis, []) if is_number(v)]
+    if logarithmic:
+        values = [math.log10(v) for v in values if v > 0]
+    values = [v for v in values if math.isfinite(v)]
+    if not values:
+        return {"constrain": "domain"}
+    low, high = min(values), max(values)
+    room = 0.05 * (high - low)
+    return {"constrain": "domain", "range": [low - room, high + room]}
 
 
 def _coloured(traces: list[dict[str, Any]]) -> list[dict[str, Any]]:

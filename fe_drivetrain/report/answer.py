@@ -102,7 +102,9 @@ def answer_sentence(verdict: Figure | Verdict) -> str:
     -------
     str
     """
-    quantity = verdict.quantity[:1].upper() + verdict.quantity[1:]
+    quantity, first = verdict.quantity, verdict.quantity.partition(" ")[0].rstrip(":,")
+    if "_" not in first and "." not in first:  # of an identifier every letter counts
+        quantity = quantity[:1].upper() + quantity[1:]
     found = f"{quantity}: {value_with_band(verdict)}"
     if isinstance(verdict, Figure) or verdict.check == "holds":
         return f"{found}."

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 
 
@@ -64,6 +65,17 @@ def chart(
     return Chart(caption=caption, figure={"data": list(traces), "layout": axes})
 
 
+def instead_of_chart(caption: str, traces: Sequence[Any], x: str, y: str) -> str:
+    """What a chart of one point at most says in words; empty where there is more to draw."""
+    points = [p for t in traces for p in zip(t.get("x", ()), t.get("y", ()), strict=False)]
+    if any(len(t.get("z", ())) for t in traces) or len(points) > 1:
+        return ""
+    if not points:
+        return f"{caption}: there is nothing to show in this run."
+    at, value = (formatted(v, 4) for v in points[0])
+    return f"{caption}: {y} {value} at {x} {at}, the only point of this run."
+
+
 def density_chart(
     caption: str, right: ArrayLike, up: ArrayLike, unit: str, bins: int = 60
 ) -> Chart:
@@ -81,16 +93,21 @@ def density_chart(
         Cells along each axis.
     """
     x, y = np.ravel(np.asarray(right, dtype=float)), np.ravel(np.asarray(up, dtype=float))
-    reach = 1.02 * max(float(np.abs(x).max()), float(np.abs(y).max()), 1e-300)
-    edges = np.linspace(-reach, reach, bins + 1)
-    column, line = (np.searchsorted(edges, v, side="right") - 1 for v in (x, y))
+    # a square about the cloud: one that is far from zero would be a speck in the whole plane
+    centre = [0.5 * (float(v.min()) + float(v.max())) for v in (x, y)]
+    reach = 0.51 * max(float(np.ptp(x)), float(np.ptp(y)))
+    reach = reach or 0.01 * max(float(np.abs(x).max()), float(np.abs(y).max()), 1e-300)
+    edges = [np.linspace(c - reach, c + reach, bins + 1) for c in centre]
+    column, line = (
+        np.searchsorted(e, v, side="right") - 1 for e, v in zip(edges, (x, y), strict=True)
+    )
     counts = np.bincount(line * bins + column, minlength=bins * bins).reshape(bins, bins)
     shares = 100.0 * counts / x.size
-    middles = rounded(0.5 * (edges[1:] + edges[:-1]), 4)
+    across, upwards = (rounded(0.5 * (e[1:] + e[:-1]), 4) for e in edges)
     return heat_map(
         caption,
-        middles,
-        middles,
+        across,
+        upwards,
         np.where(shares > 0.0, shares, np.nan),
         (f"right [{unit}]", f"up [{unit}]", "% of time"),
         xaxis={"constrain": "domain"},

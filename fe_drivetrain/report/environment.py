@@ -3,6 +3,7 @@
 import platform
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -27,20 +28,26 @@ def environment(
     settings: Mapping[str, Any], seed: int | None = None, quick: bool = False, command: str = ""
 ) -> Environment:
     """Date, platform, versions, the user's settings, and what to type."""
-    versions = {}
-    for name in _PACKAGES:
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:
-            continue
     return Environment(
         date=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         python=platform.python_version(),
         platform=f"{platform.system()} {platform.machine()}",
-        versions=versions,
+        versions=dict(_versions()),
         settings=dict(settings),
         seed=seed,
         quick=quick,
         code=program_hash(),
         command=command,
     )
+
+
+@lru_cache(maxsize=1)
+def _versions() -> dict[str, str]:
+    """Of the packages that are installed, read once: their files do not change under a program."""
+    found = {}
+    for name in _PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found

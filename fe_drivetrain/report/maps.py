@@ -16,9 +16,9 @@ LEVELS = (1.0, 5.0, 10.0)
 _LINES = {1.0: "solid", 5.0: "dash", 10.0: "dot"}
 
 
-def dashed(name: str, x: Floats, y: Floats, dash: str = "solid", width: float = 2.0) -> Any:
-    """A black curve through points, which its dashes tell from others."""
-    line = {"color": "black", "dash": dash, "width": width}
+def dashed(name: str, x: Floats, y: Floats, dash: str = "solid", colour: str = "black") -> Any:
+    """A curve through points, which its dashes tell from others of its colour."""
+    line = {"color": colour, "dash": dash}
     return trace(name, x, y, mode="lines+markers", line=line)
 
 

@@ -9,9 +9,11 @@ import base64
 import json
 import os
 import re
+from functools import lru_cache
 from pathlib import Path
 from urllib.parse import quote, unquote
 
+import jinja2
 from markupsafe import Markup, escape
 
 from fe_drivetrain.common.errors import InputError
@@ -91,27 +93,13 @@ def render(results: Results, folder: Path, shared: Path) -> str:
     names = ("page.js", *(("charts.js",) * has_charts), *(("solid.js",) * has_solids))
     scripts = [read_template(name) for name in names]
     above = Markup(quote(os.path.relpath(shared, folder)))
-    environment = templates()
-    environment.filters |= {
-        "number": is_number,
-        "figure": figure_as_json,
-        "unit_unbroken": _unit_unbroken,
-        "numeric_columns": _numeric_columns,
-        "in_column": _in_column,
-        "height": chart_height,
-        "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
-        "data_url": lambda file: _as_data_url(file, folder),
-        "solid_json": lambda solid: _as_script_data(solid, folder),
-        "answer": answer_sentence,
-        "with_band": value_with_band,
-        "sparkline": sparkline,
-        "change": change_text,
-        "unquoted": lambda address: escape(unquote(address)),
-    }
     answer = headline(results)
     pictures = [item for item in items if isinstance(item, Image)]
-    return environment.get_template("report.html").render(
+    template = _pages().get_template("report.html")
+    return template.render(
         results=results,
+        data_url=lambda file: _as_data_url(file, folder),
+        solid_json=lambda solid: _as_script_data(solid, folder),
         passed=sum(verdict.passed for verdict in results.verdicts),
         answer=answer,
         picture=pictures[0] if pictures else None,
@@ -123,6 +111,27 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         scripts=scripts,
         script_hashes=[policy_hash(script) for script in scripts],
     )
+
+
+@lru_cache(maxsize=1)
+def _pages() -> jinja2.Environment:
+    """The templates, compiled once: a run of many cases writes a page of each."""
+    environment = templates()
+    environment.filters |= {
+        "number": is_number,
+        "figure": figure_as_json,
+        "unit_unbroken": _unit_unbroken,
+        "numeric_columns": _numeric_columns,
+        "in_column": _in_column,
+        "height": chart_height,
+        "as_given": lambda settings: [(k, escape(_as_given(v))) for k, v in settings.items()],
+        "answer": answer_sentence,
+        "with_band": value_with_band,
+        "sparkline": sparkline,
+        "change": change_text,
+        "unquoted": lambda address: escape(unquote(address)),
+    }
+    return environment
 
 
 def runs_of_page(results: Results, shared: Path) -> list[tuple[Figure | Verdict, list[Point]]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,8 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.mesh.mesh import Mesh, boundary
+from fe_drivetrain.mesh.facets import outside
+from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report.pictures.deformation import exaggeration, picture_of_deformation
 from fe_drivetrain.report.results import Image, Solid
@@ -39,9 +41,33 @@ SHOWN_LOADS = {
 """At the hub, for comparison with the load that a page is about."""
 _MEGA = 1e6
 
-_FINE = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))  # flat pieces of a six-node triangle
-_COARSE = ((0, 1, 2),)
+# flat pieces of a facet with so many nodes, with its mid-side nodes and without
+_FINE = {
+    3: ((0, 1, 2),),
+    4: ((0, 1, 2), (0, 2, 3)),
+    6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
+    8: ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)),
+    9: ((0, 4, 8), (4, 1, 8), (1, 5, 8), (5, 2, 8), (2, 6, 8), (6, 3, 8), (3, 7, 8), (7, 0, 8)),
+}
+_COARSE = {count: _FINE[3] if count in (3, 6) else _FINE[4] for count in _FINE}
 _STEPS = 32767
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Nodes that parts share or not, and the elements of each part: of one kind in one part.
+
+    Attributes
+    ----------
+    points : Floats
+        (n, 3) positions of the nodes [m].
+    cells : Mapping[str, Ints]
+        By the part's name (ne, k) node numbers in VTK's order: tetrahedra of 4 or 10 nodes,
+        hexahedra of 8, 20 or 27.
+    """
+
+    points: Floats
+    cells: Mapping[str, Ints]
 
 
 def deformed_shape(
@@ -85,7 +111,7 @@ def deformed_shape(
 
 
 def write_solid_view(
-    mesh: Mesh,
+    mesh: Mesh | Parts,
     fields: Mapping[str, Floats],
     lame: Mapping[str, tuple[float, float]],
     path: Path,
@@ -94,8 +120,8 @@ def write_solid_view(
 
     Parameters
     ----------
-    mesh : Mesh
-        The mesh.
+    mesh : Mesh or Parts
+        The mesh; parts of other elements than curved tetrahedra as `Parts`.
     fields : Mapping[str, Floats]
         (n, 3) displacements of its nodes [m] by the load in words, the first of which is shown
         first. Those that come last are left out where the file would be larger than `MOST_BYTES`.
@@ -109,22 +135,27 @@ def write_solid_view(
     bool
         False, and nothing written, where the surface has more than `MOST_TRIANGLES`.
     """
-    facets = {part: boundary(mesh, part) for part in mesh.part_names}
-    count = sum(map(len, facets.values()))
-    if count > MOST_TRIANGLES:
+    bodies = mesh if isinstance(mesh, Parts) else _parts_of(mesh)
+    points = bodies.points
+    facets = {part: outside(cells) for part, cells in bodies.cells.items()}
+    fine, least = (
+        sum(len(of) * len(pieces[of.shape[1]]) for of in facets.values())
+        for pieces in (_FINE, _COARSE)
+    )
+    if least > MOST_TRIANGLES:
         return False
-    pieces = _FINE if len(_FINE) * count <= MOST_TRIANGLES else _COARSE
+    pieces = _FINE if fine <= MOST_TRIANGLES else _COARSE
     parts, shown, triangles = [], [], []
     first = vertices = 0
-    for part, six in facets.items():
-        corners = six[:, np.array(pieces)].reshape(-1, 3)
+    for part, of in facets.items():
+        corners = of[:, np.array(pieces[of.shape[1]])].reshape(-1, 3)
         nodes, numbers = np.unique(corners, return_inverse=True)
         shown.append(nodes)
         triangles.append(numbers.reshape(-1, 3) + vertices)
         parts.append({"name": part, "first": first, "count": len(corners)})
         first, vertices = first + len(corners), vertices + len(nodes)
     nodes = np.concatenate(shown)
-    low, high = mesh.points[nodes].min(axis=0), mesh.points[nodes].max(axis=0)
+    low, high = points[nodes].min(axis=0), points[nodes].max(axis=0)
     middle, reach = 0.5 * (low + high), 0.5 * float((high - low).max())
     # in letters of 6 bits: positions and triangles; then displacements and stresses of each load
     surface, field = (8 / 6 * size for size in (6 * vertices + 12 * first, 8 * vertices))
@@ -132,11 +163,11 @@ def write_solid_view(
     content = {
         "middle": middle.tolist(),
         "reach": reach,
-        "positions": _units(mesh.points[nodes] - middle, reach),
+        "positions": _units(points[nodes] - middle, reach),
         "parts": parts,
         "triangles": _packed(np.concatenate(triangles), "<u4"),
         "loads": [
-            {"name": name, **_field(mesh, u, shown, lame, reach)}
+            {"name": name, **_field(bodies, u, shown, lame, reach)}
             for name, u in list(fields.items())[:count]
         ],
     }
@@ -144,8 +175,12 @@ def write_solid_view(
     return True
 
 
+def _parts_of(mesh: Mesh) -> Parts:
+    return Parts(mesh.points, {p: mesh.cells[mesh.part_cells(p)] for p in mesh.part_names})
+
+
 def _field(
-    mesh: Mesh,
+    bodies: Parts,
     u: Floats,
     shown: Sequence[Ints],
     lame: Mapping[str, tuple[float, float]],
@@ -153,8 +188,8 @@ def _field(
 ) -> dict[str, Any]:
     """Displacements and stresses of the vertices, each with the value of a whole unit."""
     stresses = []
-    for part, nodes in zip(mesh.part_names, shown, strict=True):
-        own = nodal_stresses(mesh.points, mesh.cells[mesh.part_cells(part)], u.ravel(), lame[part])
+    for (part, cells), nodes in zip(bodies.cells.items(), shown, strict=True):
+        own = nodal_stresses(bodies.points, cells, u.ravel(), lame[part])
         stresses.append(von_mises(own[nodes]))
     moved, stress = u[np.concatenate(shown)], np.concatenate(stresses)
     largest, greatest = float(np.linalg.norm(moved, axis=1).max()), float(stress.max())

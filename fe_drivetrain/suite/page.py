@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.report.charts import chart, rounded, trace
+from fe_drivetrain.report.charts import chart, instead_of_chart, rounded, trace
 from fe_drivetrain.report.results import (
     AssumptionRow,
     Basis,
@@ -363,11 +363,9 @@ class Page:
         logarithmic: Iterable[str] = (),
         safe: tuple[float | None, float | None] | None = None,
     ) -> None:
-        """Add a chart of traces, or a sentence if they have no point; see `report.chart`."""
-        if not any(len(trace.get(axis, ())) for trace in traces for axis in "xyz"):
-            self.text(f"{caption}: there is nothing to show in this run.")
-            return
-        self.add(chart(caption, traces, x, y, logarithmic, safe))
+        """Add a chart of traces, or a sentence if they have but one point; see `report.chart`."""
+        words = instead_of_chart(caption, traces, x, y)
+        self.add(Text(text=words) if words else chart(caption, traces, x, y, logarithmic, safe))
 
     def targets(
         self,

@@ -102,7 +102,7 @@ def picture_of_model(model: Model, path: Path) -> None:
 def _kind(part: str) -> str:
     if part in ("shaft", "nose"):
         return part
-    return "housing" if part.endswith(".housing") else "bearing"
+    return "housing" if "." in part else "bearing"
 
 
 def _line_under(mesh: Mesh, stations: Sequence[float]) -> Floats:
@@ -175,8 +175,9 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
             continue
         base = mesh.points[mesh.face_nodes(f"{name}.housing.base")]
         corner = base[np.argmin(base @ [1.0, 1.0, 0.0])]
-        if unit.foreign is not None:
-            stands = unit.foreign.held_by if unit.bedplate is None else "on a bedplate"
+        if unit.parts or unit.foreign is not None:
+            how = "held faces fixed" if unit.foreign is None else unit.foreign.held_by
+            stands = how if unit.bedplate is None else "on a bedplate"
             sheet.note(corner, stands, (-140, -14), GROUND)
         elif unit.block.base == "bolted":
             top = corner + unit.block.foot_thickness * np.eye(3)[2]

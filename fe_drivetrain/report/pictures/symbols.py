@@ -29,7 +29,7 @@ def add_fixed_base(plotter: Any, mesh: Mesh, unit: BearingUnit, thickness: float
     for face in heads or [f"{name}.base"]:
         surface = curved_surface(mesh.faces[face], mesh.points)
         plate = surface.extrude((0.0, 0.0, thickness if heads else -thickness), capping=True)
-        if unit.foreign is None and unit.block.base == "bolted":
+        if unit.foreign is None and not unit.parts and unit.block.base == "bolted":
             plate = plate.translate((0.0, 0.0, unit.block.foot_thickness + thickness))
         plotter.add_mesh(plate, color=GROUND, ambient=0.3)
 

@@ -1,0 +1,251 @@
+"""A body as a small picture in milliseconds: its faces from far to near, those behind left out."""
+
+from __future__ import annotations
+
+import io
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.geometry.shaft import Section, Shaft
+from fe_drivetrain.mesh.facets import outside
+from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.plots.style import PALETTE
+
+if TYPE_CHECKING:
+    from PIL import ImageDraw
+
+    from fe_drivetrain.scene.scene import Scene
+
+MOST_FACES = 20_000
+"""From a quarter of as many facets on curved ones are drawn by their corners."""
+WIDTH, MARGIN, STRIP = 900, 30, 56
+"""Pixels of the picture, round the body, and below it for axes and scale."""
+_LEAST, _MOST = 140, 420  # pixels of its height
+_FINER = 2  # drawn larger, so that lines are smooth
+_EYE = np.array([-0.55, -1.0, 0.55]) / math.sqrt(0.55**2 + 1.0 + 0.55**2)
+_RIGHT = np.array([1.0, -0.55, 0.0]) / math.hypot(1.0, 0.55)
+_UP = np.cross(_RIGHT, -_EYE)
+_LIGHT = np.array([-0.3, -0.75, 0.6]) / math.sqrt(0.3**2 + 0.75**2 + 0.6**2)
+_ROUND = 48  # pieces of a turn of a shaft
+_INK, _FAINT = (31, 41, 51), (123, 135, 148)
+
+
+@dataclass(frozen=True)
+class Faces:
+    """Flat pieces of a surface, turned outward.
+
+    Attributes
+    ----------
+    loops : Floats
+        (n, m, 3) corners [m].
+    sides : Bools
+        (n, m) whether there is a line from each corner to the next.
+    """
+
+    loops: Floats
+    sides: Bools
+
+
+class Body(Protocol):
+    """What has nodes and elements: a mesh, a block, hexahedra of a shaft."""
+
+    @property
+    def points(self) -> Floats:
+        """(n, 3) positions of nodes [m]."""
+
+    @property
+    def cells(self) -> Ints:
+        """(ne, 4), (ne, 8), (ne, 10), (ne, 20) or (ne, 27) nodes in VTK's order."""
+
+
+def sketch(*bodies: Body | Shaft) -> bytes:
+    """Bodies in parallel perspective, each in a colour of its own, with axes and a scale.
+
+    Parameters
+    ----------
+    *bodies : Body or Shaft
+        Meshes, whose elements are seen, part by part where they have several, or shafts.
+
+    Returns
+    -------
+    png : bytes
+        The picture.
+    """
+    from PIL import Image, ImageDraw
+
+    groups, colours = [], []
+    parts = [part for body in bodies for part in _parts(body)]
+    for k, body in enumerate(parts):
+        faces = revolved(body) if isinstance(body, Shaft) else surface(body.points, body.cells)
+        groups += faces
+        colours += [PALETTE[k % len(PALETTE)]] * sum(len(group.loops) for group in faces)
+    flat = [loop for group in groups for loop in group.loops]
+    lines = [sides for group in groups for sides in group.sides]
+    points = np.concatenate(flat)
+    low, high = _seen(points).min(axis=0), _seen(points).max(axis=0)
+    room = np.array([WIDTH, _MOST]) - 2 * MARGIN
+    scale = float((room / np.maximum(high - low, 1e-12 * float(np.abs(points).max()))).min())
+    height = max(_LEAST, round(scale * (high - low)[1]) + 2 * MARGIN)
+    middle = 0.5 * (low + high)
+    image = Image.new("RGB", (_FINER * WIDTH, _FINER * (height + STRIP)), "white")
+    draw = ImageDraw.Draw(image)
+    normals = np.array([_normal(loop) for loop in flat])
+    depths = np.array([float((loop @ _EYE).mean()) for loop in flat])
+    towards = normals @ _EYE > 1e-9
+    half = 0.5 * np.array([WIDTH, height])
+    for k in np.argsort(depths):
+        if not towards[k]:
+            continue
+        at = _FINER * (half + scale * (_seen(flat[k]) - middle) * (1.0, -1.0))
+        fill = _shaded(colours[k], float(normals[k] @ _LIGHT))
+        edge = _shaded(colours[k], float(normals[k] @ _LIGHT) - 0.6)
+        draw.polygon([tuple(p) for p in at], fill=fill, outline=fill)
+        for side in np.flatnonzero(lines[k]):
+            draw.line([*at[side], *at[(side + 1) % len(at)]], fill=edge, width=_FINER)
+    _axes(draw, height + STRIP)
+    _scale_bar(draw, scale, height + STRIP)
+    small = image.resize((WIDTH, height + STRIP), Image.Resampling.LANCZOS)
+    file = io.BytesIO()
+    small.quantize(128).save(file, "PNG", optimize=True)
+    return file.getvalue()
+
+
+def shaft_with_rings(scene: Scene) -> tuple[Shaft, ...]:
+    """The shaft of a scene and the rings of its bearings, or its nose, for `sketch`; no housing."""
+    rings = []
+    for unit in scene.bearing_units:
+        own = unit.bearing
+        seat = own.bore_diameter or scene.shaft.seat_diameter(own.x, own.width, own.name)
+        section = Section(
+            length=own.width, outer_diameter=own.raceway_diameter, inner_diameter=seat
+        )
+        rings.append(Shaft(front=own.x - 0.5 * own.width, sections=(section,)))
+    return scene.shaft, *rings, *([scene.nose.body] if scene.nose else [])
+
+
+def surface(points: Floats, cells: Ints) -> list[Faces]:
+    """Facets that belong to one element only, curved ones in flat pieces.
+
+    Parameters
+    ----------
+    points, cells : Floats, Ints
+        (n, 3) [m] and (ne, k) of one kind of element.
+    """
+    facets = outside(cells)
+    corners = 3 if facets.shape[1] in (3, 6) else 4
+    at = points[facets]
+    if facets.shape[1] in (3, 4) or len(facets) > MOST_FACES // 4:
+        loops = at[:, :corners]
+        return [Faces(loops, np.ones(loops.shape[:2], dtype=bool))]
+    if corners == 3:
+        pieces = at[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3, 3)
+        sides = np.array([[1, 0, 1], [1, 1, 0], [0, 1, 1], [0, 0, 0]], dtype=bool)
+        return [Faces(pieces, np.tile(sides, (len(at), 1)))]
+    if at.shape[1] == 8:  # of serendipity elements: the middle follows from the rest
+        middle = 0.5 * at[:, 4:].sum(axis=1) - 0.25 * at[:, :4].sum(axis=1)
+        at = np.concatenate([at, middle[:, None]], axis=1)
+    return [_in_pieces(at, 3 if len(at) < MOST_FACES // 40 else 2)]
+
+
+def _in_pieces(at: Floats, n: int) -> Faces:
+    """(nf, 9, 3) biquadratic facets, each in n x n flat ones."""
+    t = np.linspace(0.0, 1.0, n + 1)
+    shape = np.stack([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)])
+    nodes = at[:, [[0, 4, 1], [7, 8, 5], [3, 6, 2]]]
+    grid = np.einsum("ai,bj,fabx->fijx", shape, shape, nodes)
+    one, two = grid[:, :-1], grid[:, 1:]
+    loops = np.stack([one[:, :, :-1], one[:, :, 1:], two[:, :, 1:], two[:, :, :-1]], axis=3)
+    i, j = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    sides = np.stack([i == 0, j == n - 1, i == n - 1, j == 0], axis=2)
+    return Faces(loops.reshape(-1, 4, 3), np.tile(sides.reshape(-1, 4), (len(at), 1)))
+
+
+def revolved(shaft: Shaft) -> list[Faces]:
+    """Outer surface, bore and end faces of a shaft; fillets are not drawn."""
+    outside, inside, x = [], [], shaft.front
+    for piece in shaft.pieces:
+        last = x + piece.length
+        end = piece.outer_diameter if piece.outer_diameter_end is None else piece.outer_diameter_end
+        outside += [(x, 0.5 * piece.outer_diameter), (last, 0.5 * end)]
+        inside += [(x, 0.5 * piece.inner_diameter), (last, 0.5 * piece.inner_diameter)]
+        x = last
+    meridian = np.array([*outside, *inside[::-1], outside[0]])
+    turn = np.linspace(0.0, 2.0 * np.pi, _ROUND + 1)
+    round_it = np.stack([np.ones(_ROUND + 1), np.cos(turn), np.sin(turn)], axis=1)
+    found = []
+    for start, stop in pairwise(meridian):
+        if np.array_equal(start, stop) or max(start[1], stop[1]) == 0.0:
+            continue
+        # in short bands: their depths say which is in front of which
+        length = float(np.linalg.norm(stop - start))
+        count = min(max(math.ceil(4.0 * length / max(start[1], stop[1])), 1), 60)
+        for k in range(count):
+            ends = (start + (stop - start) * share / count for share in (k, k + 1))
+            one, two = (round_it * [end[0], end[1], end[1]] for end in ends)
+            loops = np.stack([one[:-1], one[1:], two[1:], two[:-1]], axis=1)
+            sides = [k == 0, False, k == count - 1, False]
+            found.append(Faces(loops, np.tile(sides, (_ROUND, 1))))
+    return found
+
+
+def _parts(body: Body | Shaft) -> list[Body | Shaft]:
+    """The parts of a mesh that has several, each by itself."""
+    if not isinstance(body, Mesh):
+        return [body]
+    return [replace(body, cells=body.cells[body.part_cells(name)]) for name in body.part_names]
+
+
+def _seen(points: Floats) -> Floats:
+    """(..., 2) to the right and up."""
+    return np.stack([points @ _RIGHT, points @ _UP], axis=-1)
+
+
+def _normal(loop: Floats) -> Floats:
+    """Unit normal of a loop by Newell's sum; of a loop without area zero."""
+    area = np.cross(loop - loop[0], np.roll(loop, -1, axis=0) - loop[0]).sum(axis=0)
+    size = float(np.linalg.norm(area))
+    unit: Floats = area / size if size > 0.0 else area
+    return unit
+
+
+def _shaded(colour: str, towards_light: float) -> tuple[int, int, int]:
+    """A colour made paler, and darker where it is turned away from the light."""
+    own = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+    bright = 0.62 + 0.38 * max(towards_light, -1.0)
+    mixed = (0.45 * own + 0.55 * 235.0) * bright
+    red, green, blue = (int(v) for v in np.clip(mixed, 0, 255))
+    return red, green, blue
+
+
+def _font(size: int) -> Any:
+    from PIL import ImageFont
+
+    return ImageFont.load_default(_FINER * size)
+
+
+def _axes(draw: ImageDraw.ImageDraw, height: int) -> None:
+    """x, y and z in the lower left corner."""
+    start = np.array([MARGIN + 10.0, height - 18.0])
+    for name, direction in zip("xyz", np.eye(3), strict=True):
+        end = start + 26.0 * _seen(direction) * (1.0, -1.0)
+        draw.line([*(_FINER * start), *(_FINER * end)], fill=_INK, width=3)
+        beyond = start + 37.0 * _seen(direction) * (1.0, -1.0)
+        draw.text(tuple(_FINER * beyond), name, fill=_INK, font=_font(13), anchor="mm")
+
+
+def _scale_bar(draw: ImageDraw.ImageDraw, scale: float, height: int) -> None:
+    """A round length in the lower right corner, as long as it is across the line of sight."""
+    length = 130.0 / scale
+    power = 10.0 ** math.floor(math.log10(length))
+    whole = max(n for n in (1, 2, 5) if n * power <= length) * power
+    right, y = WIDTH - MARGIN, height - 16
+    ends = (right - whole * scale, right)
+    draw.line([_FINER * ends[0], _FINER * y, _FINER * ends[1], _FINER * y], fill=_FAINT, width=4)
+    text = f"{whole:g} m" if whole >= 0.1 else f"{1000 * whole:g} mm"
+    at = (_FINER * 0.5 * sum(ends), _FINER * (y - 10))
+    draw.text(at, text, fill=_FAINT, font=_font(13), anchor="mm")
