@@ -6,8 +6,11 @@ import re
 import sys
 from importlib.metadata import version as installed
 from pathlib import Path
+from typing import Any
 
+from numpydoc.docscrape_sphinx import SphinxDocString
 from sphinx.application import Sphinx
+from sphinx.domains.python import PythonDomain
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
@@ -91,8 +94,42 @@ def to_docstrings(app: Sphinx, docname: str, source: list[str]) -> None:
         )
 
 
+def find_quickly() -> None:
+    """Let Sphinx look through all names only for one that some name ends with.
+
+    Each type and parameter of a docstring is looked for, most of them in vain, and each search that
+    fails goes through thousands of names: a fifth of the time of a build.
+    """
+    search = PythonDomain.find_obj
+    ends: dict[int, set[str]] = {}  # last parts of all names, by their number, which only grows
+
+    def find_obj(self: PythonDomain, env: Any, modname: str, classname: str, name: str, *more: Any):
+        count = len(self.objects)
+        if count not in ends:
+            ends.clear()
+            ends[count] = {full.rpartition(".")[2] for full in self.objects}
+        if name.removesuffix("()").rpartition(".")[2] not in ends[count]:
+            return []
+        return search(self, env, modname, classname, name, *more)
+
+    PythonDomain.find_obj = find_obj
+
+
+def compile_once() -> None:
+    """Let numpydoc compile its template for the first docstring, not again for each."""
+    load, kept = SphinxDocString.load_config, {}
+
+    def load_config(self: SphinxDocString, config: dict[str, Any]) -> None:
+        load(self, {**kept, **config})
+        kept["template"] = self.template
+
+    SphinxDocString.load_config = load_config
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Connect what Sphinx calls, before numpydoc reads a docstring."""
+    find_quickly()
+    compile_once()
     app.connect("autodoc-process-docstring", as_plain_text, priority=100)
     app.connect("autodoc-process-signature", by_their_names)
     app.connect("source-read", to_docstrings)

@@ -6,14 +6,19 @@ from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from tiny_case import check_one
 
+from fe_drivetrain.commands.advice_page import tornado
 from fe_drivetrain.commands.settings import parse_settings
 from fe_drivetrain.common import files
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity.ablation import Effect
 from fe_drivetrain.report.answer import headline
+from fe_drivetrain.report.charts import trace
 from fe_drivetrain.report.results import Chart, Image, Table, Text, read_results
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case, find_cases
@@ -102,6 +107,24 @@ def test_every_kind_of_item_survives_the_round_trip(tmp_path: Path) -> None:
     run_case(tiny_case(showing(*items)), tmp_path / "out")
     (section,) = read_results(tmp_path / "out" / "results.json").sections
     assert tuple(section.items) == items
+
+
+def test_a_chart_of_one_point_is_a_sentence() -> None:
+    page = Page()
+    page.chart("Mass of all", [trace("a", [0.5], [12.0])], "height [m]", "mass [kg]")
+    page.chart("None", [trace("a", [], [])], "height [m]", "mass [kg]")
+    one, none = page.sections[0].items
+    assert one.text == "Mass of all: mass [kg] 12 at height [m] 0.5, the only point of this run."
+    assert none.text == "None: there is nothing to show in this run."
+
+
+def test_details_that_change_nothing_have_no_empty_bars() -> None:
+    advice: Any = SimpleNamespace(quantity=SimpleNamespace(name="hub.Fz"), tolerance=0.05)
+    section = tornado(advice, "1", [Effect("bore", 0.0), Effect("rings", 0.0)])
+    (said,) = section.items
+    assert said.text == "No detail changes hub.Fz at level 1: bore, rings."
+    kinds = [item.kind for item in tornado(advice, "1", [Effect("bore", 0.1)]).items]
+    assert kinds == ["chart", "table"]
 
 
 def test_a_nan_is_a_failed_check_and_not_an_unreadable_file(tmp_path: Path) -> None:

@@ -1,11 +1,9 @@
 """The cases in which another program reads what this project has written."""
 
-from pathlib import Path
-
 import pytest
+from conftest import QuickRun
 
 from fe_drivetrain.suite.case import find_cases
-from fe_drivetrain.suite.result_folders import run_case
 
 #: The programs and packages of each.
 NEEDS = {
@@ -22,11 +20,14 @@ NEEDS = {
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.needs(*needs)) for n, needs in NEEDS.items()]
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.needs(*needs), pytest.mark.quick(name)])
+        for name, needs in NEEDS.items()
+    ],
 )
-def test_the_other_program_finds_the_same(tmp_path: Path, name: str) -> None:
-    (case,) = find_cases(name)
-    results = run_case(case, tmp_path, quick=True)
+def test_the_other_program_finds_the_same(quick_run: QuickRun, name: str) -> None:
+    results = quick_run(name)
     failed = [(v.quantity, v.computed, v.reference) for v in results.verdicts if not v.passed]
     assert not failed
     assert results.verdicts

@@ -99,7 +99,8 @@ def test_an_own_drivetrain_is_changed_without_editing(run_page: Runner, tmp_path
 
 def test_a_housing_from_step_stands_in_a_scene(run_page: Runner, tmp_path: Path) -> None:
     names = run_page("how-to/own-housing-from-step.md")
-    assert (tmp_path / "reports/check/mine/report.html").is_file()
+    for name in ("mine", "on_bedplate"):
+        assert (tmp_path / f"reports/check/{name}/report.html").is_file()
     again = names["mesh_scene"](names["again"])
     own = names["mesh_scene"](names["scene"])
     assert volume(again) == pytest.approx(volume(own), rel=1e-12)

@@ -152,6 +152,8 @@ def test_the_answer_is_the_named_check_or_the_first_that_is_a_number() -> None:
     assert headline(results(verdicts=[])) is None
     plain = answer_sentence(verdict(1.004, band=0.001)).replace("\u00a0", " ")
     assert plain == "Force: 1.004 ± 0.001 N; expected 1 N (error +0.4 %, tolerance ±1 %)."
+    named = check("holds", 1.0, 1.0).model_copy(update={"quantity": "main_bearing.My: one sign"})
+    assert answer_sentence(named) == "main_bearing.My: one sign: yes."
 
 
 def test_cases_without_results_here_are_named_and_do_not_count(tmp_path: Path) -> None:

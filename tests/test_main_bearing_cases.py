@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import COARSE
+from conftest import COARSE, FINER
 
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.common.typeset import typeset
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
 from fe_drivetrain.hub_loads.csv_table import read_csv
@@ -58,12 +57,10 @@ def reports(tmp_path_factory, hub_load_file):
     folder = tmp_path_factory.mktemp("reports")
     (rmse,) = find_cases("main_bearing/rmse")
     others = [find_cases(f"main_bearing/{name}")[0] for name in CASES if name != "rmse"]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv(CORES_VARIABLE)
-        # at eight elements a turn, which is the least, coarser meshes are hardly coarser
-        scene = COARSE | {"mesh.elements_per_turn": 12}
-        problems = run_cases(others, folder, scene, quick=True)
-        problems |= run_cases([rmse], folder, scene | {"loads": str(hub_load_file)}, quick=True)
+    # at eight elements a turn, which is the least, coarser meshes are hardly coarser
+    scene = COARSE | FINER
+    problems = run_cases(others, folder, scene, quick=True)
+    problems |= run_cases([rmse], folder, scene | {"loads": str(hub_load_file)}, quick=True)
     assert not problems
     return folder / "main_bearing"
 

@@ -5,11 +5,10 @@ import re
 import numpy as np
 import pytest
 import yaml
-from conftest import COARSE, coarse_scene
+from conftest import COARSE, FINER, coarse_scene
 
 from fe_drivetrain.cases.main_bearing import loads, study
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.geometry.fits import check_parts
 from fe_drivetrain.geometry.walls import check_sizes
 from fe_drivetrain.hub_loads.surrogate import Condition
@@ -38,8 +37,7 @@ SLOW = {"secant_stiffness"}
 def pages(tmp_path_factory) -> dict[str, Results]:
     """Results of each case on a small scene with a sliding bearing."""
     folder = tmp_path_factory.mktemp("own")
-    changes = {"title": "Turbine of mine", "mesh.elements_per_turn": 12}
-    scene = coarse_scene("spherical", **changes).model_dump(mode="json")
+    scene = coarse_scene("spherical", title="Turbine of mine", **FINER).model_dump(mode="json")
     (folder / "mine.yaml").write_text(yaml.safe_dump(scene))
     time = 0.05 * np.arange(40)
     forces = np.array([2e5, 0, -3.7e5, 1.1e6, 6e5, 0]) + 1e4 * np.sin(time)[:, None]
@@ -47,10 +45,8 @@ def pages(tmp_path_factory) -> dict[str, Results]:
     header = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
     np.savetxt(folder / "loads.csv", table, delimiter=",", header=header, comments="")
     settings = {"scene": str(folder / "mine.yaml"), "loads": str(folder / "loads.csv")}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv(CORES_VARIABLE)
-        cases = [all_cases()[f"main_bearing/{name}"] for name in NEEDS]
-        assert run_cases(cases, folder / "reports", settings, quick=True) == {}
+    cases = [all_cases()[f"main_bearing/{name}"] for name in NEEDS]
+    assert run_cases(cases, folder / "reports", settings, quick=True) == {}
     return {
         name: read_results(folder / "reports/main_bearing" / name / "results.json")
         for name in NEEDS

@@ -33,7 +33,7 @@ from fe_drivetrain.suite import Page, Run
 SCENE = "main_bearing_spherical"
 
 #: Coarsening of the mesh, in full and under --quick: factor of the sizes, and elements a turn.
-SIZES = ((1.6, None), (3.2, 8))
+SIZES = ((1.6, None), (4.5, 6))
 
 #: Tilt stiffness of main bearings [N m/rad], and whose.
 KNOWN = {

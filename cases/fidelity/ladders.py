@@ -11,7 +11,7 @@ from fe_drivetrain.scene import change_scene, library_scene, scene_text
 from fe_drivetrain.suite import Page, Record, Run
 
 #: The mesh of a quick run: sizes times this, where the table says no other, and elements a turn.
-COARSER, TURN = 2.2, 8
+COARSER, TURN = 2.2, 6
 
 
 @cases("ladders.yaml", changes="scene")

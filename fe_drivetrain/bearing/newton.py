@@ -177,7 +177,9 @@ def _newton(
                         part += K[k, p] * B[p, j]
                     A[i, j] += B[k, i] * part
         if not solve(A, g, d):
-            A[:] = scale * soft
+            for i in range(m):
+                for j in range(i + 1):
+                    A[i, j] = scale * soft[i, j]
             solve(A, g, d)
         slope = 0.0
         for i in range(m):

@@ -139,8 +139,9 @@ def _newton(
             for k in range(i + 1):
                 A[i, k] += mu * body.soft[i, k]
         if not solve(A, g, d):
-            A[:] = scale * body.soft
             for i in range(m):
+                for k in range(i + 1):
+                    A[i, k] = scale * body.soft[i, k]
                 A[i, i] += body.stiffness[i]
             solve(A, g, d)
         # Along the step the slope is that of the quadratic part, which is a line, and of rollers.
@@ -224,10 +225,12 @@ def solve_cases(
                 whole += loads[i, k] ** 2
             near = change < 0.25 * whole
         if near:
-            unknowns[i] = unknowns[i - 1]
-        elif not given:
-            A[:] = scales[i] * body.soft
             for k in range(m):
+                unknowns[i, k] = unknowns[i - 1, k]
+        elif not given:
+            for k in range(m):
+                for j in range(k + 1):
+                    A[k, j] = scales[i] * body.soft[k, j]
                 A[k, k] += body.stiffness[k]
             if not solve(A, loads[i], unknowns[i]):
                 unknowns[i] = 0.0

@@ -289,12 +289,14 @@ def _load(drive: Drive, t: float, place: int, value: Floats) -> int:  # pragma: 
     times = drive.times
     last = len(times) - 1
     if t <= times[0]:
-        value[:] = drive.histories[0]
+        for j in range(len(value)):
+            value[j] = drive.histories[0, j]
         return 0
     while place < last and times[place + 1] < t:
         place += 1
     if place >= last:
-        value[:] = drive.histories[last]
+        for j in range(len(value)):
+            value[j] = drive.histories[last, j]
         return last
     share = (t - times[place]) / (times[place + 1] - times[place])
     for j in range(len(value)):
@@ -363,7 +365,8 @@ def march(
     tangent, jacobian = np.zeros((r, r)), np.zeros((r, r))
     spring, damper, damper1, damps = np.zeros(q), np.zeros(q), np.zeros(q), np.zeros(q)
     scale, is_phase = np.zeros(r), np.zeros(r)
-    place = _load(drive, begin, 0, value)
+    first = int(np.int64(0))  # a literal would be a type of its own, compiled by itself
+    place = _load(drive, begin, first, value)
     _times(drive.patterns, value, outside0)
     for i in range(n):
         F0[i] = outside0[i] + matrices.constant[i]

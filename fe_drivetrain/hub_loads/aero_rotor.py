@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -215,6 +216,14 @@ def steady_state(
     InputError
         If an element is not in the windmill state (no bracket).
     """
+    return _steady_state(rotor, wind_speed, rotor_speed, pitch)
+
+
+@lru_cache(maxsize=1024)
+def _steady_state(
+    rotor: Rotor, wind_speed: float, rotor_speed: float, pitch: float
+) -> OperatingPoint:
+    """As `steady_state`; controllers of one rotor ask for the same states again and again."""
     r, weight = rotor.element_radius()
     axial_wind = wind_speed * np.cos(rotor.shaft_tilt)
     swirl = rotor_speed * r

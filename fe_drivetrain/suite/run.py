@@ -17,6 +17,8 @@ from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import arithmetic, program_hash
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.geometry.shaft import Shaft
+from fe_drivetrain.report.pictures.sketch import Body, sketch
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -104,6 +106,11 @@ class Run:
             cache.keep("figures", full, before)
         found: _T = json.loads(str(before["figures"]))
         return found
+
+    def sketch(self, *bodies: Body | Shaft, file: str = "model.png") -> str:
+        """Write a small picture of bodies, as meshed, or of a shaft; the file's name for a page."""
+        (self.folder / file).write_bytes(sketch(*bodies))
+        return file
 
     def add_time(self, name: str, seconds: float) -> None:
         """Add to the wall time of a step."""

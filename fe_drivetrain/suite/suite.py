@@ -15,6 +15,7 @@ from fe_drivetrain.common.files import HiddenFolder, empty, sentence_about
 from fe_drivetrain.common.jobs import pool
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import OVERALL, Progress, silent
+from fe_drivetrain.common.repeated import Repeated
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.suite.case import Case, all_cases
 from fe_drivetrain.suite.result_folders import (
@@ -84,15 +85,21 @@ def run_cases(
     problems: dict[str, Problem] = {}
     folders: dict[str, HiddenFolder] = {}
     pending = {case.name: PLANNED for case in cases}
-    writing = threading.Lock()  # steps are reported by several threads
+    changing = threading.Lock()  # steps are reported by several threads
+
+    def list_all() -> None:
+        write_index(out, others | problems | pending, known)
+
+    # a run that is killed could write no pages of what it has done
+    pages = Repeated(list_all)
 
     def show(step: str, lane: int = 0) -> None:
         name = step.partition(": ")[0]
         if lane != OVERALL and pending.get(name) is PLANNED:
-            with writing:
+            with changing:
                 if name in pending:
                     pending[name] = RUNNING
-                    write_index(out, others | problems | pending, known)
+            pages.soon()
         report(step, lane)
 
     def finish(case: Case, problem: Problem | None) -> None:
@@ -100,14 +107,11 @@ def run_cases(
             problems[case.name] = problem
         else:
             put_in_place(folders[case.name], result_folder(out, case))
-        with writing:
+        with changing:
             del pending[case.name]
         if not problem:
             record_run(out, read_results(result_folder(out, case) / "results.json"))
-        with writing:
-            write_index(
-                out, others | problems | pending, known
-            )  # a run that is killed later could not
+        pages.soon()
         count()
 
     def count() -> None:
@@ -118,7 +122,7 @@ def run_cases(
         for case in cases:
             folders[case.name] = new_folder(result_folder(out, case))
         check_history(out)
-        write_index(out, others | problems | pending, known)
+        pages.soon()
         count()
         beside = [case for case in cases if not case.alone]
         with pool(len(beside), show, each_for_itself=True) as workers:
@@ -138,6 +142,7 @@ def run_cases(
                     )
                     finish(case, _outcome(job))
     finally:
+        pages.stop()
         for folder in folders.values():
             folder.discard()
         if len(folders) == len(cases):  # else nothing was begun

@@ -165,11 +165,7 @@ def _parts(scene: Scene) -> dict[str, PartFile]:
     for unit in scene.bearing_units:
         bearing = unit.bearing
         bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
-        ring, housing = solids_of_unit(unit, bore, scene.mesh)
-        solids = {bearing.name: ring}
-        if unit.condensed is None:
-            solids[f"{bearing.name}.housing"] = housing
-        for part, solid in solids.items():
+        for part, solid in solids_of_unit(unit, bore, scene.mesh).items():
             density = scene.material_of(part).density
             found[part] = PartFile(
                 mass=density * solid.volume,
