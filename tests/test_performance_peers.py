@@ -77,17 +77,22 @@ def pulled_bar(youngs_modulus, length=2.0):
         poisson_ratio=np.zeros(2),
         fixed=ends[0],
         moved=ends[1],
-        translation=np.array([1.0, 0.0, 0.0]),
-        rotation=np.zeros(3),
+        motions=np.eye(3, 4, 3)[None],
         rule_points=rule[0].T.copy(),
         rule_weights=rule[1],
     )
 
 
-def stiffness_by(tool, variant, problem):
-    """The stiffness that a tool finds in this process."""
+def stiffnesses_by(tool, variant, problem):
+    """The stiffness of each motion that a tool finds in this process."""
     module = runner.load_tool(tool)
     return module.solve(module.load(problem), variant, runner.Clock())
+
+
+def stiffness_by(tool, variant, problem):
+    """That of one motion."""
+    (stiffness,) = stiffnesses_by(tool, variant, problem)
+    return stiffness
 
 
 def measured(variant, problem, folder, limits=LIMITS):
@@ -150,7 +155,31 @@ def test_installed_peers_agree_where_quadrature_is_exact(variant, bar, tmp_path)
         pytest.skip(f"{variant.tool_name} is not installed: {outcome.reason}")
     assert outcome.status == "done", outcome.reason
     expected = 1.0 / (1.0 / bar.youngs_modulus).sum()
+    assert outcome.found["stiffness"] == pytest.approx([expected], rel=rounds.EQUAL)
+
+
+@pytest.mark.needs  # looked for in the process of its own
+@pytest.mark.parametrize("variant", PEERS, ids=str)
+def test_installed_peers_agree_on_every_motion_of_the_face(variant, bar, tmp_path):
+    problem = problems.with_motions(bar, 10)
+    outcome = measured(variant, problem, tmp_path)
+    if outcome.status == "missing":
+        pytest.skip(f"{variant.tool_name} is not installed: {outcome.reason}")
+    assert outcome.status == "done", outcome.reason
+    expected = stiffnesses_by("this_project", "superlu", problem)
     assert outcome.found["stiffness"] == pytest.approx(expected, rel=rounds.EQUAL)
+
+
+def test_motions_are_independent_and_solved_together_or_apart_alike(shaft):
+    problem = problems.with_motions(shaft, problems.MOST_MOTIONS)
+    assert np.linalg.matrix_rank([problem.prescribed(k)[1].ravel() for k in range(10)]) == 9
+    np.testing.assert_array_equal(problem.motions[0], shaft.motions[0])
+    together = stiffnesses_by("this_project", "superlu", problem)
+    apart = [stiffness_by("scikit_fem", "superlu", one) for one in problem.one_by_one()]
+    np.testing.assert_allclose(together, apart, rtol=1e-9)
+    np.testing.assert_allclose(stiffnesses_by("scikit_fem", "superlu", problem), apart, rtol=1e-9)
+    near = stiffnesses_by("this_project", "multigrid", problem)
+    assert np.abs(near / np.array(apart) - 1).max() < rounds.EQUAL
 
 
 # --- the deck and what ccx says
@@ -236,7 +265,7 @@ def test_a_process_measures_what_this_one_finds(bar, tmp_path):
     assert outcome.status == "done", outcome.reason
     found = outcome.found
     assert found["stiffness"] == pytest.approx(
-        stiffness_by("this_project", "superlu", bar), rel=1e-9
+        [stiffness_by("this_project", "superlu", bar)], rel=1e-9
     )
     assert 0 < sum(found["steps"].values()) <= found["seconds"] < outcome.elapsed
     # at the least the matrix, at the most what this machine could have
@@ -313,7 +342,7 @@ def row(variant, unknowns, seconds=None, bytes_=1e8, stiffness=1.0, trouble=""):
                 "seconds": seconds,
                 "load_seconds": 0.0,
                 "peak_bytes": bytes_,
-                "stiffness": stiffness,
+                "stiffness": [stiffness],
                 "steps": {},
                 "iterations": None,
                 "notes": {},

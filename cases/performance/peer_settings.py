@@ -3,7 +3,7 @@
 from typing import Any
 
 from fe_drivetrain.common import InputError
-from fe_drivetrain.peers import BENCHMARKS, TOOLS, Limits, Plan, parse
+from fe_drivetrain.peers import BENCHMARKS, MOST_MOTIONS, TOOLS, Limits, Plan, parse
 from fe_drivetrain.suite import Run
 
 OURS = "this_project"
@@ -32,6 +32,7 @@ DEFAULTS: dict[str, Any] = {
     "time_limit": 30.0,
     "memory_limit": 12.0,
     "threads": 2,
+    "right_hand_sides": 1,
 }
 
 QUICK: dict[str, Any] = {
@@ -48,6 +49,7 @@ RANGES = {
     "time_limit": (1.0, 86400.0, False),
     "memory_limit": (0.5, 4096.0, False),
     "threads": (1, 256, True),
+    "right_hand_sides": (1, MOST_MOTIONS, True),
 }
 
 

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.peers.runner import Clock, Problem
 
 NAME = "FElupe"
+TOGETHER = True
 INSTALL = "pip install felupe pypardiso"
 VARIANTS = {
     "superlu": ("SuperLU, its default", "direct", "common"),
@@ -34,8 +35,8 @@ def load(problem: Problem) -> Any:
     return problem, felupe.Mesh(problem.points, problem.cells, "tetra10"), meshes
 
 
-def solve(state: Any, variant: str, clock: Clock) -> float:
-    """The stiffness, by FElupe's assembly."""
+def solve(state: Any, variant: str, clock: Clock) -> list[float]:
+    """The stiffnesses, by FElupe's assembly."""
     import felupe
 
     problem, whole, meshes = state
@@ -52,13 +53,10 @@ def solve(state: Any, variant: str, clock: Clock) -> float:
         # FElupe takes nodes without cells out of the system: so a field on the whole mesh
         field = felupe.FieldContainer([felupe.Field(felupe.RegionVertex(whole), dim=3)])
         bounds = felupe.BoundaryDict()
-        nodes, values = problem.prescribed()
         mask = np.zeros(len(problem.points), dtype=bool)
-        mask[nodes] = True
+        mask[problem.prescribed()[0]] = True
         bounds["prescribed"] = felupe.Boundary(field[0], mask=mask)
         held, free = felupe.dof.partition(field, bounds)
-        given = np.zeros((len(mask), 3))
-        given[nodes] = values
         system = felupe.solve.partition(field, K, free, held)
     with clock.step("solve"):
         if variant.startswith("pardiso"):
@@ -67,5 +65,10 @@ def solve(state: Any, variant: str, clock: Clock) -> float:
             solver = {"solver": pypardiso.spsolve}
         else:
             solver = {}
-        u = felupe.solve.solve(*system, ext0=given.ravel()[held], **solver)
-    return float(u @ (K @ u))
+        found = []
+        for k in range(len(problem.motions)):
+            nodes, values = problem.prescribed(k)
+            given = np.zeros((len(mask), 3))
+            given[nodes] = values
+            found.append(felupe.solve.solve(*system, ext0=given.ravel()[held], **solver))
+    return [float(u @ (K @ u)) for u in found]

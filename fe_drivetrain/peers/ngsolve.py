@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.peers.runner import Clock, Problem
 
 NAME = "NGSolve"
+TOGETHER = True
 INSTALL = "pip install ngsolve"
 VARIANTS = {
     "cholesky": ("sparse Cholesky", "direct", "common"),
@@ -54,8 +55,8 @@ def load(problem: Problem) -> Any:
     return problem, ngsolve.Mesh(mesh)
 
 
-def solve(state: Any, variant: str, clock: Clock) -> float:
-    """The stiffness, by NGSolve's own assembly and solver."""
+def solve(state: Any, variant: str, clock: Clock) -> list[float]:
+    """The stiffnesses, by NGSolve's own assembly and solver."""
     import ngsolve as ng
     from ngsolve.krylovspace import CGSolver
 
@@ -64,9 +65,7 @@ def solve(state: Any, variant: str, clock: Clock) -> float:
         mesh.MaterialCF({f"material{i}": float(v) for i, v in enumerate(values)})
         for values in problem.lame()
     )
-    translation = ng.CF(tuple(map(float, problem.translation)))
-    rotation = ng.CF(tuple(map(float, problem.rotation)))
-    motion = translation + ng.Cross(rotation, ng.CF((ng.x, ng.y, ng.z)))
+    motions = [_linear(ng, motion.tolist()) for motion in problem.motions]
     dx = ng.dx
     if variant != "multigrid_own":
         points = [tuple(map(float, point)) for point in problem.rule_points]
@@ -86,18 +85,28 @@ def solve(state: Any, variant: str, clock: Clock) -> float:
             # set up while assembling, as NGSolve has it
             multigrid = None if direct else ng.Preconditioner(a, "multigrid")
             a.Assemble()
-            solution = ng.GridFunction(space)
-            solution.Set(motion, definedon=mesh.Boundaries("moved"))
+            solutions = [ng.GridFunction(space) for _ in motions]
+            for solution, motion in zip(solutions, motions, strict=True):
+                solution.Set(motion, definedon=mesh.Boundaries("moved"))
         with clock.step("solve"):
-            residual = (-a.mat * solution.vec).Evaluate()
             if multigrid is None:
                 inverse = a.mat.Inverse(space.FreeDofs(), inverse="sparsecholesky")
             else:
                 inverse = CGSolver(a.mat, multigrid.mat, tol=TOLERANCE, maxiter=1000)
-            solution.vec.data += inverse * residual
-            if multigrid is not None:
-                clock.iterations = int(inverse.iterations)
-        return float(ng.InnerProduct(solution.vec, (a.mat * solution.vec).Evaluate()))
+            for solution in solutions:
+                residual = (-a.mat * solution.vec).Evaluate()
+                solution.vec.data += inverse * residual
+                if multigrid is not None:
+                    clock.iterations = max(clock.iterations or 0, int(inverse.iterations))
+        return [
+            float(ng.InnerProduct(solution.vec, (a.mat * solution.vec).Evaluate()))
+            for solution in solutions
+        ]
+
+
+def _linear(ng: Any, motion: list[list[float]]) -> Any:
+    """NGSolve's function of place of a motion."""
+    return ng.CF(tuple(a * ng.x + b * ng.y + c * ng.z + t for a, b, c, t in motion))
 
 
 def _as_int32(cells: Any) -> Any:

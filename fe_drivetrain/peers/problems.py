@@ -1,7 +1,7 @@
-"""The two problems that all tools solve: one face held, another moved rigidly."""
+"""The two problems that all tools solve: one face held, another moved."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from skfem.quadrature import get_quadrature
@@ -57,8 +57,8 @@ def torsional_stiffness(material: Material) -> float:
     return float(material.shear_modulus * polar / LENGTH)
 
 
-def of_size(benchmark: Benchmark, unknowns: int) -> Problem:
-    """The problem with about so many displacements.
+def of_size(benchmark: Benchmark, unknowns: int, motions: int = 1) -> Problem:
+    """The problem with about so many displacements, and so many motions of the moved face.
 
     Meshes are tried at sizes that follow from the number at the last: near a coarsest mesh, which
     the shape sets, that number stays above what was asked for.
@@ -70,7 +70,54 @@ def of_size(benchmark: Benchmark, unknowns: int) -> Problem:
         if abs(ratio - 1) < _NEAR:
             break
         factor *= ratio ** (1 / 3)
-    return problem
+    return with_motions(problem, motions)
+
+
+def with_motions(problem: Problem, number: int) -> Problem:
+    """A problem with its own motion first, and others beside it.
+
+    Nine linear motions of a plane face are linearly independent; the tenth is their mean, of which
+    no tool makes use.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a moved face across x, and a motion along an axis or about x.
+    number : int
+        Of motions, up to `MOST_MOTIONS`: translations, rotation about x, stretches and shear in
+        the face, and tilts.
+    """
+    own = problem.motions[0]
+    others = [m for m in _MOTIONS if not np.array_equal(m, own)]
+    independent = np.array([own, *others])
+    return replace(problem, motions=np.array([*independent, independent.mean(axis=0)])[:number])
+
+
+def _translation(axis: int) -> Floats:
+    motion = np.zeros((3, 4))
+    motion[axis, 3] = 1.0
+    return motion
+
+
+def _gradient(*entries: tuple[int, int, float]) -> Floats:
+    """Displacement along i by so many times what lies along j."""
+    motion = np.zeros((3, 4))
+    for i, j, factor in entries:
+        motion[i, j] = factor
+    return motion
+
+
+_TWIST = _gradient((2, 1, 1.0), (1, 2, -1.0))
+_MOTIONS = (
+    *(_translation(axis) for axis in range(3)),
+    _TWIST,
+    _gradient((1, 1, 1.0)),
+    _gradient((2, 2, 1.0)),
+    _gradient((2, 1, 1.0), (1, 2, 1.0)),
+    _gradient((0, 1, 1.0)),
+    _gradient((0, 2, 1.0)),
+)
+MOST_MOTIONS = len(_MOTIONS) + 1
 
 
 def hollow_shaft() -> Benchmark:
@@ -83,7 +130,7 @@ def hollow_shaft() -> Benchmark:
         sizes = MeshSizes(shaft=0.1 * factor, elements_per_turn=_ELEMENTS_PER_TURN)
         mesh = cached_mesh(shaft, [], {}, sizes, frozenset())
         faces = mesh.faces["shaft.rear"], mesh.faces["shaft.front"]
-        return _problem(mesh, [steel], faces, rotation=np.array([1.0, 0.0, 0.0]))
+        return _problem(mesh, [steel], faces, _TWIST)
 
     return Benchmark(
         title="Hollow shaft in torsion",
@@ -105,7 +152,7 @@ def main_bearing() -> Benchmark:
         mesh = mesh_scene(scene.model_copy(update={"mesh": sizes}))
         faces = mesh.faces[f"{name}.housing.base"], mesh.faces["shaft.front"]
         materials = [scene.material_of(part) for part in mesh.part_names]
-        return _problem(mesh, materials, faces, translation=np.array([0.0, 0.0, 1.0]))
+        return _problem(mesh, materials, faces, _translation(2))
 
     return Benchmark(
         title="Main-bearing assembly, front face of the shaft lifted",
@@ -121,11 +168,7 @@ BENCHMARKS: dict[str, Callable[[], Benchmark]] = {"shaft": hollow_shaft, "assemb
 
 
 def _problem(
-    mesh: Mesh,
-    materials: list[Material],
-    faces: tuple[Ints, Ints],
-    translation: Floats | None = None,
-    rotation: Floats | None = None,
+    mesh: Mesh, materials: list[Material], faces: tuple[Ints, Ints], motion: Floats
 ) -> Problem:
     points, weights = get_quadrature(RefTet, DEGREE)
     return Problem(
@@ -136,8 +179,7 @@ def _problem(
         poisson_ratio=np.array([m.poisson_ratio for m in materials]),
         fixed=faces[0],
         moved=faces[1],
-        translation=np.zeros(3) if translation is None else translation,
-        rotation=np.zeros(3) if rotation is None else rotation,
+        motions=motion[None],
         rule_points=np.ascontiguousarray(points.T),
         rule_weights=weights,
     )

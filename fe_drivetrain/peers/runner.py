@@ -11,7 +11,8 @@ TOOL is a module of this folder. It has
 ``load(problem)``
     takes the mesh in, in the tool's own form: what a user has after reading a mesh file,
 ``solve(state, variant, clock)``
-    goes from there to the stiffness, which it returns,
+    goes from there to the stiffnesses, a list, of each motion of the face; without ``TOGETHER``
+    there is one motion, and several are solved one after the other, each from the beginning,
 ``rank()``, ``total(number)``
     where several processes work together: the number of this one, after all have come there; the
     sum over all of them.
@@ -19,6 +20,8 @@ TOOL is a module of this folder. It has
 The clock runs over ``solve`` alone. Before it, the same variant solves the small warm-up problem,
 so that lazy imports and compiled code read from disk burden no tool.
 """
+
+from __future__ import annotations
 
 import importlib.util
 import json
@@ -29,7 +32,7 @@ import time
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -46,7 +49,7 @@ MISSING = 3
 
 @dataclass(frozen=True)
 class Problem:
-    """One face held, another moved rigidly; the stiffness is u^T K u.
+    """One face held, another moved; the stiffness of each motion is u^T K u.
 
     Attributes
     ----------
@@ -60,8 +63,9 @@ class Problem:
         (m,) [Pa], [-].
     fixed, moved : Ints
         (nf, 6) nodes of the triangles of the two faces.
-    translation, rotation : Floats
-        (3,) of the moved face: u = translation + rotation x r [m], [rad].
+    motions : Floats
+        (k, 3, 4) of the moved face: u = A r + t, of the matrix A [-] and the translation t [m]
+        beside it.
     rule_points, rule_weights : Floats
         (q, 3) and (q,) quadrature in the reference tetrahedron, for all tools that take one.
     """
@@ -73,8 +77,7 @@ class Problem:
     poisson_ratio: Floats
     fixed: Ints
     moved: Ints
-    translation: Floats
-    rotation: Floats
+    motions: Floats
     rule_points: Floats
     rule_weights: Floats
 
@@ -83,16 +86,25 @@ class Problem:
         """Displacements that are not prescribed."""
         return 3 * (len(self.points) - len(self.prescribed()[0]))
 
-    def prescribed(self) -> tuple[Ints, Floats]:
+    def prescribed(self, motion: int = 0) -> tuple[Ints, Floats]:
         """Nodes whose displacement is given, (k,), and that displacement, (k, 3) [m]."""
         fixed, moved = np.unique(self.fixed), np.unique(self.moved)
-        values = self.translation + np.cross(self.rotation, self.points[moved])
+        values = moved_by(self.motions[motion], self.points[moved])
         return np.concatenate([fixed, moved]), np.concatenate([np.zeros((len(fixed), 3)), values])
+
+    def one_by_one(self) -> list[Problem]:
+        """The same with one motion each."""
+        return [replace(self, motions=motion[None]) for motion in self.motions]
 
     def lame(self) -> tuple[Floats, Floats]:
         """Lame's constants (lambda, mu) of each material [Pa]."""
         e, nu = self.youngs_modulus, self.poisson_ratio
         return e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
+
+
+def moved_by(motion: Floats, points: Floats) -> Floats:
+    """Displacements (n, 3) of points (n, 3) by a motion (3, 4) of `Problem.motions`."""
+    return points @ motion[:, :3].T + motion[:, 3]
 
 
 def read_problem(path: str | os.PathLike[str]) -> Problem:
@@ -175,19 +187,24 @@ def measure(
     start = time.perf_counter()
     version = tool.version()
     imported = time.perf_counter()
-    tool.solve(tool.load(warm_up), variant, Clock())
+    tool.solve(tool.load(_parts(tool, warm_up)[0]), variant, Clock())
     warm = time.perf_counter()
     baseline = peak_memory()
-    state = tool.load(problem)
-    loaded = time.perf_counter()
     clock = Clock()
     rank = _rank_of(tool)
-    if time_limit > 0:
-        signal.setitimer(signal.ITIMER_REAL, time_limit)
-    begin = time.perf_counter()
-    stiffness = float(tool.solve(state, variant, clock))
-    total = time.perf_counter() - begin - clock.uncounted
-    signal.setitimer(signal.ITIMER_REAL, 0)
+    stiffness: list[float] = []
+    loading = total = 0.0
+    for part in _parts(tool, problem):
+        start_loading = time.perf_counter()
+        state = tool.load(part)
+        loading += time.perf_counter() - start_loading
+        if time_limit > 0:
+            signal.setitimer(signal.ITIMER_REAL, time_limit - total)
+        begin = time.perf_counter()
+        stiffness += map(float, tool.solve(state, variant, clock))
+        total += time.perf_counter() - begin - clock.uncounted
+        loading, clock.uncounted = loading + clock.uncounted, 0.0
+        signal.setitimer(signal.ITIMER_REAL, 0)
     peak = peak_memory() if clock.elsewhere is None else clock.elsewhere
     if hasattr(tool, "total"):
         peak, baseline = tool.total(peak), tool.total(baseline)
@@ -200,11 +217,16 @@ def measure(
         "iterations": clock.iterations,
         "import_seconds": imported - start,
         "warm_up_seconds": warm - imported,
-        "load_seconds": loaded - warm + clock.uncounted,
+        "load_seconds": loading,
         "peak_bytes": peak,
         "baseline_bytes": baseline if clock.elsewhere is None else None,
         "notes": clock.notes,
     }
+
+
+def _parts(tool: ModuleType, problem: Problem) -> list[Problem]:
+    """What a tool solves at a time."""
+    return [problem] if hasattr(tool, "TOGETHER") else problem.one_by_one()
 
 
 def _rank_of(tool: ModuleType) -> int:

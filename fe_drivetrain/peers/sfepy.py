@@ -61,7 +61,7 @@ def load(problem: Problem) -> Any:
     return problem, domain, regions, number
 
 
-def solve(state: Any, variant: str, clock: Clock) -> float:
+def solve(state: Any, variant: str, clock: Clock) -> list[float]:
     """The stiffness, by SfePy's assembly and solver."""
     from sfepy.discrete import (
         Equation,
@@ -118,7 +118,7 @@ def solve(state: Any, variant: str, clock: Clock) -> float:
             for region in materials
         )
     clock.steps["assembly"] -= clock.steps["solve"]
-    return float(stiffness)
+    return [float(stiffness)]
 
 
 class _Timed:
@@ -140,8 +140,10 @@ class _Timed:
 
 
 def _motion(problem: Problem) -> Any:
+    (M,) = problem.motions
+
     def motion(ts: Any, coors: Any, **_: Any) -> Any:
-        return problem.translation + np.cross(problem.rotation, coors)
+        return coors @ M[:, :3].T + M[:, 3]
 
     return motion
 

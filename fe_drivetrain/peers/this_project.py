@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from fe_drivetrain.peers.runner import Clock, Problem
 
 NAME = "this project"
+TOGETHER = True
 INSTALL = "pip install 'fe-drivetrain[pardiso]'"
 VARIANTS = {
     "auto": ("auto", "chosen", "common"),
@@ -35,8 +36,8 @@ def load(problem: Problem) -> Problem:
     return problem
 
 
-def solve(problem: Problem, variant: str, clock: Clock) -> float:
-    """The stiffness."""
+def solve(problem: Problem, variant: str, clock: Clock) -> list[float]:
+    """The stiffnesses, by one solve of all motions."""
     from fe_drivetrain.interfaces import eliminate, fixed
     from fe_drivetrain.operator import assemble, sparsity
     from fe_drivetrain.solve import reduce
@@ -58,11 +59,11 @@ def solve(problem: Problem, variant: str, clock: Clock) -> float:
                 K = part
             else:
                 K.data += part.data
-        nodes, values = problem.prescribed()
-        u = np.zeros((n, 3))
-        u[nodes] = values
+        given = np.zeros((3 * n, len(problem.motions)))
+        for k, column in enumerate(given.T):
+            nodes, values = problem.prescribed(k)
+            column.reshape(-1, 3)[nodes] = values
         elimination = eliminate([fixed("prescribed", nodes, 3 * n)], 3 * n)
-        given = u.reshape(-1, 1)
         system = reduce(problem.points, problem.cells, K, elimination)
         F = np.where(elimination.free[:, None], -(K @ given), 0.0)
     with clock.step("solve"):
@@ -70,4 +71,4 @@ def solve(problem: Problem, variant: str, clock: Clock) -> float:
         moved = given + np.where(elimination.free[:, None], solution.x, 0.0)
     clock.iterations = solution.diagnostics.iterations or None
     clock.notes = {"method": solution.diagnostics.method, "reason": solution.diagnostics.reason}
-    return float((moved.T @ (K @ moved))[0, 0])
+    return [float(stiffness) for stiffness in (moved * (K @ moved)).sum(axis=0)]
