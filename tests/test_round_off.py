@@ -6,7 +6,7 @@ from fe_drivetrain.interfaces.constraints import eliminate, fixed
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.rounding import round_off
+from fe_drivetrain.solve.rounding import judged, round_off
 
 
 def rod(slenderness):
@@ -50,3 +50,14 @@ def test_grows_as_the_fourth_power_of_slenderness():
 def test_nothing_moves_and_nothing_is_lost():
     system, F = rod(5.0)
     assert round_off(system.K, np.zeros_like(F)) == 0.0
+
+
+def test_one_pass_says_the_residual_of_the_worst_column(rng):
+    system, F = rod(5.0)
+    x = rng.standard_normal((F.shape[0], 3))
+    right = np.hstack([F, system.K @ x[:, 1:2], np.zeros_like(F)])
+    found = judged(system.K, x, right)
+    left = np.linalg.norm(right - system.K @ x, axis=0)
+    np.testing.assert_allclose(found.residual, max(left[0] / np.linalg.norm(F), left[2]))
+    assert left[1] < 1e-9 * left[0]
+    assert found.round_off == round_off(system.K, x)

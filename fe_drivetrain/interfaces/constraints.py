@@ -375,11 +375,11 @@ def eliminate(constraints: Sequence[Constraint], n_dofs: int) -> Elimination:
                 "give each interface and support a face of its own"
             )
         owner[constraint.pivots] = number
-    free = np.flatnonzero(owner < 0)
-    keep = _selection(free, n_dofs)
+    keep = _selection(np.flatnonzero(owner < 0), n_dofs)
     T = keep
-    if constraints:
+    if not all(map(_holds_pivots_alone, constraints)):
         C, pivots = _stack(constraints)
+        free = np.flatnonzero(owner < 0)
         right = -C[:, free]
         # Pivots may stand in other rows too, so the (small, sparse) pivot block is solved; only
         # for the columns that are not empty.
@@ -392,6 +392,11 @@ def eliminate(constraints: Sequence[Constraint], n_dofs: int) -> Elimination:
         dependent = sparse.hstack(solved, format="csr") @ _selection(columns, free.size).T
         T = (T + _selection(pivots, n_dofs) @ dependent).tocsr()
     return Elimination((T @ keep.T).tocsr(), owner < 0, tuple(constraints))
+
+
+def _holds_pivots_alone(constraint: Constraint) -> bool:
+    """Whether each row is a number times its pivot, on which nothing else depends."""
+    return np.array_equal(np.sort(constraint.rows.indices), np.sort(constraint.pivots))
 
 
 def _stack(constraints: Sequence[Constraint]) -> tuple[sparse.csc_array, Ints]:

@@ -5,9 +5,11 @@ element adds its blocks in place. Tetrahedra with straight edges take one refere
 curved ones are integrated. Checked against scikit-fem's generic assembly in the tests.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
+from numba import get_num_threads
 from numpy.typing import NDArray
 from scipy import sparse
 
@@ -15,6 +17,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind, is_straight
 from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator.slabs import slabs
 
 
 @dataclass(frozen=True)
@@ -99,13 +102,23 @@ def assemble(
         # The gradients of straight elements are linear at most: a rule of degree 2 is exact.
         gradients, weights = kind.table(2)
         reference = np.einsum("q,qpa,qrb->abpr", weights, gradients, gradients)
-        chosen = np.flatnonzero(affine)
-        kernels.add_affine(points, nodes, chosen, reference, *lame, pattern.slots, data)
     else:
-        affine = np.full(len(cells), False)
+        affine, reference = np.full(len(cells), False), np.zeros((0, 0, 3, 3))
     gradients, weights = kind.table(kind.degree)
-    chosen = np.flatnonzero(~affine)
-    kernels.add_curved(points, nodes, chosen, gradients, weights, *lame, pattern.slots, data)
+
+    def add(some: Ints) -> None:
+        straight, curved = some[affine[some]], some[~affine[some]]
+        if len(straight):  # a loop that is not needed is not compiled either
+            kernels.add_affine(points, nodes, straight, reference, *lame, pattern.slots, data)
+        if len(curved):
+            kernels.add_curved(
+                points, nodes, curved, gradients, weights, *lame, pattern.slots, data
+            )
+
+    apart, between = slabs(points, cells[:, : kind.n_corners])
+    with ThreadPoolExecutor(get_num_threads()) as pool:
+        list(pool.map(add, apart))
+    add(between)
     return sparse.bsr_array(
         (data, pattern.indices, pattern.indptr), shape=(3 * n_blocks, 3 * n_blocks)
     )

@@ -109,7 +109,7 @@ def _add_pair(H: Floats, lam: float, mu: float, data: Floats, ab: int, ba: int) 
                 data[ba, j, i] += value
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, nogil=True)
 def add_affine(
     points: Floats,
     cells: Index,
@@ -153,7 +153,7 @@ def add_affine(
                 _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, nogil=True)
 def add_curved(
     points: Floats,
     cells: Index,
@@ -248,22 +248,26 @@ def invert(blocks: Floats, out: Floats) -> None:
 
 
 @njit(cache=True, parallel=True)
-def keep_dofs(indptr: Index, indices: Index, data: Floats, kept: Floats, diagonal: float) -> None:
+def keep_dofs(
+    indptr: Index, indices: Index, data: Floats, kept: Floats, diagonal: float, out: Floats
+) -> None:
     """Zero rows and columns of degrees of freedom that are not kept, and put ``diagonal`` there.
 
     Parameters
     ----------
     kept : Floats
         (n_nodes, 3): one or zero.
+    out : Floats
+        Takes the blocks; ``data`` itself, or as many others.
     """
     for i in prange(len(indptr) - 1):
         for p in range(indptr[i], indptr[i + 1]):
             j = indices[p]
             for r in range(3):
                 for s in range(3):
-                    data[p, r, s] *= kept[i, r] * kept[j, s]
+                    out[p, r, s] = data[p, r, s] * (kept[i, r] * kept[j, s])
                 if i == j and kept[i, r] == 0.0:
-                    data[p, r, r] = diagonal
+                    out[p, r, r] = diagonal
 
 
 @njit(inline="always")

@@ -2,30 +2,30 @@
 
 The quadratic level is smoothed by Chebyshev polynomials in the block-Jacobi preconditioned
 stiffness, and corrected by the linear elements on the same corners (p-multigrid). Below that,
-smoothed aggregation (Vanek, Mandel, Brezina 1996) with the rigid motions as near-nullspace, made
-by pyamg. Up to twelve right-hand sides go through together: the matrices are read once for all.
+smoothed aggregation (Vanek, Mandel, Brezina 1996) with the rigid motions as near-nullspace. Up to
+twelve right-hand sides go through together: the matrices are read once for all.
 """
 
 import math
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pyamg
+from pyamg.strength import symmetric_strength_of_connection
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.operator import kernels
+from fe_drivetrain.solve.aggregates import coarsened
 from fe_drivetrain.solve.coarse_product import coarse_product
 from fe_drivetrain.solve.reduction import Joints, System, diagonal_blocks, in_blocks
 from fe_drivetrain.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
 
 MAX_ITERATIONS = 150
 
-_LANCZOS_STEPS = 8
+_LANCZOS_STEPS, _MOST_LEVELS = 8, 10
 
 # Diagonals whose rows single precision has the range for; no entry is larger than the diagonal's.
 _SINGLE = np.finfo(np.float32)
@@ -124,7 +124,8 @@ class Hierarchy:
 
     def _cycle(self, number: int, B: Floats) -> Floats:
         if number == len(self.levels):
-            return np.asarray(linalg.cho_solve(self.coarsest, B))
+            factor, lower = self.coarsest
+            return np.asarray(linalg.lapack.dpotrs(factor, B, lower)[0])  # without its checks
         level = self.levels[number]
         X = smooth(level, None, B, self.options)
         R = np.empty_like(B)
@@ -222,31 +223,25 @@ def _joined(joints: Joints, options: Options) -> Joined:
 
 
 def _hierarchy(system: System, options: Options) -> Hierarchy:
-    levels = []
+    levels: list[Level] = []
     K, motions, body = system.K, system.near_nullspace, system.body
     if system.prolongation is not None and options.linear_level:
         P = system.prolongation
-        levels.append(_level(K, P, options.degree, options))
+        levels.append(Level(*_smoothing(K, options), options.degree, P.tocsr(), P.T.tocsr()))
         K = coarse_product(K, P)
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
-    threshold = ("symmetric", {"theta": options.strength})
-    apart = [("predefined", {"C": _within_bodies(K, body)}), threshold]
-    with _repeatable():
-        aggregation = pyamg.smoothed_aggregation_solver(
-            K,
-            B=motions,
-            strength=apart if options.apart else threshold,
-            smooth=options.prolongation_smoother,
-            improve_candidates=None,
-            max_coarse=options.coarsest,
-            keep=False,
-        )
-    for coarse in aggregation.levels[:-1]:
+    connected = _within_bodies(K, body) if options.apart else None
+    while K.shape[0] // K.blocksize[0] > options.coarsest and len(levels) < _MOST_LEVELS:
+        if connected is None:
+            connected = symmetric_strength_of_connection(K, options.strength)
         # Six degrees of freedom an aggregate below the first level: two blocks of three.
+        smoothing = _smoothing(in_blocks(K), options)
         degree = options.coarse_degree if levels else options.degree
-        levels.append(_level(in_blocks(coarse.A), coarse.P, degree, options))
-    last = aggregation.levels[-1].A.toarray()
+        P, motions = coarsened(K, motions, connected, options.prolongation_smoother, *smoothing[1:])
+        levels.append(Level(*smoothing, degree, P.tocsr(), P.T.tocsr()))
+        K, connected = P.T @ K @ P, None
+    last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)
     last[empty, empty] = 1.0
@@ -256,9 +251,8 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         raise InputError(SINGULAR) from error
 
 
-def _level(
-    K: sparse.bsr_array, prolongation: sparse.csr_array, degree: int, options: Options
-) -> Level:
+def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[sparse.bsr_array, Floats, float]:
+    """Stiffness, inverse blocks and largest eigenvalue of a level."""
     diagonal = diagonal_blocks(K)
     sizes = np.einsum("nii->ni", diagonal)  # a view
     sizes[sizes <= 0.0] = 1.0
@@ -266,8 +260,7 @@ def _level(
     kernels.invert(diagonal, inverse)
     if options.single and sizes.min() > _SMALLEST and sizes.max() < _LARGEST:
         K = sparse.bsr_array((K.data.astype(np.float32), K.indices, K.indptr), shape=K.shape)
-    P = prolongation.tocsr()
-    return Level(K, inverse, largest_eigenvalue(K, inverse), degree, P, P.T.tocsr())
+    return K, inverse, largest_eigenvalue(K, inverse)
 
 
 def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
@@ -319,17 +312,6 @@ def _within_bodies(K: sparse.bsr_array, body: Ints) -> sparse.csr_matrix:
         i.astype(np.int32, copy=False) for i in (connected.indices, connected.indptr)
     )
     return connected
-
-
-@contextmanager
-def _repeatable() -> Iterator[None]:
-    """pyamg starts its eigenvalue estimates from NumPy's global generator."""
-    state = np.random.get_state()  # noqa: NPY002
-    np.random.seed(0)  # noqa: NPY002
-    try:
-        yield
-    finally:
-        np.random.set_state(state)  # noqa: NPY002
 
 
 @dataclass(frozen=True)

@@ -147,7 +147,8 @@ def _joints(
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-    bodies = _eliminated(_added(_copied(K), -sums.springs), sums.elimination)
+    bodies = _added(_copied(K), -sums.springs)
+    bodies = _eliminated(bodies, sums.elimination, bodies.data)
     on_ground = _added(bodies, ground.tocsr())
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 
@@ -169,16 +170,19 @@ def _system(
 
 def diagonal_blocks(K: sparse.bsr_array) -> Floats:
     """(n_blocks, 3, 3) diagonal blocks; zero where there are none."""
-    n_blocks = len(K.indptr) - 1
-    here = np.repeat(np.arange(n_blocks), np.diff(K.indptr)) == K.indices
-    diagonal = np.zeros((n_blocks, 3, 3))
-    diagonal[K.indices[here]] = K.data[here]
-    return diagonal
+    places = _diagonal_places(K)
+    return np.where((places < 0)[:, None, None], 0.0, K.data[places])
+
+
+def _diagonal_places(K: sparse.bsr_array) -> Ints:
+    """Where the diagonal blocks stand; -1 where there are none."""
+    nodes = np.arange(len(K.indptr) - 1)
+    return np.asarray(kernels.places(K.indptr, K.indices, nodes, nodes), dtype=np.int64)
 
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
     """T^T K T, with the mean diagonal at eliminated degrees of freedom; K is left as it is."""
-    return _eliminated(_copied(K), elimination)
+    return _eliminated(K, elimination, np.empty_like(K.data))
 
 
 def _copied(K: sparse.bsr_array) -> sparse.bsr_array:
@@ -198,19 +202,20 @@ def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
     return K
 
 
-def _eliminated(kept: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
-    """As `reduced_stiffness`; the stiffness is overwritten."""
+def _eliminated(K: sparse.bsr_array, elimination: Elimination, out: Floats) -> sparse.bsr_array:
+    """As `reduced_stiffness`; ``out``, which may be K's own blocks, takes what keeps its place."""
     T, free = elimination.T, elimination.free
     n = len(free)
-    mean = float(kept.diagonal().mean())
+    mean = float(np.einsum("nii->", diagonal_blocks(K))) / n
     mask = free.astype(float).reshape(-1, 3)
     # What eliminated degrees of freedom pass on to the others: for supports nothing, for joints
     # little.
     pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
-    rows = _rows(kept, pivots)
-    kernels.keep_dofs(kept.indptr, kept.indices, kept.data, mask, mean)
+    rows = _rows(K, pivots)
+    kernels.keep_dofs(K.indptr, K.indices, K.data, mask, mean, out)
+    kept = sparse.bsr_array((out, K.indices, K.indptr), shape=K.shape)
     # Degrees of freedom of reference points have no block of their own yet.
-    bare = (~free & (kept.diagonal() == 0.0)).astype(float)
+    bare = (~free & np.repeat(_diagonal_places(K) < 0, 3)).astype(float)
     if len(pivots) == 0 and not bare.any():
         return kept
     place = sparse.csr_array(
@@ -290,13 +295,7 @@ def _prolongation(
     columns = np.concatenate(
         [(3 * corner[:, None] + np.arange(3)).ravel(), np.arange(3 * n_nodes, n)]
     )
-    spread = sparse.block_diag(
-        [
-            sparse.kron(from_corners[:, corner], sparse.eye_array(3)),
-            sparse.eye_array(n - 3 * n_nodes),
-        ],
-        format="csr",
-    )
+    spread = _for_each_axis(from_corners[:, corner], n - 3 * n_nodes)
     constrained = T[columns][:, columns]
     keep = sparse.diags_array(free.astype(float))
     eliminated = np.flatnonzero(~free[columns])
@@ -304,3 +303,25 @@ def _prolongation(
         (np.ones(len(eliminated)), (columns[eliminated], eliminated)), shape=spread.shape
     )
     return (keep @ spread @ constrained + diagonal).tocsr(), columns
+
+
+def _for_each_axis(weights: sparse.csr_array, others: int) -> sparse.csr_array:
+    """Weights of nodes for each of their three displacements; others keep to themselves.
+
+    What `scipy.sparse.kron` and `block_diag` give, which sort all entries by their places.
+    """
+    counts = np.repeat(np.diff(weights.indptr), 3)
+    indptr = np.concatenate([[0], np.cumsum(counts)])
+    entries = np.arange(indptr[-1]) + np.repeat(
+        np.repeat(weights.indptr[:-1], 3) - indptr[:-1], counts
+    )
+    axes = np.repeat(np.arange(len(counts)) % 3, counts)
+    n, m = 3 * weights.shape[0], 3 * weights.shape[1]
+    return sparse.csr_array(
+        (
+            np.concatenate([weights.data[entries], np.ones(others)]),
+            np.concatenate([3 * weights.indices[entries] + axes, np.arange(m, m + others)]),
+            np.concatenate([indptr, indptr[-1] + np.arange(1, others + 1)]),
+        ),
+        shape=(n + others, m + others),
+    )

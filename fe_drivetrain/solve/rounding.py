@@ -1,5 +1,7 @@
 """What rounding does to a slender or thin solid before any solver sees it."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
@@ -9,6 +11,39 @@ from fe_drivetrain.common.arrays import Floats
 
 # An entry is a sum over a handful of elements and the points of their quadrature.
 _EPS = 4.0 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What one pass over the stiffness says of solutions.
+
+    Attributes
+    ----------
+    residual : float
+        |f - K x| over |f|, of the worst column; |K x| where f is zero.
+    round_off : float
+        As of `round_off`.
+    """
+
+    residual: float
+    round_off: float
+
+
+def judged(K: sparse.bsr_array, x: Floats, F: Floats) -> Judged:
+    """Residual and round-off of solutions.
+
+    Parameters
+    ----------
+    K : sparse.bsr_array
+        (n, n) symmetric positive definite, 3x3 blocks.
+    x, F : Floats
+        (n, m) solutions and right-hand sides.
+    """
+    sums = _sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x), np.ascontiguousarray(F))
+    sizes, energies, squares = (values.sum(axis=0) for values in sums)
+    size = np.linalg.norm(F, axis=0)
+    size[size == 0.0] = 1.0
+    return Judged(float((np.sqrt(squares) / size).max()), _lost(sizes, energies))
 
 
 def round_off(K: sparse.bsr_array, x: Floats) -> float:
@@ -35,29 +70,41 @@ def round_off(K: sparse.bsr_array, x: Floats) -> float:
     relative
         Of the worst column; those that are zero do not count.
     """
-    sizes, energies = _sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x))
-    there = sizes.sum(axis=0) > 0.0
+    return judged(K, x, np.zeros_like(x)).round_off
+
+
+def _lost(sizes: Floats, energies: Floats) -> float:
+    """Round-off of each column's sums."""
+    there = sizes > 0.0
     if not there.any():
         return 0.0
-    size, energy = sizes.sum(axis=0)[there], energies.sum(axis=0)[there]
+    size, energy = sizes[there], energies[there]
     # Where rounding leaves no positive energy, it may have done anything.
     return float(_EPS * np.max(size / np.maximum(energy, _EPS * size)))
 
 
 @njit(cache=True, parallel=True)
 def _sums(
-    indptr: NDArray[np.int32], indices: NDArray[np.int32], data: Floats, X: Floats
-) -> tuple[Floats, Floats]:
-    """Sums over each block row of |x_i K_ij x_j| and of x_i K_ij x_j, for each column."""
+    indptr: NDArray[np.int32], indices: NDArray[np.int32], data: Floats, X: Floats, F: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Of each block row and column |x_i K_ij x_j|, x_i K_ij x_j and (f_i - K_ij x_j)^2, summed."""
     n, m = len(indptr) - 1, X.shape[1]
-    size, energy = np.zeros((n, m)), np.zeros((n, m))
+    size, energy, square = np.zeros((n, m)), np.zeros((n, m)), np.zeros((n, m))
     for i in prange(n):
+        force, largest = np.zeros((3, m)), np.zeros((3, m))
         for p in range(indptr[i], indptr[i + 1]):
-            c = indices[p]
+            c = 3 * indices[p]
             for r in range(3):
                 for s in range(3):
+                    entry = data[p, r, s]
                     for k in range(m):
-                        term = X[3 * i + r, k] * data[p, r, s] * X[3 * c + s, k]
-                        energy[i, k] += term
-                        size[i, k] += abs(term)
-    return size, energy
+                        term = entry * X[c + s, k]
+                        force[r, k] += term
+                        largest[r, k] += abs(term)
+        for r in range(3):
+            for k in range(m):
+                x = X[3 * i + r, k]
+                size[i, k] += abs(x) * largest[r, k]
+                energy[i, k] += x * force[r, k]
+                square[i, k] += (F[3 * i + r, k] - force[r, k]) ** 2
+    return size, energy, square

@@ -14,7 +14,7 @@ from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.solve import direct_solvers, multigrid, petsc, schwarz
 from fe_drivetrain.solve.cost_model import predict
 from fe_drivetrain.solve.reduction import System
-from fe_drivetrain.solve.rounding import round_off
+from fe_drivetrain.solve.rounding import judged
 
 METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz", *petsc.METHODS)
 
@@ -110,17 +110,14 @@ class Solver:
         start = time.perf_counter()
         found = self.iterate(F)
         seconds = time.perf_counter() - start
-        K = self.system.K
-        size = np.linalg.norm(F, axis=0)
-        size[size == 0.0] = 1.0
-        residual = float((np.linalg.norm(K @ found.x - F, axis=0) / size).max())
+        judgement = judged(self.system.K, found.x, F)
+        residual, lost = judgement.residual, judgement.round_off
         iterative = self.method in ITERATIVE
         # A factor of a singular matrix may well exist, by round-off, with anything in it.
         if not np.isfinite(residual) or (not iterative and residual > _USELESS):
             raise InputError(SINGULAR)
         if found.energy_error > self.tolerance and iterative:
             return self._instead(F, found, residual, seconds)
-        lost = round_off(K, found.x)
         if lost > _LOST:
             raise InputError(
                 f"the body is so soft beside its elements, or so softly held, that rounding may "
