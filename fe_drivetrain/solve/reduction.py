@@ -19,11 +19,12 @@ from fe_drivetrain.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import kernels
+from fe_drivetrain.solve.own_rows import passed_on
 from fe_drivetrain.solve.sums import Sums, sums_of
 
 #: Ground under the faces of joints, relative to the mean stiffness of a degree of freedom. It is in
 #: preconditioners alone: answers are without it.
-_GROUND = 1e-4
+GROUND = 1e-4
 
 
 @dataclass(frozen=True)
@@ -146,7 +147,7 @@ def _joints(
     """Joints and bodies apart; arguments as of `reduce`."""
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
-    ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
+    ground = GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
     bodies = _eliminated(_added(_copied(K), -sums.springs), sums.elimination)
     on_ground = _added(bodies, ground.tocsr())
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
@@ -157,7 +158,7 @@ def _system(
 ) -> System:
     """A reduced stiffness with its corners, motions and bodies."""
     T, free = elimination.T, elimination.free
-    motions = _motions_with_points(points, elimination)
+    motions = motions_with_points(points, elimination)
     body = np.full(len(free) // 3, -1)
     body[: len(points)] = connected_bodies(cells, len(points))
     prolongation = None
@@ -201,38 +202,15 @@ def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
 def _eliminated(kept: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
     """As `reduced_stiffness`; the stiffness is overwritten."""
     T, free = elimination.T, elimination.free
-    n = len(free)
     mean = float(kept.diagonal().mean())
-    mask = free.astype(float).reshape(-1, 3)
-    # What eliminated degrees of freedom pass on to the others: for supports nothing, for joints
-    # little.
-    pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
-    rows = _rows(kept, pivots)
-    kernels.keep_dofs(kept.indptr, kept.indices, kept.data, mask, mean)
+    passed = passed_on(kept, T, free)
+    kernels.keep_dofs(kept.indptr, kept.indices, kept.data, free.astype(float).reshape(-1, 3), mean)
     # Degrees of freedom of reference points have no block of their own yet.
     bare = (~free & (kept.diagonal() == 0.0)).astype(float)
-    if len(pivots) == 0 and not bare.any():
+    if passed.nnz == 0 and not bare.any():
         return kept
-    place = sparse.csr_array(
-        (np.ones(len(pivots)), (np.arange(len(pivots)), pivots)), shape=(len(pivots), n)
-    )
-    dependent = place @ T
-    across = dependent.T @ rows @ sparse.diags_array(free.astype(float))
-    passed = across + across.T + dependent.T @ (rows @ place.T) @ dependent
     passed = passed + mean * sparse.diags_array(bare)
     return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
-
-
-def _rows(K: sparse.bsr_array, chosen: Ints) -> sparse.csr_array:
-    """Some rows of a matrix in blocks; to select them by a product would convert all of it."""
-    nodes, place = np.unique(chosen // 3, return_inverse=True)
-    counts = np.diff(K.indptr)[nodes]
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    entries = np.arange(starts[-1]) + np.repeat(K.indptr[nodes] - starts[:-1], counts)
-    blocks = sparse.bsr_array(
-        (K.data[entries], K.indices[entries], starts), shape=(3 * len(nodes), K.shape[1])
-    )
-    return blocks.tocsr()[3 * place + chosen % 3]
 
 
 def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
@@ -243,7 +221,7 @@ def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
     return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
 
 
-def _motions_with_points(points: Floats, elimination: Elimination) -> Floats:
+def motions_with_points(points: Floats, elimination: Elimination) -> Floats:
     """(n_dofs, 6) rigid motions; reference points follow through their constraints."""
     n = 3 * len(points)
     motions = np.zeros((len(elimination.free), 6))
