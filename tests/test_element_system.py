@@ -1,12 +1,12 @@
 """Rows that each process makes of its own elements are those of the default's assembly."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from element_systems import RUBBER, SYSTEMS
 from scipy import sparse
 
-from fe_drivetrain.interfaces.constraints import eliminate, fixed, held_nodes
-from fe_drivetrain.interfaces.mortar import mortar_tie
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator.element_matrices import element_stiffness
@@ -15,13 +15,10 @@ from fe_drivetrain.operator.incompressible import (
     full_rule,
     unlocked_functions,
 )
-from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.scene.materials import MATERIALS
-from fe_drivetrain.solve.element_system import Cut, ElementSystem, cut
+from fe_drivetrain.solve.element_system import Cut, cut, parts
 from fe_drivetrain.solve.own_rows import assembled, keep, kept, own_rows, own_trace
 from fe_drivetrain.solve.reduction import GROUND
-
-RUBBER = (4.95e9, 5e7)  # nu = 0.495
 
 
 def bent(x):
@@ -48,45 +45,6 @@ def test_elements_are_those_that_the_default_assembles(nodes, lame, shape):
     n = block.points.size
     exact = assemble_unlocked(block.points, cells, lame).toarray()
     assert np.abs(total.reshape(n, n) - exact).max() < 1e-13 * np.abs(exact).max()
-
-
-def of_scene(*arguments, **changes):
-    scene = coarse_scene(*arguments, **changes)
-    model = build_model(scene, mesh_scene(scene))
-    return model, ElementSystem(
-        model.mesh.points,
-        [
-            (model.mesh.cells[model.mesh.part_cells(p)], scene.material_of(p).lame)
-            for p in model.mesh.part_names
-        ],
-        eliminate(model.constraints, model.n_dofs),
-        model.springs,
-    )
-
-
-def tied_blocks():
-    """Two blocks of two materials and meshes, tied by a mortar; held at one end."""
-    one = brick((3, 3, 2), 10, lambda x: x * [1.0, 1.0, 0.7])
-    other = brick((2, 2, 2), 10, lambda x: x * [1.0, 1.0, 0.8] - [0.0, 0.0, 0.8])
-    points = np.vstack([one.points, other.points])
-    shift = len(one.points)
-    n = points.size
-    tie = mortar_tie("tie", points, one.faces["z0"], other.faces["z1"] + shift, n)
-    bottom = fixed("bottom", np.unique(other.faces["z0"]) + shift, n)
-    side = held_nodes("side", np.unique(one.faces["z1"])[:3], (0,), n)
-    materials = MATERIALS["steel"].lame, RUBBER
-    cells = [(one.cells, materials[0]), (other.cells + shift, materials[1])]
-    return ElementSystem(points, cells, eliminate([tie, bottom, side], n))
-
-
-SYSTEMS = {
-    "bonded": lambda: of_scene("bonded")[1],
-    "sliding": lambda: of_scene("spherical")[1],
-    "averaged": lambda: of_scene("spherical", **{"bearing_units.0.interface": "averaged"})[1],
-    "rigid": lambda: of_scene("spherical", **{"bearing_units.0.interface": "rigid"})[1],
-    "rollers": lambda: of_scene("spherical", **{"bearing_units.0.interface": "rollers"})[1],
-    "mortar": tied_blocks,
-}
 
 
 @pytest.fixture(scope="module", params=SYSTEMS)
@@ -126,3 +84,14 @@ def test_rows_are_those_of_the_default(system, count, tmp_path):
     if joints is not None:
         found, exact = stacked(cut(system, count), tmp_path, 1), joints().bodies.K.tocsr()
         assert abs(found - exact).max() < 1e-13 * abs(exact).max()
+
+
+def test_parts_are_equal_and_compact(rng):
+    points = rng.uniform(size=(1003, 3)) * [10.0, 1.0, 1.0]
+    order = parts(points, 5)
+    assert sorted(order) == list(range(1003))
+    runs = np.split(order, np.cumsum([201, 201, 201, 200]))
+    assert [len(run) for run in runs] == [201, 201, 201, 200, 200]
+    # along the long axis
+    ends = [(points[run, 0].min(), points[run, 0].max()) for run in runs]
+    assert all(high <= low for (_, high), (low, _) in pairwise(ends))

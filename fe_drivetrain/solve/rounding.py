@@ -36,12 +36,16 @@ def round_off(K: sparse.bsr_array, x: Floats) -> float:
         Of the worst column; those that are zero do not count.
     """
     sizes, energies = _sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x))
-    there = sizes.sum(axis=0) > 0.0
+    return worst(sizes.sum(axis=0), energies.sum(axis=0))
+
+
+def worst(size: Floats, energy: Floats) -> float:
+    """The same of |x|.|K||x| and x.K x (m,) of each column."""
+    there = size > 0.0
     if not there.any():
         return 0.0
-    size, energy = sizes.sum(axis=0)[there], energies.sum(axis=0)[there]
     # Where rounding leaves no positive energy, it may have done anything.
-    return float(_EPS * np.max(size / np.maximum(energy, _EPS * size)))
+    return float(_EPS * np.max(size[there] / np.maximum(energy[there], _EPS * size[there])))
 
 
 @njit(cache=True, parallel=True)

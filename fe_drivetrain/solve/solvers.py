@@ -13,6 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.solve import direct_solvers, multigrid, petsc, schwarz
 from fe_drivetrain.solve.cost_model import predict
+from fe_drivetrain.solve.element_system import ElementSystem
 from fe_drivetrain.solve.reduction import System
 from fe_drivetrain.solve.rounding import round_off
 
@@ -85,7 +86,7 @@ class Solution:
 class Solver:
     """A system with its factor or hierarchy, ready for right-hand sides; made by `factorise`."""
 
-    system: System
+    system: System | ElementSystem
     method: str
     reason: str
     tolerance: float
@@ -110,17 +111,14 @@ class Solver:
         start = time.perf_counter()
         found = self.iterate(F)
         seconds = time.perf_counter() - start
-        K = self.system.K
-        size = np.linalg.norm(F, axis=0)
-        size[size == 0.0] = 1.0
-        residual = float((np.linalg.norm(K @ found.x - F, axis=0) / size).max())
+        residual = self._residual(F, found)
         iterative = self.method in ITERATIVE
         # A factor of a singular matrix may well exist, by round-off, with anything in it.
         if not np.isfinite(residual) or (not iterative and residual > _USELESS):
             raise InputError(SINGULAR)
         if found.energy_error > self.tolerance and iterative:
             return self._instead(F, found, residual, seconds)
-        lost = round_off(K, found.x)
+        lost = self._round_off(found)
         if lost > _LOST:
             raise InputError(
                 f"the body is so soft beside its elements, or so softly held, that rounding may "
@@ -144,6 +142,21 @@ class Solver:
         )
         return Solution(found.x, diagnostics)
 
+    def _residual(self, F: Floats, found: multigrid.Iteration) -> float:
+        """Largest |K x - F| / |F| over the columns."""
+        if isinstance(found, petsc.Checked):
+            return found.residual
+        assert isinstance(self.system, System)
+        size = np.linalg.norm(F, axis=0)
+        size[size == 0.0] = 1.0
+        return float((np.linalg.norm(self.system.K @ found.x - F, axis=0) / size).max())
+
+    def _round_off(self, found: multigrid.Iteration) -> float:
+        if isinstance(found, petsc.Checked):
+            return found.round_off
+        assert isinstance(self.system, System)
+        return round_off(self.system.K, found.x)
+
     def _instead(
         self, F: Floats, found: multigrid.Iteration, residual: float, seconds: float
     ) -> Solution:
@@ -155,7 +168,8 @@ class Solver:
         )
         tried = {"schwarz": ("multigrid", "schwarz"), "multigrid": ("multigrid",)}
         left_out = tried.get(self.method, ())
-        costs = [c for c in predict(self.system, F.shape[1]) if c.method not in left_out]
+        system = self.system if isinstance(self.system, System) else self.system.whole()
+        costs = [c for c in predict(system, F.shape[1]) if c.method not in left_out]
         cost = min(costs, key=lambda c: (not c.fits, c.seconds))
         if not cost.fits:
             what = "patches" if cost.method == "schwarz" else "a direct factor"
@@ -164,7 +178,7 @@ class Solver:
                 f"{cost.bytes / 2**30:.1f} GiB of memory, more than there is: use a coarser mesh "
                 "or thicker walls"
             )
-        other = factorise(self.system, cost.method, F.shape[1], self.tolerance)
+        other = factorise(system, cost.method, F.shape[1], self.tolerance)
         solution = other.solve(F)
         after = solution.diagnostics
         diagnostics = replace(
@@ -176,14 +190,18 @@ class Solver:
 
 
 def factorise(
-    system: System, method: str = "auto", n_rhs: int = 1, tolerance: float = TOLERANCE
+    system: System | ElementSystem,
+    method: str = "auto",
+    n_rhs: int = 1,
+    tolerance: float = TOLERANCE,
 ) -> Solver:
     """Set up a solver: a factor, a hierarchy of coarser levels, or patches.
 
     Parameters
     ----------
-    system : System
-        From `reduction.reduce`.
+    system : System or ElementSystem
+        From `reduction.reduce`, or not assembled: ``petsc`` and ``petsc-mumps`` assemble it in
+        parts, others here.
     method : str
         ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
         ``schwarz`` (for thin and slender solids of any size), ``petsc`` and ``petsc-mumps`` (in
@@ -202,7 +220,10 @@ def factorise(
     if method not in METHODS:
         raise InputError(f"solver {method!r} is unknown: use one of {', '.join(METHODS)}")
     reason = "as asked"
+    if isinstance(system, ElementSystem) and method not in petsc.METHODS:
+        system = system.whole()
     if method == "auto":
+        assert isinstance(system, System)
         chosen, *others = predict(system, n_rhs)
         method = chosen.method
         reason = f"{chosen}; {', '.join(map(str, others))}" if others else f"{chosen}"
@@ -219,7 +240,9 @@ def factorise(
         def iterate(F: Floats) -> multigrid.Iteration:
             return ranks.solve(F, tolerance)
 
-    elif method in ITERATIVE:
+        return Solver(system, method, reason, tolerance, time.perf_counter() - start, held, iterate)
+    assert isinstance(system, System)
+    if method in ITERATIVE:
         made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
         held = made.bytes
 
@@ -249,7 +272,7 @@ def _refined(system: System, factor: direct_solvers.Factor, F: Floats) -> multig
 
 
 def solve(
-    system: System, F: Floats, method: str = "auto", tolerance: float = TOLERANCE
+    system: System | ElementSystem, F: Floats, method: str = "auto", tolerance: float = TOLERANCE
 ) -> Solution:
     """Set up and solve once; arguments as of `factorise` and `Solver.solve`."""
     return factorise(system, method, F.shape[1], tolerance).solve(F)
