@@ -38,6 +38,9 @@ from fe_drivetrain.solve.rounding import worst
 
 METHODS = ("petsc", "petsc-mumps")
 
+Facts = dict[str, Any]
+"""What processes say of their work; see `Ranks`."""
+
 MOST = 400
 """Iterations: 30 to 50 of GAMG are usual, a rigid spherical joint took 94 and more."""
 
@@ -99,8 +102,8 @@ class Ranks:
         Memory that setting up took of all processes together.
     facts : dict
         What the first process answered then: number of processes; of each process the bytes that
-        its part took and its largest memory in all, its entries and its elements; seconds of
-        handing over (of this process), of reading or assembling, and of setting up.
+        its part took and its largest memory in all, its entries and its elements; seconds and
+        bytes of handing over, by this process; seconds of reading or assembling, and of setting up.
 
     Raises
     ------
@@ -131,8 +134,10 @@ class Ranks:
         start = time.perf_counter()
         self._order = hand_over(self._folder, system, method, count)
         seconds = time.perf_counter() - start
+        size = sum(file.stat().st_size for file in self._folder.rglob("*.np[yz]"))
         self._say({})
-        self.facts = self._answer() | {"ranks": count, "hand_over_seconds": seconds}
+        handed = {"ranks": count, "hand_over_seconds": seconds, "hand_over_bytes": size}
+        self.facts: Facts = self._answer() | handed
         self.bytes = sum(self.facts["bytes"])
         self._number = 0
 
