@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -247,24 +247,21 @@ class Model:
         """What n unknowns take on so many processes, with the band of all laws together."""
         each, doublings = n / count, float(np.log2(count))
 
-        def seconds(assembly: float, set_up: float, iteration: float, its: float) -> float:
+        def seconds(of: Callable[[PowerLaw, float], float]) -> float:
+            its = of(self.iterations, n)
             waiting = (self.set_up_messages + its * self.messages) * doublings
-            return assembly + set_up + its * iteration + waiting
+            here = of(self.assembly, each) + of(self.set_up, each) + its * of(self.iteration, each)
+            return here + waiting
 
-        local = (self.assembly, self.set_up, self.iteration)
         its = self.iterations(n)
-        low, high = (
-            seconds(*(law.band(each)[k] for law in local), self.iterations.band(n)[k])
-            for k in (0, 1)
-        )
         return {
             PROCESSES: count,
             EACH: each,
             ITERATIONS: its,
             "messages [s]": (self.set_up_messages + its * self.messages) * doublings,
-            "time [s]": seconds(*(law(each) for law in local), its),
-            "at least [s]": low,
-            "at most [s]": high,
+            "time [s]": seconds(lambda law, x: law(x)),
+            "at least [s]": seconds(lambda law, x: law.band(x)[0]),
+            "at most [s]": seconds(lambda law, x: law.band(x)[1]),
             MEMORY: self.memory(each) / 1e6,
             "memory [TB]": self.memory(each) * count / 1e12,
             "memory at most [TB]": self.memory.band(each)[1] * count / 1e12,

@@ -35,8 +35,10 @@ def hand_over(folder: Path, system: ElementSystem | System, method: str, count: 
     order
         (n_blocks,) node blocks in the order of the processes.
     """
-    write = _elements if isinstance(system, ElementSystem) else _matrices
-    order, setup = write(folder, system, method, count)
+    if isinstance(system, ElementSystem):
+        order, setup = _elements(folder, system, method, count)
+    else:
+        order, setup = _matrices(folder, system, method, count)
     (folder / "setup.json").write_text(json.dumps({"method": method, **setup}))
     return order
 

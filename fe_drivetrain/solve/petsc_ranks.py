@@ -256,7 +256,7 @@ class Rank:
         vector, found = self.vector(values), PETSc.Vec().createSeq(len(chosen))
         index = PETSc.IS().createGeneral(chosen.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
         PETSc.Scatter().create(vector, index, found, None).scatter(vector, found)
-        return found.getArray().copy()
+        return np.array(found.getArray())
 
     def _column(self, f: Floats, tolerance: float, most: int) -> tuple[Floats, int, float]:
         """Conjugate gradients, with the end of `multigrid.iterates`."""
