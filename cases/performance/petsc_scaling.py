@@ -28,7 +28,7 @@ TOLERANCE = 1e-10
 SMALL = 500
 TARGET = 1e9
 #: Processes that the target is extrapolated to.
-MANY = (2048, 8192, 32768)
+MANY = (8192, 16384, 32768)
 #: Parts whose border is counted.
 PARTS = (2, 4, 8, 16, 32, 64)
 
@@ -206,8 +206,10 @@ class Model:
     ----------
     assembly, set_up, iteration, memory : PowerLaw
         A, S and I [s], and memory of a process [bytes], of its number of unknowns.
-    iterations, handing : PowerLaw
-        i, and seconds of handing over, of the number of unknowns.
+    iterations : PowerLaw
+        i, of the number of unknowns; never fewer than measured.
+    handing : float
+        Seconds of handing over an unknown, of the largest system.
     set_up_messages, messages : float
         l_s and l, of a system so small that nothing but messages counts [s].
     """
@@ -217,7 +219,7 @@ class Model:
     iteration: PowerLaw
     memory: PowerLaw
     iterations: PowerLaw
-    handing: PowerLaw
+    handing: float
     set_up_messages: float
     messages: float
 
@@ -238,7 +240,7 @@ class Model:
             law(ITERATION, unit=1e-3),
             law(MEMORY, unit=1e6),
             law(ITERATIONS, SIZE),
-            law(HANDING, SIZE),
+            float(rows[-1][HANDING]) / float(rows[-1][SIZE]),
             float(small[SET_UP]) / doublings,
             float(small[ITERATION]) / 1e3 / doublings,
         )
@@ -247,13 +249,15 @@ class Model:
         """What n unknowns take on so many processes, with the band of all laws together."""
         each, doublings = n / count, float(np.log2(count))
 
+        fewest = float(self.iterations.y.max())
+
         def seconds(of: Callable[[PowerLaw, float], float]) -> float:
-            its = of(self.iterations, n)
+            its = max(fewest, of(self.iterations, n))
             waiting = (self.set_up_messages + its * self.messages) * doublings
             here = of(self.assembly, each) + of(self.set_up, each) + its * of(self.iteration, each)
             return here + waiting
 
-        its = self.iterations(n)
+        its = max(fewest, self.iterations(n))
         return {
             PROCESSES: count,
             EACH: each,
@@ -265,7 +269,7 @@ class Model:
             MEMORY: self.memory(each) / 1e6,
             "memory [TB]": self.memory(each) * count / 1e12,
             "memory at most [TB]": self.memory.band(each)[1] * count / 1e12,
-            HANDING: self.handing(n),
+            HANDING: self.handing * n,
         }
 
     def laws(self) -> list[Record]:
@@ -276,7 +280,6 @@ class Model:
             "an iteration [s], of the unknowns of a process": self.iteration,
             "memory of a process [bytes], of its unknowns": self.memory,
             "iterations, of all unknowns": self.iterations,
-            "handing over [s], of all unknowns": self.handing,
         }
         return [
             {
