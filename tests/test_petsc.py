@@ -9,10 +9,12 @@ from conftest import coarse_scene
 from element_systems import SYSTEMS
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.interfaces.constraints import eliminate
+from fe_drivetrain.interfaces.constraints import eliminate, fixed
+from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.response.model import build_model, mesh_scene
+from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.solve import petsc
-from fe_drivetrain.solve.element_system import ElementSystem
+from fe_drivetrain.solve.element_system import ElementSystem, cut
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import factorise, solve
 
@@ -91,6 +93,37 @@ def answered(kind):
     F[3 * far[:1] + 1, 0], F[3 * far[:2] + 2, 1] = 1.0, [1.0, -1.0]
     F = system.elimination.T.T @ F
     return system, F, solve(system, F, tolerance=1e-10)
+
+
+@pytest.mark.needs("mpiexec")
+def test_more_processes_have_less_memory_each(with_petsc, monkeypatch):
+    """Of a bar of 38 thousand unknowns; interpreter and libraries left out."""
+    block = brick((28, 7, 7), 10, lambda x: x * [4.0, 1.0, 1.0])
+    n = block.points.size
+    end = fixed("end", np.flatnonzero(block.points[:, 0] == 0.0), n)
+    steel = MATERIALS["steel"].lame
+    system = ElementSystem(block.points, [(block.cells, steel)], eliminate([end], n))
+    facts = []
+    for ranks in (1, 2, 4):
+        monkeypatch.setenv(petsc.MPI_VARIABLE, f"mpiexec -n {ranks}")
+        facts.append(petsc.Ranks(system, "petsc").facts)
+        assert facts[-1]["ranks"] == len(facts[-1]["bytes"]) == ranks
+        assert max(facts[-1]["nnz"]) < 1.1 * sum(facts[-1]["nnz"]) / ranks
+        assert sum(facts[-1]["elements"]) == cut(system, ranks).cells_of.nnz
+    one, two, four = (max(fact["bytes"]) for fact in facts)
+    assert two < 0.8 * one
+    assert four < 0.8 * two
+    assert sum(facts[0]["elements"]) == len(system.cells)
+
+
+@pytest.mark.needs("mpiexec")
+def test_parts_that_stop_short_are_put_together(with_petsc, monkeypatch):
+    system, F, exact = answered("mortar")
+    monkeypatch.setenv(petsc.MPI_VARIABLE, "mpiexec -n 2")
+    monkeypatch.setattr(petsc, "MOST", 3)
+    found = solve(system, F, "petsc", tolerance=1e-10)
+    assert "petsc stopped after 3 iterations" in found.diagnostics.reason
+    assert (np.abs(found.x - exact.x) < 1e-8 * np.abs(exact.x).max(axis=0)).all()
 
 
 def test_without_petsc_it_is_said_how_to_get_it(jointed, monkeypatch):
