@@ -35,7 +35,7 @@ class PowerLaw:
     @property
     def misfit(self) -> float:
         """Largest relative difference of the points from the line."""
-        return max(abs(self(x) / y - 1.0) for x, y in zip(self.x, self.y, strict=True))
+        return float(max(abs(self(x) / y - 1.0) for x, y in zip(self.x, self.y, strict=True)))
 
     def band(self, x: float, level: float = 0.95) -> tuple[float, float]:
         """Between what a further measurement at x would be found.
