@@ -4,8 +4,11 @@ import os
 import time
 from pathlib import Path
 
+import numpy as np
+
 from fe_drivetrain.commands.loads_digest import Digest, Options
 from fe_drivetrain.commands.loads_page import kept_digest
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.suite.page import Page
@@ -34,6 +37,13 @@ def digest_with_death(
     if dies:
         await_kill(folder / "mark")
     return kept_digest(report, file, options, resume=True)
+
+
+def samples_with_death(folder: Path, number: int) -> Floats:
+    """A piece of a history; whoever reads the sixth one first, dies."""
+    if number == 5:
+        await_kill(folder / "mark")
+    return np.random.default_rng(number).standard_normal(300)
 
 
 def wait(report: Progress, mark: Path) -> None:

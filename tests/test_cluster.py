@@ -22,11 +22,12 @@ from fe_drivetrain.commands.loads_digest import Options
 from fe_drivetrain.common import jobs as jobs_module
 from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.jobs import mapped, pool, scheduled_by
+from fe_drivetrain.common.jobs import AT_ONCE, mapped, pool, scheduled_by
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import compare_designs
+from fe_drivetrain.histories.farm import Counting, counted_histories, piece
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.suite import _run, run_cases
@@ -262,6 +263,33 @@ def test_no_file_is_lost_or_counted_twice_when_a_worker_is_killed(
     for one, other in zip(found, here, strict=True):
         assert one.keys() == other.keys()
         assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+
+
+def test_a_farm_is_counted_the_same_when_a_worker_is_killed(
+    cluster: Cluster, killed: Path, tmp_path: Path
+) -> None:
+    """In runs of one piece and of two, of which a worker that counts one dies."""
+    cluster.add_worker()
+    counting = Counting(-3)
+    names = ("a", "b")
+
+    def pieces() -> Iterator[tuple[str, tuple[Path, int]]]:
+        return ((name, (tmp_path, k)) for name in names for k in range(AT_ONCE))
+
+    with scheduled_by(cluster.address):
+        found = dict(counted_histories(cluster_jobs.samples_with_death, pieces(), counting))
+    assert (tmp_path / "mark").exists()
+    here = dict(counted_histories(cluster_jobs.samples_with_death, pieces(), counting))
+    whole = piece(
+        np.concatenate([cluster_jobs.samples_with_death(tmp_path, k) for k in range(AT_ONCE)]),
+        counting,
+    ).whole()
+    for name in names:
+        for other in (here[name], whole):
+            assert found[name].samples == other.samples
+            assert found[name].damage == other.damage
+            assert found[name].cycles.amount.tobytes() == other.cycles.amount.tobytes()
+            assert found[name].levels.amount.tobytes() == other.levels.amount.tobytes()
 
 
 def test_the_end_of_the_scheduler_is_said_at_once(cluster: Cluster, tmp_path: Path) -> None:

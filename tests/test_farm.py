@@ -9,8 +9,15 @@ from hypothesis import strategies as st
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.exact_sums import ExactSum, exact_sum
+from fe_drivetrain.common.jobs import AT_ONCE
 from fe_drivetrain.histories.cycles import rainflow_cycles
-from fe_drivetrain.histories.farm import Counting, counted_histories, piece
+from fe_drivetrain.histories.farm import (
+    LONGEST_RUN,
+    Counting,
+    _runs,
+    counted_histories,
+    piece,
+)
 
 COUNTING = Counting(-3, (3.0, 10.0))
 
@@ -97,6 +104,30 @@ def test_histories_one_after_the_other_do_not_touch():
     both = found["a"] + found["b"]
     same(both, found["b"] + found["a"])
     assert both.samples == 10_000
+
+
+def test_runs_grow_and_stay_within_a_history():
+    pieces = [("a", (k,)) for k in range(5 * AT_ONCE)] + [("b", (k,)) for k in range(3)]
+    runs = list(_runs(pieces))
+    assert [(name, one) for name, several in runs for one in several] == pieces
+    lengths = [len(several) for _, several in runs]
+    assert lengths[:AT_ONCE] == [1] * AT_ONCE
+    assert lengths[AT_ONCE : 2 * AT_ONCE] == [2] * AT_ONCE
+    assert lengths[-2:] == [4, 3]
+    many = [len(several) for _, several in _runs(("a", (k,)) for k in range(20_000))]
+    assert max(many) == LONGEST_RUN
+    assert len(many) < 20_000 / LONGEST_RUN + 5 * AT_ONCE
+
+
+def test_many_pieces_are_counted_as_one_go():
+    number = 3 * AT_ONCE + 7
+    values = np.concatenate([short(k) for k in range(number)])
+    found = dict(counted_histories(short, (("a", (k,)) for k in range(number)), COUNTING))
+    same(found["a"], piece(values, COUNTING).whole())
+
+
+def short(number: int):
+    return np.random.default_rng(number).standard_normal(50)
 
 
 def test_what_cannot_be_counted_in_pieces_is_refused():

@@ -10,7 +10,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import held_nodes
 from fe_drivetrain.mesh.blocks import Block, brick
-from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.mesh.mapping import jacobian
+from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import elasticity, incompatible, incompressible, stress
 from fe_drivetrain.operator.loads import pressure, traction_loads
 from fe_drivetrain.response.model import build_model, mesh_scene

@@ -1,15 +1,20 @@
 """Systems in parts, on one, two and four processes of MPI, against the solver of this process."""
 
-from itertools import pairwise
+from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
 from conftest import coarse_scene
+from element_systems import SYSTEMS
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.interfaces.constraints import eliminate
+from fe_drivetrain.interfaces.constraints import eliminate, fixed
+from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.response.model import build_model, mesh_scene
+from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.solve import petsc
+from fe_drivetrain.solve.element_system import ElementSystem, cut
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import factorise, solve
 
@@ -52,15 +57,73 @@ def test_parts_answer_as_the_whole(with_petsc, jointed, monkeypatch, method, ran
     assert solver.bytes > 0
 
 
-def test_parts_are_equal_and_compact(rng):
-    points = rng.uniform(size=(1003, 3)) * [10.0, 1.0, 1.0]
-    order = petsc.parts(points, 5)
-    assert sorted(order) == list(range(1003))
-    runs = np.split(order, np.cumsum([201, 201, 201, 200]))
-    assert [len(run) for run in runs] == [201, 201, 201, 200, 200]
-    # along the long axis
-    ends = [(points[run, 0].min(), points[run, 0].max()) for run in runs]
-    assert all(high <= low for (_, high), (low, _) in pairwise(ends))
+@pytest.mark.needs("mpiexec")
+@pytest.mark.parametrize(
+    ("kind", "method", "ranks"),
+    [
+        *product(("bonded", "averaged", "mortar"), ("petsc",), (1, 2, 4)),
+        ("sliding", "petsc", 2),
+        ("rubber", "petsc-mumps", 2),
+    ],
+)
+def test_rows_that_processes_assemble_answer_as_the_whole(
+    with_petsc, monkeypatch, kind, method, ranks
+):
+    system, F, exact = answered(kind)
+    monkeypatch.setenv(petsc.MPI_VARIABLE, f"mpiexec -n {ranks}")
+    monkeypatch.setattr(ElementSystem, "whole", None)  # nobody has the matrix
+    found = factorise(system, method, tolerance=1e-10).solve(F)
+    assert found.diagnostics.reason == "as asked"
+    assert found.diagnostics.energy_error <= 1e-10
+    difference = np.abs(found.x - exact.x).max(axis=0)
+    assert (difference < 1e-8 * np.abs(exact.x).max(axis=0)).all()
+    assert found.diagnostics.round_off == pytest.approx(exact.diagnostics.round_off, rel=1e-6)
+    assert found.diagnostics.residual < 1e-6
+    assert found.diagnostics.n_unknowns == exact.diagnostics.n_unknowns
+
+
+@cache
+def answered(kind):
+    """A system of elements, two loads, and what the default answers."""
+    system = SYSTEMS[kind]()
+    F = np.zeros((len(system.elimination.free), 2))
+    body = system.body[: len(system.points)]
+    # pulled at one node of the first body, and turned
+    far = np.argsort(system.points[:, 0] + 1e9 * body)[:3]
+    F[3 * far[:1] + 1, 0], F[3 * far[:2] + 2, 1] = 1.0, [1.0, -1.0]
+    F = system.elimination.T.T @ F
+    return system, F, solve(system, F, tolerance=1e-10)
+
+
+@pytest.mark.needs("mpiexec")
+def test_more_processes_have_less_memory_each(with_petsc, monkeypatch):
+    """Of a bar of 38 thousand unknowns; interpreter and libraries left out."""
+    block = brick((28, 7, 7), 10, lambda x: x * [4.0, 1.0, 1.0])
+    n = block.points.size
+    end = fixed("end", np.flatnonzero(block.points[:, 0] == 0.0), n)
+    steel = MATERIALS["steel"].lame
+    system = ElementSystem(block.points, [(block.cells, steel)], eliminate([end], n))
+    facts = []
+    for ranks in (1, 2, 4):
+        monkeypatch.setenv(petsc.MPI_VARIABLE, f"mpiexec -n {ranks}")
+        facts.append(petsc.Ranks(system, "petsc").facts)
+        assert facts[-1]["ranks"] == len(facts[-1]["bytes"]) == ranks
+        assert max(facts[-1]["nnz"]) < 1.1 * sum(facts[-1]["nnz"]) / ranks
+        assert sum(facts[-1]["elements"]) == cut(system, ranks).cells_of.nnz
+    one, two, four = (max(fact["bytes"]) for fact in facts)
+    assert two < 0.8 * one
+    assert four < 0.8 * two
+    assert sum(facts[0]["elements"]) == len(system.cells)
+
+
+@pytest.mark.needs("mpiexec")
+def test_parts_that_stop_short_are_put_together(with_petsc, monkeypatch):
+    system, F, exact = answered("mortar")
+    monkeypatch.setenv(petsc.MPI_VARIABLE, "mpiexec -n 2")
+    monkeypatch.setattr(petsc, "MOST", 3)
+    found = solve(system, F, "petsc", tolerance=1e-10)
+    assert "petsc stopped after 3 iterations" in found.diagnostics.reason
+    assert (np.abs(found.x - exact.x) < 1e-8 * np.abs(exact.x).max(axis=0)).all()
 
 
 def test_without_petsc_it_is_said_how_to_get_it(jointed, monkeypatch):

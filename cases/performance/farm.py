@@ -15,6 +15,7 @@ from fe_drivetrain.common import (
     cores,
     exact_sum,
     peak_memory,
+    pool,
 )
 from fe_drivetrain.histories import Counting, counted_histories, piece, streamed_cycles
 from fe_drivetrain.report import trace
@@ -26,6 +27,8 @@ SAMPLES, QUICK, FARM = 1_000_000_000, 8_000_000, 1e11
 PIECE = 1 << 20
 COUNTING = Counting(-5, (4.0, 10.0))
 STEP = 0.05  # s
+#: Workers that all samples of a farm are extrapolated to.
+MANY = (2, 16, 128, 1024)
 
 
 def made(turbine: int, number: int, size: int) -> Floats:
@@ -58,8 +61,10 @@ def run(run: Run, page: Page) -> None:
     if each < 1:
         raise InputError(f"samples = {samples}: give {TURBINES} or more, as in samples=1e9")
     piece(np.arange(4.0), COUNTING)  # compiled code is loaded
+    with pool(cores()) as found_workers:
+        workers = found_workers.count
     with run.step("in pieces"):
-        start = time.perf_counter()
+        start, own = time.perf_counter(), time.process_time()
         pieces = (
             (f"turbine {turbine}", (turbine, number, size))
             for turbine in range(TURBINES)
@@ -71,7 +76,7 @@ def run(run: Run, page: Page) -> None:
         for number, (_, more) in enumerate(made_in_pieces, 2):
             run.report(f"turbines ({number} of {TURBINES})")
             found = found + more
-        apart = time.perf_counter() - start
+        apart, own = time.perf_counter() - start, time.process_time() - own
     import resource  # which Windows does not have
 
     memory = {
@@ -137,6 +142,17 @@ def run(run: Run, page: Page) -> None:
     page.section("What it takes")
     page.table(f"Pieces of {PIECE:,} samples; --scheduler takes the workers of a cluster", [row])
     page.data("farm", row)
+    if workers > 1 and not run.quick:
+        farm = predicted(rate / workers, own / (TURBINES * each))
+        page.table(f"{FARM:.0e} samples, by the model", farm)
+        page.data("predicted", farm)
+        page.text(
+            "Model: the larger of what the workers count and what this process adds. Each of w "
+            f"workers counts as many samples a second as the {workers} here did on average; this "
+            "process takes up and adds the counts of runs of pieces, and used "
+            f"{1e9 * own / (TURBINES * each):.3g} ns of its processor for each sample. Reading of "
+            "files is not in it."
+        )
     page.section("What is counted")
     for name, classes in (("range of cycles", found.cycles), ("level", found.levels)):
         page.chart(
@@ -145,6 +161,27 @@ def run(run: Run, page: Page) -> None:
             f"{name} [-]",
             "number",
         )
+
+
+def predicted(rate: float, own: float) -> list[Record]:
+    """What all samples of a farm take on some numbers of workers.
+
+    Parameters
+    ----------
+    rate : float
+        Samples that a worker counts in a second.
+    own : float
+        Seconds that this process takes for each sample.
+    """
+    return [
+        {
+            "workers": count,
+            "counting [h]": FARM / rate / count / 3600,
+            "adding, by this process [h]": FARM * own / 3600,
+            "together [h]": max(FARM / rate / count, FARM * own) / 3600,
+        }
+        for count in MANY
+    ]
 
 
 def whole(turbine: int, samples: int) -> Iterator[Floats]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -11,36 +11,48 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, MissingToolError, cores
+from fe_drivetrain.compare import PowerLaw, power_law
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.mesh import brick
-from fe_drivetrain.operator import assemble
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.solve import System, petsc, reduce, solve
+from fe_drivetrain.solve import ElementSystem, cut, petsc, solve
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Unknowns of the strong series, of a full and a quick run.
 UNKNOWNS, QUICK = 200_000, 3_000
+#: Shares of these that the model is fitted to, too.
+SHARES = (0.06, 0.12, 0.25, 0.5)
+REPEATS = 5
 TOLERANCE = 1e-10
 #: Unknowns of the system whose iterations cost what messages cost.
 SMALL = 500
 TARGET = 1e9
 #: Processes that the target is extrapolated to.
-MANY = (512, 2048, 8192, 32768)
+MANY = (8192, 16384, 32768)
+#: Parts whose border is counted.
+PARTS = (2, 4, 8, 16, 32, 64)
+
+PROCESSES, SIZE, EACH = "processes", "unknowns", "unknowns of a process"
+ASSEMBLY, SET_UP, SOLVE = "assembly [s]", "set-up [s]", "solve [s]"
+TOTAL, ITERATION = "all three [s]", "time of an iteration [ms]"
+MEMORY, PEAK = "memory of a process [MB]", "with interpreter [MB]"
+HANDING = "handing over, by one process [s]"
+FILES = "files handed over [bytes/unknown]"
+ITERATIONS = "iterations"
 
 
-def bar(unknowns: float) -> tuple[System, Floats]:
+def bar(unknowns: float) -> tuple[ElementSystem, Floats]:
     """A bar of steel, four times as long as wide, held at one end and pulled sideways at the other.
 
-    Quadratic tetrahedra, six in each cube of the bar.
+    Quadratic tetrahedra, six in each cube of the bar; nobody has assembled it.
     """
     cuts = max(1, round((unknowns / 3 / (4 * 8)) ** (1 / 3)))
     block = brick((4 * cuts, cuts, cuts), 10, lambda x: x * [4.0, 1.0, 1.0])
-    points, cells, n = block.points, block.cells, block.points.size
+    points, n = block.points, block.points.size
     elimination = eliminate([fixed("end", np.flatnonzero(points[:, 0] == 0.0), n)], n)
-    K = assemble(points, cells, MATERIALS["steel"].lame)
     F = np.zeros((n, 1))
     F[3 * np.flatnonzero(points[:, 0] == 4.0) + 2] = 1.0
-    return reduce(points, cells, K, elimination), F
+    return ElementSystem(points, [(block.cells, MATERIALS["steel"].lame)], elimination), F
 
 
 @contextmanager
@@ -56,28 +68,40 @@ def processes(count: int) -> Iterator[None]:
             os.environ[petsc.MPI_VARIABLE] = before
 
 
-def measured(system: System, F: Floats, count: int, repeats: int) -> tuple[Record, Floats]:
-    """Best times of some solutions on so many processes, and the last solution."""
+def measured(system: ElementSystem, F: Floats, count: int, repeats: int) -> tuple[Record, Floats]:
+    """Times of some solutions on so many processes, those of the median run; its solution."""
+    runs = []
     with processes(count):
-        runs = []
         for _ in range(repeats):
             ranks = petsc.Ranks(system, "petsc")
             found = ranks.solve(F, TOLERANCE)
-            runs.append(ranks.facts)
+            runs.append((row_of(system, ranks.facts, found.iterations), found.x))
             del ranks
-    best = min(runs, key=lambda facts: facts["setup_seconds"] + facts["solve_seconds"])
-    n = system.n_free
-    row: Record = {
-        "processes": count,
-        "unknowns": n,
-        "iterations": found.iterations,
-        "set-up [s]": best["setup_seconds"],
-        "solve [s]": best["solve_seconds"],
-        "time of an iteration [ms]": 1e3 * best["solve_seconds"] / found.iterations,
-        "memory of a process [bytes/unknown]": max(best["bytes"]) * count / n,
-        "largest share of entries, times processes": max(best["nnz"]) * count / sum(best["nnz"]),
+    runs.sort(key=lambda run: float(run[0][TOTAL]))
+    row, x = runs[len(runs) // 2]
+    least, most = runs[0][0][TOTAL], runs[-1][0][TOTAL]
+    return row | {"least [s]": least, "most [s]": most}, x
+
+
+def row_of(system: ElementSystem, facts: petsc.Facts, iterations: int) -> Record:
+    """What a table shows of one run."""
+    n, count = system.n_free, facts["ranks"]
+    seconds = [facts[f"{phase}_seconds"] for phase in ("read", "setup", "solve")]
+    return {
+        PROCESSES: count,
+        SIZE: n,
+        EACH: n / count,
+        ITERATIONS: iterations,
+        **dict(zip((ASSEMBLY, SET_UP, SOLVE), seconds, strict=True)),
+        TOTAL: sum(seconds),
+        ITERATION: 1e3 * seconds[2] / iterations,
+        MEMORY: max(facts["bytes"]) / 1e6,
+        PEAK: max(facts["peaks"]) / 1e6,
+        "elements integrated twice [%]": 100 * (sum(facts["elements"]) / len(system.cells) - 1),
+        "largest share of entries, times processes": max(facts["nnz"]) * count / sum(facts["nnz"]),
+        HANDING: facts["hand_over_seconds"],
+        FILES: facts["hand_over_bytes"] / n,
     }
-    return row, found.x
 
 
 @case(
@@ -93,137 +117,195 @@ def run(run: Run, page: Page) -> None:
     size = float(run.settings.get("unknowns", QUICK if run.quick else UNKNOWNS))
     most = int(run.settings.get("processes", cores()))
     counts = [2**k for k in range(most.bit_length()) if 2**k <= most]
-    repeats = 1 if run.quick else 5
+    repeats = 1 if run.quick else REPEATS
     strong: list[Record] = []
     apart = 0.0
     with run.step("one size"):
         system, F = bar(size)
+        halo: list[Record] = [
+            {"parts": count, "elements integrated twice [%]": 100 * cut(system, count).halo}
+            for count in PARTS
+        ]
         exact = solve(system, F, tolerance=TOLERANCE).x
         for count in counts:
             row, x = measured(system, F, count, repeats)
             strong.append(row)
             apart = max(apart, float(np.abs(x - exact).max() / np.abs(exact).max()))
     with run.step("sizes that grow with the processes"):
-        weak = [measured(*bar(size / most * count), count, repeats)[0] for count in counts]
-    with run.step("messages"):
+        weak = [measured(*bar(size / most * count), count, repeats)[0] for count in counts[:-1]]
+        weak.append(strong[-1])
+    with run.step("smaller sizes, and messages"):
+        smaller = [] if run.quick else [measured(*bar(s * size), most, repeats)[0] for s in SHARES]
         small = measured(*bar(SMALL), counts[-1], repeats)[0]
     page.vanishes(
         "largest difference from the solution of one process without PETSc, relative",
         apart,
         within=1e-8,
         why=f"both stop at an energy error of {TOLERANCE:g}",
-        source="this project's solver, chosen by itself",
+        source="this project's solver, chosen by itself, of the matrix that one process assembles",
     )
-    model = Model.of(strong[0], weak, small)
-    predicted = [model.row(TARGET, count) for count in MANY]
-    best = min(predicted, key=lambda row: float(row["set-up and solve [s]"]))
     last = strong[-1]
-    gain = sum(times(strong[0])) / sum(times(last))
+    gain = float(strong[0][TOTAL]) / float(last[TOTAL])
     page.answer(
-        f"{last['unknowns']:,} unknowns: {last['processes']} processes are {gain:.2f} times as "
-        f"fast as one, with {last['iterations']} iterations against {strong[0]['iterations']}.",
-        "A quick run is too small to extrapolate from."
-        if run.quick
-        else f"By the model below, 1e9 unknowns would take {best['set-up and solve [s]']:.0f} s on "
-        f"{best['processes']:,} processes such as these, and {best['memory [TB]']:.2g} TB.",
+        f"{last[SIZE]:,} unknowns: {last[PROCESSES]} processes are {gain:.2f} times as fast as "
+        f"one, with {last[ITERATIONS]} iterations against {strong[0][ITERATIONS]}, and each takes "
+        f"{last[MEMORY]:.0f} MB where one alone takes {strong[0][MEMORY]:.0f}."
     )
     page.section("Measured")
-    page.table(f"One size (strong), best of {repeats}", strong)
-    page.table(f"So many unknowns a process (weak), best of {repeats}", weak)
+    shown = f"median of {repeats} by time" if repeats > 1 else "one run"
+    page.table(f"One size (strong), {shown}", strong)
+    page.table(f"So many unknowns a process (weak), {shown}", weak)
     page.data("strong", strong)
     page.data("weak", weak)
-    if not run.quick:
-        page.section("Extrapolated")
-        page.table("1e9 unknowns, by the model", predicted)
-        page.text(model.words())
-        page.data("predicted", predicted)
-
-
-def times(row: Record) -> tuple[float, float]:
-    """Seconds of set-up and of solve."""
-    return float(row["set-up [s]"]), float(row["solve [s]"])
+    page.sweep(
+        "Memory of a process, one size on more of them",
+        strong,
+        PROCESSES,
+        {MEMORY: "its part", PEAK: "with interpreter and libraries"},
+        log="xy",
+        table=False,
+        axis="memory [MB]",
+    )
+    page.sweep(
+        f"Elements at borders, integrated by two processes, of {system.n_free:,} unknowns",
+        halo,
+        "parts",
+        "elements integrated twice [%]",
+        log="x",
+    )
+    if run.quick:
+        page.answer("A quick run is too small to extrapolate from.")
+        return
+    model = Model.of([*smaller, last], [*weak[:-1], *strong[:-1]], small)
+    predicted = [model.row(TARGET, count) for count in MANY]
+    best = min(predicted, key=lambda row: float(row["time [s]"]))
+    page.answer(
+        f"By the model below 1e9 unknowns take {best['time [s]']:.0f} s (95 %: "
+        f"{best['at least [s]']:.0f} to {best['at most [s]']:.0f} s) on {best[PROCESSES]:,} "
+        f"processes such as these, and {best['memory [TB]']:.2g} TB; cutting up the mesh and "
+        f"handing it over, which one process does, {best[HANDING]:.0f} s before.",
+    )
+    page.section("Extrapolated")
+    page.table("1e9 unknowns, by the model", predicted)
+    page.table(
+        f"What the model is fitted to, on {most} processes, {shown}",
+        [*smaller, last],
+        [SIZE, EACH, ITERATIONS, ASSEMBLY, SET_UP, ITERATION, MEMORY, HANDING],
+    )
+    page.table("Laws, and how far the points are from them", model.laws())
+    page.text(model.words())
+    page.data("predicted", predicted)
+    page.data("laws", model.laws())
 
 
 @dataclass(frozen=True)
 class Model:
-    """Time of n unknowns on p processes: (s + i c) n / (p e) + (l_s + i l) log2 p.
+    """Time of n unknowns on p processes: A(n/p) + S(n/p) + i(n) I(n/p) + (l_s + i l) log2 p.
 
     Attributes
     ----------
-    set_up, iteration : float
-        s and c, of one process [s for each unknown].
-    efficiency : float
-        e of the weak series: what processes of one machine lose to each other.
+    assembly, set_up, iteration, memory : PowerLaw
+        A, S and I [s], and memory of a process [bytes], of its number of unknowns.
+    iterations : PowerLaw
+        i, of the number of unknowns; never fewer than measured.
+    handing : float
+        Seconds of handing over an unknown, of the largest system.
     set_up_messages, messages : float
         l_s and l, of a system so small that nothing but messages counts [s].
-    iterations, growth : float
-        i = iterations n^growth, of the weak series; none where it falls.
-    bytes : float
-        For each unknown.
     """
 
-    set_up: float
-    iteration: float
-    efficiency: float
+    assembly: PowerLaw
+    set_up: PowerLaw
+    iteration: PowerLaw
+    memory: PowerLaw
+    iterations: PowerLaw
+    handing: float
     set_up_messages: float
     messages: float
-    iterations: float
-    growth: float
-    bytes: float
 
     @classmethod
-    def of(cls, one: Record, weak: Sequence[Record], small: Record) -> Model:
-        """That of measured rows."""
-        n, count = float(one["unknowns"]), max(1.0, np.log2(int(small["processes"])))
-        set_up, solve = times(one)
-        first, last = weak[0], weak[-1]
-        ratio = float(last["unknowns"]) / float(first["unknowns"])
-        its = [float(row["iterations"]) for row in (first, last)]
-        growth = max(0.0, float(np.log(its[1] / its[0]) / np.log(ratio))) if ratio > 1.0 else 0.0
-        each = [
-            sum(times(row)) / float(row["unknowns"]) * int(row["processes"])
-            for row in (first, last)
-        ]
-        small_set_up, small_solve = times(small)
+    def of(cls, rows: Sequence[Record], others: Sequence[Record], small: Record) -> Model:
+        """That of rows on equally many processes, iterations of others, and the smallest system."""
+
+        def law(
+            key: str, of: str = EACH, unit: float = 1.0, more: Sequence[Record] = ()
+        ) -> PowerLaw:
+            both = [*rows, *more]
+            return power_law([float(r[of]) for r in both], [unit * float(r[key]) for r in both])
+
+        doublings = max(1.0, float(np.log2(int(small[PROCESSES]))))
         return cls(
-            set_up / n,
-            solve / n / float(one["iterations"]),
-            min(1.0, each[0] / each[1]),
-            small_set_up / count,
-            small_solve / float(small["iterations"]) / count,
-            its[1] / float(last["unknowns"]) ** growth,
-            growth,
-            float(last["memory of a process [bytes/unknown]"]),
+            law(ASSEMBLY),
+            law(SET_UP),
+            law(ITERATION, unit=1e-3),
+            law(MEMORY, unit=1e6),
+            law(ITERATIONS, SIZE),
+            float(rows[-1][HANDING]) / float(rows[-1][SIZE]),
+            float(small[SET_UP]) / doublings,
+            float(small[ITERATION]) / 1e3 / doublings,
         )
 
     def row(self, n: float, count: int) -> Record:
-        """What n unknowns take on so many processes."""
-        its = self.iterations * n**self.growth
-        work = (self.set_up + its * self.iteration) * n / count / self.efficiency
-        waiting = (self.set_up_messages + its * self.messages) * float(np.log2(count))
+        """What n unknowns take on so many processes, with the band of all laws together."""
+        each, doublings = n / count, float(np.log2(count))
+
+        fewest = float(self.iterations.y.max())
+
+        def seconds(of: Callable[[PowerLaw, float], float]) -> float:
+            its = max(fewest, of(self.iterations, n))
+            waiting = (self.set_up_messages + its * self.messages) * doublings
+            here = of(self.assembly, each) + of(self.set_up, each) + its * of(self.iteration, each)
+            return here + waiting
+
+        its = max(fewest, self.iterations(n))
         return {
-            "processes": count,
-            "iterations": its,
-            "work [s]": work,
-            "messages [s]": waiting,
-            "set-up and solve [s]": work + waiting,
-            "memory [TB]": self.bytes * n / 1e12,
-            "memory of a process [GB]": self.bytes * n / count / 1e9,
+            PROCESSES: count,
+            EACH: each,
+            ITERATIONS: its,
+            "messages [s]": (self.set_up_messages + its * self.messages) * doublings,
+            "time [s]": seconds(lambda law, x: law(x)),
+            "at least [s]": seconds(lambda law, x: law.band(x)[0]),
+            "at most [s]": seconds(lambda law, x: law.band(x)[1]),
+            MEMORY: self.memory(each) / 1e6,
+            "memory [TB]": self.memory(each) * count / 1e12,
+            "memory at most [TB]": self.memory.band(each)[1] * count / 1e12,
+            HANDING: self.handing * n,
         }
+
+    def laws(self) -> list[Record]:
+        """The fitted laws, and how well they fit."""
+        named = {
+            "assembly [s], of the unknowns of a process": self.assembly,
+            "set-up [s], of the unknowns of a process": self.set_up,
+            "an iteration [s], of the unknowns of a process": self.iteration,
+            "memory of a process [bytes], of its unknowns": self.memory,
+            "iterations, of all unknowns": self.iterations,
+        }
+        return [
+            {
+                "law": name,
+                "exponent": law.exponent,
+                "at 1e5 unknowns": law(1e5),
+                "points": len(law.x),
+                "largest misfit [%]": 100 * law.misfit,
+            }
+            for name, law in named.items()
+        ]
 
     def words(self) -> str:
         """The model, and what it leaves out."""
+        smallest, largest = self.assembly.x.min(), self.assembly.x.max()
         return (
-            "Model: (s + i c) n / (p e) + (l_s + i l) log2 p seconds for n unknowns on p "
-            f"processes, with s = {1e6 * self.set_up:.3g} us of set-up and c = "
-            f"{1e9 * self.iteration:.3g} ns of each of i = {self.iterations:.3g} "
-            f"n^{self.growth:.2f} iterations for an unknown on one process, e = "
-            f"{self.efficiency:.2f} from the weak series, and l_s = "
-            f"{1e3 * self.set_up_messages:.3g} ms and l = {1e3 * self.messages:.3g} ms of "
-            f"messages, measured with {SMALL} unknowns. Messages are those of processes that share "
-            "memory, and sums are taken to grow as log2 p: a network is slower, and levels "
-            "of few unknowns on many processes are not in the model. Growth of iterations is that "
-            "of two sizes, carried on over decades. Mesh, assembly and elimination are made by one "
-            "process, which reads and writes the matrix once: for 1e9 unknowns these would have to "
-            "be in parts, too."
+            "Model: A(n/p) + S(n/p) + i(n) I(n/p) + (l_s + i l) log2 p seconds for n unknowns on p "
+            "processes: assembly A, set-up S and an iteration I as power laws of the unknowns of a "
+            f"process, between {smallest:,.0f} and {largest:,.0f} of them, iterations i as one of "
+            f"all unknowns; l_s = {1e3 * self.set_up_messages:.3g} ms and l = "
+            f"{1e3 * self.messages:.3g} ms of messages, measured with {SMALL} unknowns. At least "
+            "and at most are 95 % prediction intervals of every law, all taken at once, so that "
+            "chance alone leaves them more rarely than that. What no interval holds: messages are "
+            "those of processes that share one machine and its memory, and sums are taken to grow "
+            "as log2 p, where a network is slower; levels of few unknowns on many processes are "
+            "not in it; iterations are carried on over decades. Each process assembles the rows "
+            "of its own elements, and none has the whole matrix. One process has the whole mesh, "
+            "cuts it up and hands it over in files: that is measured beside, and not in the time."
         )

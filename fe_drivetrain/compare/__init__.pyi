@@ -18,6 +18,8 @@ from .moments import moments as moments
 from .pareto import cheapest_within as cheapest_within
 from .pareto import growth_exponent as growth_exponent
 from .pareto import pareto_front as pareto_front
+from .power_law import PowerLaw as PowerLaw
+from .power_law import power_law as power_law
 from .statistics import model_uncertainty as model_uncertainty
 from .statistics import resultant as resultant
 from .sweeps import FOUR_DIGITS as FOUR_DIGITS

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, islice
 from operator import itemgetter
 from typing import Any
 
@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.exact_sums import ExactSum, exact_sum
-from fe_drivetrain.common.jobs import mapped
+from fe_drivetrain.common.jobs import AT_ONCE, mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.histories.classes import Classes, added, in_classes
 from fe_drivetrain.histories.cycles import (
@@ -32,6 +32,9 @@ from fe_drivetrain.histories.cycles import (
 )
 from fe_drivetrain.histories.damage import SLOPES, check_slope
 from fe_drivetrain.histories.four_points import close_inner_cycles
+
+LONGEST_RUN = 32
+"""Pieces that one job counts, at most."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +197,7 @@ def counted_histories(
     name, count
         Of each history, once its last piece is there.
     """
-    items = ((read, name, arguments, counting) for name, arguments in pieces)
+    items = ((read, name, several, counting) for name, several in _runs(pieces))
     for name, group in groupby(mapped(_piece_of, items, local, report), itemgetter(0)):
         parts = (part for _, part in group)
         found = next(parts)
@@ -203,14 +206,33 @@ def counted_histories(
         yield name, found.whole(residue)
 
 
+def _runs(
+    pieces: Iterable[tuple[str, tuple[Any, ...]]],
+) -> Iterator[tuple[str, list[tuple[Any, ...]]]]:
+    """Pieces of a history that follow each other: one at first, to begin on all workers, then more.
+
+    A run is one job, and its pieces are added where they are: so neither the scheduler nor who adds
+    the runs has as much to do as there are pieces.
+    """
+    number = 0
+    for name, group in groupby(pieces, itemgetter(0)):
+        while several := [*islice(group, min(LONGEST_RUN, 1 << number // AT_ONCE))]:
+            yield name, [arguments for _, arguments in several]
+            number += 1
+
+
 def _piece_of(
     _report: Progress,
     read: Callable[..., ArrayLike],
     name: str,
-    arguments: tuple[Any, ...],
+    several: list[tuple[Any, ...]],
     counting: Counting,
 ) -> tuple[str, Piece]:
-    return name, piece(read(*arguments), counting)
+    first, *others = several
+    found = piece(read(*first), counting)
+    for arguments in others:
+        found = found + piece(read(*arguments), counting)
+    return name, found
 
 
 def _inner(points: Floats) -> tuple[Floats, Cycles]:

@@ -25,6 +25,7 @@ from .hexahedra import shaft_hexahedra as shaft_hexahedra
 from .linear import first_order as first_order
 from .linear import renumbered as renumbered
 from .linear import straightened as straightened
+from .mapping import jacobian as jacobian
 from .measures import MeshQuality as MeshQuality
 from .measures import area as area
 from .measures import area_vectors as area_vectors
@@ -44,6 +45,5 @@ from .shaft_section import shaft_quadrilaterals as shaft_quadrilaterals
 from .shapes import TETRAHEDRON_EDGES as TETRAHEDRON_EDGES
 from .shapes import element_kind as element_kind
 from .shapes import is_straight as is_straight
-from .shapes import jacobian as jacobian
 from .shapes import shape_functions as shape_functions
 from .symmetry import turns as turns

@@ -9,13 +9,13 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import (
     HEXAHEDRON_EDGES,
     HEXAHEDRON_FACES,
     Nodal,
     element_kind,
-    jacobian,
 )
 
 MEANS = 4

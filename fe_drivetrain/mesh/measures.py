@@ -10,8 +10,9 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES, element_kind, jacobian
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES, element_kind
 
 _AREA_DEGREE = 8
 _MOMENT_DEGREE = 6  # the volume element of a curved cell is cubic, squares of positions quartic

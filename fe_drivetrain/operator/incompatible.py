@@ -17,8 +17,9 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.numbering import check_nodes
-from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
 from fe_drivetrain.operator.incompressible import plus_products

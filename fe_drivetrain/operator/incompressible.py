@@ -22,9 +22,10 @@ from skfem.quadrature import get_quadrature
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.numbering import check_nodes
-from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.mesh.shapes import ElementKind, element_kind
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
+from fe_drivetrain.operator.element_matrices import Rule, element_functions, projected
 from fe_drivetrain.operator.stress import strains
 
 AVERAGED_FROM = 0.45
@@ -117,7 +118,7 @@ def stresses(
         rows, factor = _projected(points, some)
         coefficients = np.einsum("epki,eki->ep", rows, displacements[some])
         positions = np.einsum("qn,eni->eqi", values, points[some])
-        functions = _functions(points[some], positions, rows.shape[1])
+        functions = element_functions(points[some], positions, rows.shape[1])
         orthonormal = np.linalg.solve(factor[:, None], functions[..., None])[..., 0]
         dilatation = np.einsum("eqp,ep->eq", orthonormal, coefficients)
         found[chunk, :, :3] += lame[0] * dilatation[..., None]
@@ -151,42 +152,41 @@ def plus_products(
 
 
 def _projected(points: Floats, cells: Ints) -> tuple[Floats, Floats]:
-    """Dilatations of unit displacements in orthonormal functions of each cell.
+    """Rows and factor of `projected`, with as many functions as these elements bear."""
+    k = cells.shape[1]
+    return projected(points, cells, full_rule(element_kind(k)), _functions(k))
 
-    Returns
-    -------
-    rows, factor
-        (n_cells, p, k, 3) coefficients, and (n_cells, p, p) the lower factor L of the functions'
-        mass matrix: L^-1 makes them orthonormal.
+
+def full_rule(kind: ElementKind) -> Rule:
+    """That of curved elements."""
+    at, weights = get_quadrature(kind.element.refdom, kind.degree)
+    values, gradients = kind.shape(at)
+    return Rule(gradients, weights, values)
+
+
+def unlocked_functions(k: int, lame: tuple[float, float]) -> int:
+    """Functions that `assemble_unlocked` projects dilatations on; 0 where it leaves them.
+
+    Parameters
+    ----------
+    k : int
+        Nodes of an element.
+    lame : tuple[float, float]
+        Lame's constants (lambda, mu) [Pa].
+
+    Raises
+    ------
+    InputError
+        The elements are tetrahedra of four nodes, and nu is `AVERAGED_FROM` or more.
     """
-    kind = element_kind(cells.shape[1])
-    if cells.shape[1] not in FUNCTIONS:
+    return _functions(k) if poisson_ratio(lame) >= AVERAGED_FROM else 0
+
+
+def _functions(k: int) -> int:
+    if k not in FUNCTIONS:
         raise InputError(
             "nearly incompressible solids cannot be made of tetrahedra of 4 nodes, which lock "
             "whatever is averaged inside them: use tetrahedra of 10 nodes, or hexahedra of 8, 20 "
             "or 27"
         )
-    at, weights = get_quadrature(kind.element.refdom, kind.degree)
-    values, gradients = kind.shape(at)
-    physical, determinant = jacobian(points, cells, gradients)
-    volumes = np.abs(determinant) * weights
-    positions = np.einsum("qn,eni->eqi", values, points[cells])
-    functions = _functions(points[cells], positions, FUNCTIONS[cells.shape[1]])
-    weighted = volumes[..., None] * functions
-    mass = np.einsum("eqp,eqr->epr", weighted, functions)
-    rows = np.einsum("eqp,eqik->epki", weighted, physical, optimize=True)
-    factor = np.linalg.cholesky(mass)
-    shape = rows.shape
-    return np.linalg.solve(factor, rows.reshape(*shape[:2], -1)).reshape(shape), factor
-
-
-def _functions(nodes: Floats, positions: Floats, count: int) -> Floats:
-    """(n_cells, n_q, count): one, and x, y, z from the middle of the cell, over its size.
-
-    In the positions themselves, not in reference coordinates: so a linear pressure is held exactly
-    by distorted elements, too (Arnold, Boffi and Falk 2002, Math. Comput. 71, 909-922).
-    """
-    middle = nodes.mean(axis=1, keepdims=True)
-    size = np.ptp(nodes, axis=1).max(axis=1)[:, None, None]
-    ones = np.ones((*positions.shape[:2], 1))
-    return np.concatenate([ones, (positions - middle) / size], axis=2)[..., :count]
+    return FUNCTIONS[k]

@@ -7,8 +7,9 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
 from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.numbering import check_nodes
-from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.mesh.shapes import element_kind
 
 Traction = Callable[[Floats, Floats], Floats]
 """Of positions (n, 3) [m] and outward unit normals (n, 3): tractions (n, 3) [Pa]."""

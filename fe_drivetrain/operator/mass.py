@@ -7,8 +7,9 @@ from scipy import sparse
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
+from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.numbering import check_nodes
-from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.mesh.shapes import element_kind
 
 _DEGREE = 6  # exact where sides are straight; curved ones add what the stiffness neglects, too
 

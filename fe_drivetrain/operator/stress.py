@@ -5,8 +5,9 @@ from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints, chunks
+from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.numbering import check_nodes
-from fe_drivetrain.mesh.shapes import ElementKind, element_kind, jacobian, shape_functions
+from fe_drivetrain.mesh.shapes import ElementKind, element_kind, shape_functions
 
 
 def stresses(

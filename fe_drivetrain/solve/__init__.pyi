@@ -8,6 +8,9 @@ from .coupled_solid import condensed_solid as condensed_solid
 from .coupled_solid import coupled_solid as coupled_solid
 from .coupled_solid import point_compliance as point_compliance
 from .coupled_solid import point_displacements as point_displacements
+from .element_system import Cut as Cut
+from .element_system import ElementSystem as ElementSystem
+from .element_system import cut as cut
 from .error_estimate import SAFETY as SAFETY
 from .error_estimate import ErrorEstimate as ErrorEstimate
 from .error_estimate import recovery_estimate as recovery_estimate

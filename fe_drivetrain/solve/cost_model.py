@@ -17,7 +17,8 @@ from scipy import sparse
 
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.mesh.facets import local_facets
-from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.mesh.mapping import jacobian
+from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.solve import direct_solvers
 from fe_drivetrain.solve.reduction import Elements, System

@@ -25,8 +25,9 @@ from scipy import sparse
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
+from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.numbering import check_nodes
-from fe_drivetrain.mesh.shapes import ElementKind, element_kind, jacobian
+from fe_drivetrain.mesh.shapes import ElementKind, element_kind
 from fe_drivetrain.operator.stress import stresses_of_fields
 
 Lame = tuple[float, float]

@@ -1,16 +1,17 @@
-"""One MPI process of `petsc`: rows of a matrix, its preconditioner by PETSc, conjugate gradients.
+"""One MPI process of `petsc`: its rows, their preconditioner by PETSc, conjugate gradients.
 
 It is run by a Python that has petsc4py, numpy and scipy, which may be the system's. Usage:
-petsc_ranks.py FOLDER, with the files that `petsc.Ranks` writes. Requests come to the first process
-on standard input, a line each, and answers go to standard output, a line each behind "@".
+petsc_ranks.py FOLDER. The first process says how many there are, and then the files of `hand_over`
+are there. Requests come to it on standard input, a line each, and answers go to standard output, a
+line each behind "@".
 """
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import sys
 import time
+import types
 from pathlib import Path
 from typing import Any
 
@@ -23,17 +24,19 @@ from petsc4py import PETSc  # noqa: E402
 from scipy import linalg, sparse  # noqa: E402
 
 
-def _module(path: str) -> Any:
-    """A module of this package, which this Python may not have, by itself."""
-    spec = importlib.util.spec_from_file_location("alone", Path(__file__).parents[1] / path)
-    assert spec is not None
-    assert spec.loader is not None
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
+def _package() -> None:
+    """Let modules of this package be imported, whose own `__init__` needs more than there is."""
+    root = Path(__file__).parents[1]
+    for name in ("", ".common", ".mesh", ".operator", ".solve"):
+        package = types.ModuleType(f"fe_drivetrain{name}")
+        package.__path__ = [str(root / name.removeprefix("."))]
+        sys.modules[package.__name__] = package
 
 
-stopping, memory = _module("solve/stopping.py"), _module("common/memory.py")
+_package()
+
+from fe_drivetrain.common import memory  # noqa: E402
+from fe_drivetrain.solve import own_rows, stopping  # noqa: E402
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -48,17 +51,17 @@ GAMG = {
 before."""
 
 
-def rows_of(folder: Path, low: int, high: int) -> tuple[Any, ...]:
-    """Rows of nodes ``low`` to ``high`` as PETSc takes them; only they are read."""
+def rows_of(folder: Path, low: int, high: int) -> Any:
+    """Rows of nodes ``low`` to ``high``; only they are read."""
     indptr = np.load(folder / "indptr.npy", mmap_mode="r")[low : high + 1]
     first, last = int(indptr[0]), int(indptr[-1])
     indices = np.array(np.load(folder / "indices.npy", mmap_mode="r")[first:last])
     data = np.array(np.load(folder / "data.npy", mmap_mode="r")[first:last])
     width = 3 * (int(indices.max(initial=0)) + 1)
     local = np.asarray(indptr) - first
-    rows = sparse.bsr_matrix((data, indices, local), shape=(3 * (high - low), width)).tocsr()
+    rows = sparse.bsr_array((data, indices, local), shape=(3 * (high - low), width)).tocsr()
     rows.eliminate_zeros()  # through which eliminated nodes would join aggregates
-    return rows.indptr.astype(PETSc.IntType), rows.indices.astype(PETSc.IntType), rows.data
+    return rows
 
 
 class Joined:
@@ -71,9 +74,9 @@ class Joined:
     def __init__(self, rank: Rank, pc: Any) -> None:
         low, high = 3 * rank.low, 3 * rank.high
         folder, self.mpi, self.pc = rank.folder / "bodies", rank.comm.tompi4py(), pc
-        self.rows = sparse.load_npz(folder / "rows.npz").tocsc()[:, low:high].tocsr()
-        self.shares = sparse.load_npz(folder / "shares.npz").tocsc()[:, low:high].tocsr()
-        self.free = np.load(folder / "free.npy")[low:high]
+        self.rows = sparse.load_npz(folder / "rows.npz")[:, low:high]
+        self.shares = sparse.load_npz(folder / "shares.npz")[:, low:high]
+        self.free = np.array(np.load(folder / "free.npy", mmap_mode="r")[low:high])
         dofs = np.load(folder / "dofs.npy")
         self.own = np.flatnonzero((dofs >= low) & (dofs < high))
         self.here = dofs[self.own] - low
@@ -113,36 +116,61 @@ class Rank:
 
     def __init__(self, folder: Path) -> None:
         setup = json.loads((folder / "setup.json").read_text())
-        self.comm = PETSc.COMM_WORLD
-        self.folder, starts = folder, self._starts(setup["blocks"])
-        self.low, self.high = starts
-        self.size = ((3 * (self.high - self.low), 3 * setup["blocks"]),) * 2
+        self.comm, self.folder = PETSc.COMM_WORLD, folder
+        starts = setup["starts"]
+        self.low, self.high = starts[self.comm.rank : self.comm.rank + 2]
+        self.blocks = starts[-1]
+        self.size = ((3 * (self.high - self.low), 3 * self.blocks),) * 2
         start, self.before = time.perf_counter(), memory.peak_memory()
-        self.K = self._matrix(folder)
-        self.nnz = int(self.K.getInfo(PETSc.Mat.InfoType.LOCAL)["nz_used"])
-        bodies = self._matrix(folder / "bodies") if setup["apart"] else self.K
+        rows, bodies, self.elements = self._made(setup) if setup["elements"] else self._read(setup)
+        self.K = self._matrix(rows)
+        self.nnz = rows.nnz
+        del rows
+        apart = self._matrix(bodies) if setup["apart"] else self.K
+        del bodies
         read = time.perf_counter()
-        pc = self._preconditioner(setup["method"], bodies)
+        pc = self._preconditioner(setup["method"], apart)
         self.precondition = Joined(self, pc) if setup["joined"] else pc.apply
         done = time.perf_counter()
-        self.answer(read_seconds=read - start, setup_seconds=done - read, **self._facts())
+        say(read_seconds=read - start, setup_seconds=done - read, **self._facts())
 
-    def _starts(self, blocks: int) -> tuple[int, int]:
-        each, more = divmod(blocks, self.comm.size)
-        low = self.comm.rank * each + min(self.comm.rank, more)
-        return low, low + each + (self.comm.rank < more)
+    def _read(self, setup: dict[str, Any]) -> tuple[Any, Any, int]:
+        """Rows of the matrix, and of bodies where they are apart."""
+        rows = rows_of(self.folder, self.low, self.high)
+        apart = rows_of(self.folder / "bodies", self.low, self.high) if setup["apart"] else None
+        return rows, apart, 0
 
-    def _matrix(self, folder: Path) -> Any:
-        rows = rows_of(folder, self.low, self.high)
-        K = PETSc.Mat().createAIJ(self.size, bsize=3, csr=rows, comm=self.comm)
+    def _made(self, setup: dict[str, Any]) -> tuple[Any, Any, int]:
+        """The same, and how many elements they were made of."""
+        share, reductions = own_rows.kept(self.folder / f"share-{self.comm.rank}.npz")
+        K = own_rows.assembled(share)
+        n = 3 * self.blocks
+        trace = self.comm.tompi4py().allreduce(own_rows.own_trace(K, share))
+        mean, *others = ((trace + r.trace) / n for r in reductions)
+        rows = own_rows.own_rows(K, share, reductions[0], mean)
+        apart = None
+        if setup["joined"]:
+            ground = setup["ground"] * mean
+            apart = own_rows.own_rows(K, share, reductions[1], others[0], ground, True)
+        elif setup["apart"]:
+            apart = own_rows.own_rows(K, share, reductions[0], mean, within_bodies=True)
+        return rows, apart, len(share.cells)
+
+    def _matrix(self, rows: Any) -> Any:
+        """What PETSc makes of these rows."""
+        csr = (rows.indptr.astype(PETSc.IntType), rows.indices.astype(PETSc.IntType), rows.data)
+        K = PETSc.Mat().createAIJ(self.size, bsize=3, csr=csr, comm=self.comm)
         K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         K.setOption(PETSc.Mat.Option.SPD, True)
         return K
 
     def _facts(self) -> dict[str, Any]:
-        more = memory.peak_memory() - self.before
-        both = self.comm.tompi4py().allgather((more, self.nnz))
-        return {"ranks": self.comm.size, "bytes": [b for b, _ in both], "nnz": [n for _, n in both]}
+        """Memory of each process, and what it has."""
+        most = memory.peak_memory() or 0
+        here = (most - (self.before or 0), most, self.nnz, self.elements)
+        names = ("bytes", "peaks", "nnz", "elements")
+        every = zip(*self.comm.tompi4py().allgather(here), strict=True)
+        return dict(zip(names, map(list, every), strict=True))
 
     def _preconditioner(self, method: str, K: Any) -> Any:
         pc = PETSc.PC().create(self.comm)
@@ -189,13 +217,46 @@ class Rank:
         F = np.load(self.folder / f"f-{number}.npy", mmap_mode="r")[3 * self.low : 3 * self.high]
         columns = [self._column(np.array(f), tolerance, most) for f in F.T]
         x = np.column_stack([x for x, _, _ in columns])
+        seconds = time.perf_counter() - start
         np.save(self.folder / f"x-{number}-{self.comm.rank}.npy", x)
-        self.comm.barrier()
-        self.answer(
+        checks = self._checks(x, F)  # all have written once this is done
+        say(
             iterations=max(i for _, i, _ in columns),
             energy_error=max(e for _, _, e in columns),
-            solve_seconds=time.perf_counter() - start,
+            solve_seconds=seconds,
+            **checks,
         )
+
+    def _checks(self, x: Floats, F: Floats) -> dict[str, Any]:
+        """Largest |K x - f| / |f|, and |x|.|K||x| and x.K x of each column; see `rounding`."""
+        indptr, columns, data = self.K.getValuesCSR()
+        low, high = 3 * self.low, 3 * self.high
+        outside = (columns < low) | (columns >= high)
+        others, place = np.unique(columns[outside], return_inverse=True)
+        columns -= low
+        columns[outside] = high - low + place
+        met = np.vstack([x, np.column_stack([self._elsewhere(values, others) for values in x.T])])
+        rows = sparse.csr_array((data, columns, indptr), shape=(len(x), len(met)))
+        forces = rows @ met
+        np.abs(rows.data, out=rows.data)
+        each = [(forces - F) ** 2, F**2, np.abs(x) * (rows @ np.abs(met)), x * forces]
+        sums = np.array([values.sum(axis=0) for values in each])
+        total = np.empty_like(sums)
+        self.comm.tompi4py().Allreduce(sums, total)
+        left, given, sizes, energies = total
+        given[given == 0.0] = 1.0
+        return {
+            "residual": float(np.sqrt((left / given).max())),
+            "sizes": sizes.tolist(),
+            "energies": energies.tolist(),
+        }
+
+    def _elsewhere(self, values: Floats, chosen: Any) -> Floats:
+        """Some entries, of any processes, of the vector that has these values here."""
+        vector, found = self.vector(values), PETSc.Vec().createSeq(len(chosen))
+        index = PETSc.IS().createGeneral(chosen.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
+        PETSc.Scatter().create(vector, index, found, None).scatter(vector, found)
+        return np.array(found.getArray())
 
     def _column(self, f: Floats, tolerance: float, most: int) -> tuple[Floats, int, float]:
         """Conjugate gradients, with the end of `multigrid.iterates`."""
@@ -227,21 +288,27 @@ class Rank:
             rz = new
         return x.getArray().copy(), len(terms), errors[-1]
 
-    def answer(self, **values: Any) -> None:
-        """What the first process has to say."""
-        if self.comm.rank == 0:
-            print("@" + json.dumps(values), flush=True)
-
 
 def main(folder: Path) -> None:
     """Set up, and solve until standard input ends."""
-    rank = Rank(folder)
     mpi = PETSc.COMM_WORLD.tompi4py()
-    while True:
-        line = mpi.bcast(sys.stdin.readline() if mpi.rank == 0 else None)
-        if not line.strip():
-            return
-        rank.solve(**json.loads(line))
+
+    def line() -> str:
+        found: str = mpi.bcast(sys.stdin.readline() if mpi.rank == 0 else None)
+        return found.strip()
+
+    say(ranks=mpi.size)
+    if not line():
+        return
+    rank = Rank(folder)
+    while request := line():
+        rank.solve(**json.loads(request))
+
+
+def say(**values: Any) -> None:
+    """What the first process has to say."""
+    if PETSc.COMM_WORLD.rank == 0:
+        print("@" + json.dumps(values), flush=True)
 
 
 if __name__ == "__main__":

@@ -19,11 +19,12 @@ from fe_drivetrain.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import kernels
+from fe_drivetrain.solve.own_rows import passed_on
 from fe_drivetrain.solve.sums import Sums, sums_of
 
 #: Ground under the faces of joints, relative to the mean stiffness of a degree of freedom. It is in
 #: preconditioners alone: answers are without it.
-_GROUND = 1e-4
+GROUND = 1e-4
 
 
 @dataclass(frozen=True)
@@ -146,7 +147,7 @@ def _joints(
     """Joints and bodies apart; arguments as of `reduce`."""
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
-    ground = _GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
+    ground = GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
     bodies = _added(_copied(K), -sums.springs)
     bodies = _eliminated(bodies, sums.elimination, bodies.data)
     on_ground = _added(bodies, ground.tocsr())
@@ -158,7 +159,7 @@ def _system(
 ) -> System:
     """A reduced stiffness with its corners, motions and bodies."""
     T, free = elimination.T, elimination.free
-    motions = _motions_with_points(points, elimination)
+    motions = motions_with_points(points, elimination)
     body = np.full(len(free) // 3, -1)
     body[: len(points)] = connected_bodies(cells, len(points))
     prolongation = None
@@ -205,39 +206,17 @@ def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
 def _eliminated(K: sparse.bsr_array, elimination: Elimination, out: Floats) -> sparse.bsr_array:
     """As `reduced_stiffness`; ``out``, which may be K's own blocks, takes what keeps its place."""
     T, free = elimination.T, elimination.free
-    n = len(free)
-    mean = float(np.einsum("nii->", diagonal_blocks(K))) / n
+    mean = float(np.einsum("nii->", diagonal_blocks(K))) / len(free)
+    passed = passed_on(K, T, free)
     mask = free.astype(float).reshape(-1, 3)
-    # What eliminated degrees of freedom pass on to the others: for supports nothing, for joints
-    # little.
-    pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
-    rows = _rows(K, pivots)
     kernels.keep_dofs(K.indptr, K.indices, K.data, mask, mean, out)
     kept = sparse.bsr_array((out, K.indices, K.indptr), shape=K.shape)
     # Degrees of freedom of reference points have no block of their own yet.
     bare = (~free & np.repeat(_diagonal_places(K) < 0, 3)).astype(float)
-    if len(pivots) == 0 and not bare.any():
+    if passed.nnz == 0 and not bare.any():
         return kept
-    place = sparse.csr_array(
-        (np.ones(len(pivots)), (np.arange(len(pivots)), pivots)), shape=(len(pivots), n)
-    )
-    dependent = place @ T
-    across = dependent.T @ rows @ sparse.diags_array(free.astype(float))
-    passed = across + across.T + dependent.T @ (rows @ place.T) @ dependent
     passed = passed + mean * sparse.diags_array(bare)
     return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
-
-
-def _rows(K: sparse.bsr_array, chosen: Ints) -> sparse.csr_array:
-    """Some rows of a matrix in blocks; to select them by a product would convert all of it."""
-    nodes, place = np.unique(chosen // 3, return_inverse=True)
-    counts = np.diff(K.indptr)[nodes]
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    entries = np.arange(starts[-1]) + np.repeat(K.indptr[nodes] - starts[:-1], counts)
-    blocks = sparse.bsr_array(
-        (K.data[entries], K.indices[entries], starts), shape=(3 * len(nodes), K.shape[1])
-    )
-    return blocks.tocsr()[3 * place + chosen % 3]
 
 
 def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
@@ -248,7 +227,7 @@ def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
     return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
 
 
-def _motions_with_points(points: Floats, elimination: Elimination) -> Floats:
+def motions_with_points(points: Floats, elimination: Elimination) -> Floats:
     """(n_dofs, 6) rigid motions; reference points follow through their constraints."""
     n = 3 * len(points)
     motions = np.zeros((len(elimination.free), 6))

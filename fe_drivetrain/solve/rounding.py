@@ -43,7 +43,7 @@ def judged(K: sparse.bsr_array, x: Floats, F: Floats) -> Judged:
     sizes, energies, squares = (values.sum(axis=0) for values in sums)
     size = np.linalg.norm(F, axis=0)
     size[size == 0.0] = 1.0
-    return Judged(float((np.sqrt(squares) / size).max()), _lost(sizes, energies))
+    return Judged(float((np.sqrt(squares) / size).max()), worst(sizes, energies))
 
 
 def round_off(K: sparse.bsr_array, x: Floats) -> float:
@@ -73,14 +73,13 @@ def round_off(K: sparse.bsr_array, x: Floats) -> float:
     return judged(K, x, np.zeros_like(x)).round_off
 
 
-def _lost(sizes: Floats, energies: Floats) -> float:
-    """Round-off of each column's sums."""
-    there = sizes > 0.0
+def worst(size: Floats, energy: Floats) -> float:
+    """The same of |x|.|K||x| and x.K x (m,) of each column."""
+    there = size > 0.0
     if not there.any():
         return 0.0
-    size, energy = sizes[there], energies[there]
     # Where rounding leaves no positive energy, it may have done anything.
-    return float(_EPS * np.max(size / np.maximum(energy, _EPS * size)))
+    return float(_EPS * np.max(size[there] / np.maximum(energy[there], _EPS * size[there])))
 
 
 @njit(cache=True, parallel=True)

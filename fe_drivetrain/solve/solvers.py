@@ -13,8 +13,9 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.solve import direct_solvers, multigrid, petsc, schwarz
 from fe_drivetrain.solve.cost_model import predict
+from fe_drivetrain.solve.element_system import ElementSystem
 from fe_drivetrain.solve.reduction import System
-from fe_drivetrain.solve.rounding import judged
+from fe_drivetrain.solve.rounding import Judged, judged
 
 METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz", *petsc.METHODS)
 
@@ -85,7 +86,7 @@ class Solution:
 class Solver:
     """A system with its factor or hierarchy, ready for right-hand sides; made by `factorise`."""
 
-    system: System
+    system: System | ElementSystem
     method: str
     reason: str
     tolerance: float
@@ -110,8 +111,8 @@ class Solver:
         start = time.perf_counter()
         found = self.iterate(F)
         seconds = time.perf_counter() - start
-        judgement = judged(self.system.K, found.x, F)
-        residual, lost = judgement.residual, judgement.round_off
+        by = found if isinstance(found, petsc.Checked) else self._judged(F, found)
+        residual, lost = by.residual, by.round_off
         iterative = self.method in ITERATIVE
         # A factor of a singular matrix may well exist, by round-off, with anything in it.
         if not np.isfinite(residual) or (not iterative and residual > _USELESS):
@@ -141,6 +142,10 @@ class Solver:
         )
         return Solution(found.x, diagnostics)
 
+    def _judged(self, F: Floats, found: multigrid.Iteration) -> Judged:
+        assert isinstance(self.system, System)
+        return judged(self.system.K, found.x, F)
+
     def _instead(
         self, F: Floats, found: multigrid.Iteration, residual: float, seconds: float
     ) -> Solution:
@@ -152,7 +157,8 @@ class Solver:
         )
         tried = {"schwarz": ("multigrid", "schwarz"), "multigrid": ("multigrid",)}
         left_out = tried.get(self.method, ())
-        costs = [c for c in predict(self.system, F.shape[1]) if c.method not in left_out]
+        system = self.system if isinstance(self.system, System) else self.system.whole()
+        costs = [c for c in predict(system, F.shape[1]) if c.method not in left_out]
         cost = min(costs, key=lambda c: (not c.fits, c.seconds))
         if not cost.fits:
             what = "patches" if cost.method == "schwarz" else "a direct factor"
@@ -161,7 +167,7 @@ class Solver:
                 f"{cost.bytes / 2**30:.1f} GiB of memory, more than there is: use a coarser mesh "
                 "or thicker walls"
             )
-        other = factorise(self.system, cost.method, F.shape[1], self.tolerance)
+        other = factorise(system, cost.method, F.shape[1], self.tolerance)
         solution = other.solve(F)
         after = solution.diagnostics
         diagnostics = replace(
@@ -173,14 +179,18 @@ class Solver:
 
 
 def factorise(
-    system: System, method: str = "auto", n_rhs: int = 1, tolerance: float = TOLERANCE
+    system: System | ElementSystem,
+    method: str = "auto",
+    n_rhs: int = 1,
+    tolerance: float = TOLERANCE,
 ) -> Solver:
     """Set up a solver: a factor, a hierarchy of coarser levels, or patches.
 
     Parameters
     ----------
-    system : System
-        From `reduction.reduce`.
+    system : System or ElementSystem
+        From `reduction.reduce`, or not assembled: ``petsc`` and ``petsc-mumps`` assemble it in
+        parts, others here.
     method : str
         ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
         ``schwarz`` (for thin and slender solids of any size), ``petsc`` and ``petsc-mumps`` (in
@@ -199,7 +209,10 @@ def factorise(
     if method not in METHODS:
         raise InputError(f"solver {method!r} is unknown: use one of {', '.join(METHODS)}")
     reason = "as asked"
+    if isinstance(system, ElementSystem) and method not in petsc.METHODS:
+        system = system.whole()
     if method == "auto":
+        assert isinstance(system, System)
         chosen, *others = predict(system, n_rhs)
         method = chosen.method
         reason = f"{chosen}; {', '.join(map(str, others))}" if others else f"{chosen}"
@@ -216,7 +229,9 @@ def factorise(
         def iterate(F: Floats) -> multigrid.Iteration:
             return ranks.solve(F, tolerance)
 
-    elif method in ITERATIVE:
+        return Solver(system, method, reason, tolerance, time.perf_counter() - start, held, iterate)
+    assert isinstance(system, System)
+    if method in ITERATIVE:
         made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
         held = made.bytes
 
@@ -246,7 +261,7 @@ def _refined(system: System, factor: direct_solvers.Factor, F: Floats) -> multig
 
 
 def solve(
-    system: System, F: Floats, method: str = "auto", tolerance: float = TOLERANCE
+    system: System | ElementSystem, F: Floats, method: str = "auto", tolerance: float = TOLERANCE
 ) -> Solution:
     """Set up and solve once; arguments as of `factorise` and `Solver.solve`."""
     return factorise(system, method, F.shape[1], tolerance).solve(F)

@@ -13,7 +13,8 @@ from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import SINGULAR, InputError
-from fe_drivetrain.mesh.shapes import element_kind, jacobian
+from fe_drivetrain.mesh.mapping import jacobian
+from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.solve.reduction import Elements
 
