@@ -68,7 +68,7 @@ def rungs(
 @case(
     "Flexible housing: error against time, from closed form to gap springs of a solid",
     source="bearing S in the library's housing, all shapes and profiled rollers as reference",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Time each rung over many load cases of each kind; compare with the finest."""

@@ -68,7 +68,7 @@ SHAFTS = {
     "Level 2, the meridian in harmonics: error against time",
     source="Finer meshes of higher order; two bounds of torsion (Michell 1899); goal of this "
     "project: 30 ms for 1e-5",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Measure every setting, and show the cheapest that is good enough."""

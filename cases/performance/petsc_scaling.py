@@ -84,7 +84,7 @@ def measured(system: System, F: Floats, count: int, repeats: int) -> tuple[Recor
     "Solids in parts: PETSc's GAMG on MPI processes",
     source="this project's own solver, in one process; PETSc (Balay et al. 1997)",
     settings=("unknowns", "processes"),
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """The same bar on more processes, and bars that grow with them."""
