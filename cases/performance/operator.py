@@ -32,7 +32,7 @@ from fe_drivetrain.solve import factorise, reduce
 from fe_drivetrain.suite import Page, Record, Run, column
 
 #: Mesh size of the hollow shaft of about 110 000 unknowns [m], and a small one.
-SIZE, QUICK_SIZE = 0.0515, 0.2
+SIZE, QUICK_SIZE = 0.0515, 0.3
 
 #: Goals: times faster than scikit-fem's generic form, and share of set-up and solve of one load.
 FASTER = 15.0

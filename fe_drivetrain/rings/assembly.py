@@ -226,6 +226,7 @@ def roller_assembly(
     content = {
         "rollers of": {name: asdict(bearing) for name, bearing in bearings.items()},
         "method": method,
+        "weak": WEAK,
     }
     found = kept_arrays(scene, content, MADE_BY, lambda: _solved(scene, bearings, method))
     points = zip(found["points"], found["motions"], found["pushes"], strict=True)
