@@ -8,7 +8,7 @@ declaration says of a case is read without importing it, so it is made of litera
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 _Function = TypeVar("_Function", bound=Callable[..., None])
 
@@ -17,7 +17,7 @@ def case(
     title: str,
     *,
     source: str,
-    alone: bool = False,
+    alone: bool | Literal["full"] = False,
     settings: tuple[str, ...] = (),
     changes: str = "",
 ) -> Callable[[_Function], _Function]:
@@ -29,9 +29,9 @@ def case(
         One line.
     source : str
         Where the problem and its reference come from.
-    alone : bool
+    alone : bool or "full"
         It measures time or memory: nothing may run beside it, and nothing it uses comes from the
-        cache.
+        cache. "full" where no check of its quick form depends on time: that may run beside others.
     settings : tuple of str
         Keys of ``--set`` that are the case's own. The command refuses keys that no case takes.
     changes : str

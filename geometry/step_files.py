@@ -18,6 +18,8 @@ from fe_drivetrain.common.files import atomic_path
 _MILLIMETRE = re.compile(
     r"(LENGTH_UNIT\(\s*\)\s*NAMED_UNIT\(\*\)\s*)SI_UNIT\(\.MILLI\.,\.METRE\.\)"
 )
+_TIME_STAMP = re.compile(r"(FILE_NAME\(\s*'[^']*'\s*,\s*)'[^']*'")
+_COUNT = re.compile(r"('Open CASCADE STEP translator \S+ )\d+")  # of files of this process
 
 
 @contextmanager
@@ -71,6 +73,9 @@ def write_step(path: str | os.PathLike[str], volumes: Sequence[int], unit: str =
         with _silent():
             gmsh.write(str(made))
         text = made.read_text("utf-8")
+    # the same solids are the same file: their meshes are then kept under its content
+    text = _TIME_STAMP.sub(r"\1'1970-01-01T00:00:00'", text, count=1)
+    text = _COUNT.sub(r"\g<1>1", text)
     if unit == "m":
         text, count = _MILLIMETRE.subn(r"\1SI_UNIT($,.METRE.)", text)
         if count < 1:

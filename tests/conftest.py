@@ -133,7 +133,7 @@ class QuickRun:
         return read_results(result_folder(self.folder, case) / "results.json")
 
     def _run(self, case: Case) -> None:
-        if case.alone:
+        if case.runs_alone(quick=True):
             problem = run_cases([case], self.folder, quick=True).get(case.name)
             if problem is not None and problem.state == "skipped":
                 pytest.skip(problem.message)

@@ -54,6 +54,21 @@ def written(path, *boxes, bore=False):
     return path
 
 
+def test_the_same_part_is_the_same_file(tmp_path):
+    """Whenever it is written, so that its mesh is found under the file's content."""
+    files = [tmp_path / "one.step", tmp_path / "two.step"]
+    for file in files:
+        written(file, (0, 0, 0, 1, 1, 1))
+        assert gmsh_date(file) == "1970-01-01T00:00:00"
+    one, two = (file.read_bytes() for file in files)
+    assert one == two
+
+
+def gmsh_date(file):
+    """The second entry of the header's FILE_NAME."""
+    return file.read_text().split("FILE_NAME(", 1)[1].split("'")[3]
+
+
 BASE, CAP = (-0.15, -0.45, -0.42, 0.3, 0.9, 0.42), (-0.15, -0.4, 0.0, 0.3, 0.8, 0.4)
 
 

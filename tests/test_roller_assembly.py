@@ -1,17 +1,22 @@
 """A scene's solids on rollers: balance, the springs that they were solved with, the joint."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from fe_drivetrain.bearing.arrangements import double_row_tapered
 from fe_drivetrain.bearing.contact import linear
 from fe_drivetrain.bearing.geometry import Bearing
+from fe_drivetrain.common.cache import CACHE_VARIABLE
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.joints import roller_loads
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.rings import assembly as assembly_module
+from fe_drivetrain.rings import housing as housing_module
 from fe_drivetrain.rings.assembly import RollerAssembly, assembly_equilibrium, roller_assembly
+from fe_drivetrain.rings.housing import housing_races
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.scene.scene import Scene
 
@@ -109,3 +114,44 @@ def test_what_is_missing_is_named(assembly: RollerAssembly, scene: Scene) -> Non
         assembly_equilibrium(assembly, LOADS).of("rear")
     with pytest.raises(InputError, match="finite numbers"):
         assembly_equilibrium(assembly, np.zeros((1, 5)))
+
+
+def test_what_the_solids_do_at_the_rollers_is_kept(
+    assembly: RollerAssembly, scene: Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The same to the last bit, and for another bearing or another scene not the same."""
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    made = roller_assembly(scene, {NAME: bearing()})
+    with monkeypatch.context() as patch:
+        patch.setattr(assembly_module, "_solved", None)
+        kept = roller_assembly(scene, {NAME: bearing()})
+        turned = bearing().with_rows(phase=0.1)
+        softer = change_scene(scene, {"gearbox.stiffness.0": 1e6})
+        for other in ((scene, turned), (softer, bearing())):
+            with pytest.raises(TypeError):  # solved anew, by nothing
+                roller_assembly(other[0], {NAME: other[1]})
+    assert list(kept.points) == list(made.points)
+    for one, two in (
+        (made.stiffness, kept.stiffness),
+        (made.loads, kept.loads),
+        (made.springs, kept.springs),
+        *(
+            (a, b)
+            for name in made.points
+            for a, b in zip(made.points[name], kept.points[name], strict=True)
+        ),
+    ):
+        assert np.array_equal(one, two)
+        assert one.strides == two.strides
+
+
+def test_the_compliance_of_a_housing_is_kept(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    made = housing_races(scene, NAME, bearing())
+    monkeypatch.setattr(housing_module, "_compliance", None)
+    assert np.array_equal(made.compliance, housing_races(scene, NAME, bearing()).compliance)
+    on_bedplate = change_scene(scene, {f"bearing_units.{NAME}.bedplate": [1e9] * 6})
+    with pytest.raises(TypeError):  # solved anew, by nothing
+        housing_races(on_bedplate, NAME, bearing())

@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
@@ -19,10 +20,11 @@ from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.progress import OVERALL
 from fe_drivetrain.common.threads import CORES_VARIABLE, cores
+from fe_drivetrain.report.history import FILE
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.junit import write_junit
 from fe_drivetrain.report.results import read_results
-from fe_drivetrain.suite.case import Case
+from fe_drivetrain.suite.case import BESIDE_OTHERS, Case
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.result_folders import run_case
 from fe_drivetrain.suite.resuming import finished_cases
@@ -43,6 +45,11 @@ def count(run: Run, page: Page) -> None:
     page.data("pid", os.getpid())
     page.data("cores", cores())
     page.data("kept", user_cache().folder is not None)
+
+
+def last(run: Run, page: Page) -> None:
+    check_one(page)
+    page.data("began", time.monotonic())
 
 
 def miss(run: Run, page: Page) -> None:
@@ -186,6 +193,42 @@ def test_measuring_cases_run_alone_in_processes_of_their_own(
                 assert figures["ended"] <= others["began"] or others["ended"] <= figures["began"]
     last = max(figures["ended"] for name, figures in found.items() if "beside" in name)
     assert all(figures["began"] >= last for name, figures in found.items() if "alone" in name)
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_what_measures_in_its_full_form_alone_runs_beside_others_in_a_quick_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, quick: bool
+) -> None:
+    monkeypatch.setenv(CORES_VARIABLE, "2")
+    cases = [replace(a_case(f"a/{k}", count), alone="full") for k in range(3)]
+    assert run_cases(cases, tmp_path, quick=quick) == {}
+    found = [read_results(tmp_path / case.name / "results.json") for case in cases]
+    processes = {results.figures["pid"] for results in found}
+    assert len(processes) == (2 if quick else 3)
+    assert os.getpid() not in processes
+    for results in found:
+        assert not results.figures["kept"]  # nor does what it measures come from the cache
+        assert (BESIDE_OTHERS in results.notes) == quick
+
+
+def test_cases_that_took_longest_begin_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(CORES_VARIABLE, "1")
+    cases = [replace(a_case(f"a/{k}", last), settings=("k",)) for k in range(3)]
+    run_cases(cases, tmp_path)
+    with sqlite3.connect(tmp_path / FILE) as database:
+        database.execute("UPDATE runs SET seconds = 1.0 + 8.0 * (name = 'a/1')")
+    run_cases([*cases, a_case("a/new", last)], tmp_path)
+    began = [
+        read_results(tmp_path / f"a/{name}/results.json").figures["began"]
+        for name in ("new", "1", "0", "2")
+    ]
+    assert began == sorted(began)
+    # quick runs have a history of their own
+    run_cases(cases, tmp_path, quick=True)
+    began = [read_results(tmp_path / c.name / "results.json").figures["began"] for c in cases]
+    assert began == sorted(began)
 
 
 def test_steps_are_told_with_the_name_of_their_case(tmp_path: Path, number_of_cores: str) -> None:

@@ -64,7 +64,7 @@ class Answer:
 @case(
     "Bearing in the beam: constant stiffness, the thesis's loop, and Newton on both",
     source="Stirling 2023, section 4.3; tables and figures 4.8 to 4.11",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Loads of bearing and rollers over four wind files, with and without the housing."""

@@ -75,7 +75,7 @@ def error_against_time(page: Page, rows: list[Record]) -> None:
 @case(
     "Peak roller: error against time, from closed form to profiled laminae",
     source="bearing S with the profile of ISO/TS 16281 and 400 laminae as reference",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Time each rung over many load cases of each kind; compare with the finest."""

@@ -70,7 +70,7 @@ LEVELS: tuple[tuple[str, Callable[[float], float]], ...] = (
     "Load over the face width by slices: face load factor, stiffness, transmission error",
     source="Al-Hamadani 2018, section 5.1 (35 slices, Eq 5.2 and 5.3); ISO 6336-1; stage 3 of the "
     "NREL 5 MW gearbox",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """A ladder of levels, ripple by slices, misalignment, both flanks, slices that are coupled."""

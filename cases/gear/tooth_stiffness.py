@@ -62,7 +62,7 @@ ELEMENTS = "plane finite elements of the true tooth shape"
     "Stiffness of spur teeth over the phase, by formulas, energy and finite elements",
     source="ISO 6336-1:2006; Sainsot, Velex, Duverger 2004; Weber, Banaschek 1953; Cai 1995 and "
     "Kuang, Yang 1992 from memory",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Compute each method's stiffness over a period, its error against elements, and its time."""

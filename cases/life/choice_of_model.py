@@ -95,7 +95,7 @@ class Found:
 @case(
     "What the choice of model does to the life of a main bearing",
     source="bearing S in the library's housing; Stirling 2023, chapters 3 to 5",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Lives of eleven models over eleven wind speeds on two grounds, against solids on rollers."""

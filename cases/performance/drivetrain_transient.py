@@ -86,7 +86,7 @@ def gearbox() -> tuple[Equations, Loads, State]:
     "Time integration of a three-stage gearbox with varying mesh stiffness",
     source="NREL 5 MW reference gearbox, 79 degrees of freedom, 13 varying meshes; measured in one "
     "run",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Ten minutes at 1 kHz; then error and time over the step, for each method."""

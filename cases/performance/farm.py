@@ -48,7 +48,7 @@ def sizes(samples: int) -> list[int]:
     "A wind farm's years: cycles, damage and load duration counted in pieces",
     source="ASTM E1049-85 (2017), 5.4.4, over each whole history in one stream",
     settings=("samples",),
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Count made histories both ways; nothing may differ."""

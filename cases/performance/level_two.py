@@ -68,7 +68,7 @@ SHAFTS = {
     "Level 2, the meridian in harmonics: error against time",
     source="Finer meshes of higher order; two bounds of torsion (Michell 1899); goal of this "
     "project: 30 ms for 1e-5",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Measure every setting, and show the cheapest that is good enough."""
@@ -151,6 +151,11 @@ def median(work: Callable[[], object], repeats: int) -> tuple[float, float]:
     return statistics.median(own), statistics.median(wall)
 
 
+def repeats(run: Run, times: int) -> int:
+    """How often something is timed, for a median: once in a quick run, which judges no time."""
+    return 1 if run.quick else times
+
+
 def checked_reference(run: Run, page: Page, name: str, body: Shaft) -> tuple[Floats, float]:
     """The 12 x 12 stiffness on the finest mesh, checked, and the band of its scaled entries."""
     fine, before = FINE_FILLETED if name == "filleted" else FINE
@@ -206,7 +211,7 @@ def settings(run: Run, name: str, body: Shaft, reference: Floats) -> list[Record
                             "shaft": name,
                             "setting": f"order {order}, {layers} layers, elements of {share:g} "
                             "diameters",
-                            "seconds": median(work, 3)[0],
+                            "seconds": median(work, repeats(run, 3))[0],
                             "error": largest_difference(K, reference),
                             "work": work,
                         }
@@ -221,8 +226,8 @@ def whole_shafts(run: Run, page: Page) -> None:
         scene = library_scene(name)
         with run.step(f"shaft of {name}"):
             points = len(meridian_shaft(scene).names)
-            seconds, _ = median(partial(meridian_shaft, scene), 3)
-            beam, _ = median(partial(beam_shaft, scene), 3)
+            seconds, _ = median(partial(meridian_shaft, scene), repeats(run, 3))
+            beam, _ = median(partial(beam_shaft, scene), repeats(run, 3))
         rows.append(
             {
                 "scene": name,
@@ -274,7 +279,8 @@ def factors(run: Run, page: Page) -> None:
     with run.step("fronts and a general factor"):
         one, other = by_fronts(), by_superlu()
         difference = float(np.abs(one - other).max() / np.abs(other).max())
-        seconds = {"fronts": median(by_fronts, 5)[0], "SuperLU": median(by_superlu, 5)[0]}
+        times = repeats(run, 5)
+        seconds = {"fronts": median(by_fronts, times)[0], "SuperLU": median(by_superlu, times)[0]}
     page.vanishes(
         "displacements by fronts less those by SuperLU, over the largest",
         difference,

@@ -284,7 +284,7 @@ def structured(run: Run, page: Page, quick: bool, repeats: int) -> None:
     "Mesh generation beside the solve",
     source="wall time of gmsh's stages, and of the solver on the same mesh",
     settings=("repeats",),
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Time meshing over sizes, by gmsh's options, by part, and swept."""

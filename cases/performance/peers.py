@@ -47,7 +47,7 @@ SYMBOLS = ("circle", "square", "diamond", "x")
 @case(
     "Speed and memory beside other finite-element tools, at equal error",
     source="Measured here: the same meshes, boundary conditions and answers for every tool",
-    alone=True,
+    alone="full",
     settings=(
         "tools",
         "problems",

@@ -108,7 +108,7 @@ def row_of(system: ElementSystem, facts: petsc.Facts, iterations: int) -> Record
     "Solids in parts: PETSc's GAMG on MPI processes",
     source="this project's own solver, in one process; PETSc (Balay et al. 1997)",
     settings=("unknowns", "processes"),
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """The same bar on more processes, and bars that grow with them."""

@@ -102,7 +102,7 @@ def measured(run: Run, wait: Wait, repeats: int) -> list[Took]:
     "Start to answer: what a user waits for, imports and compiling included",
     source="wall time of commands in processes of their own",
     settings=("repeats",),
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Time the study, the adviser and the uncertainty of a main bearing."""

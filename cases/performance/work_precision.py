@@ -29,7 +29,7 @@ MEMORY_LIMIT = 12.0
 @case(
     "Error against time: element, mesh, solver and tolerance",
     source="Exact: GJ/L; meridian in harmonics; Williams 1952 for the order at corners",
-    alone=True,
+    alone="full",
     settings=("parts",),
 )
 def run(run: Run, page: Page) -> None:

@@ -99,7 +99,7 @@ def solve(run: Run, body: str, unknowns: int) -> Record:
     "A million unknowns, thin and slender: a method that holds",
     source="Spillane, Dolean, Hauret, Nataf, Pechstein and Scheichl 2014, Numer. Math. 126, "
     "741-770; Saint-Venant's torsion; Euler-Bernoulli; the tube's meridian in harmonics",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Solve both bodies by patches, at ever more unknowns."""

@@ -75,7 +75,7 @@ def measured(samples: int, way: str) -> Record:
     "Long load histories: digits far from zero, time and memory",
     source="Welford 1962, Technometrics 4, 419-420; Chan, Golub and LeVeque 1983, The American "
     "Statistician 37, 242-247",
-    alone=True,
+    alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Variances against their mean, then memory against length."""

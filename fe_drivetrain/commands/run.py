@@ -93,8 +93,8 @@ def run_command(
     """Run validation cases and write their reports.
 
     Several cases run in parallel processes, as many as there are cores, or on a cluster, except
-    those that measure time, which run one by one at the end, on this machine. An index.html lists
-    all of them.
+    those that measure time, which run one by one at the end, on this machine; in quick runs only
+    those whose checks depend on it. An index.html lists all of them.
 
     The exit status is 0 if every check passes, 1 if one fails, 2 for a wrong option or setting,
     and 130 if stopped. A case that needs a program that is not installed is listed as skipped.

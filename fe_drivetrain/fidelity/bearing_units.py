@@ -12,16 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.common.made_by import source_hash
+from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs, mesh_parts, tied
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
-from fe_drivetrain.response.cached import solved_content
 from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
-from fe_drivetrain.response.makers import solved_by
+from fe_drivetrain.response.kept import kept_arrays
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
@@ -212,18 +210,13 @@ def _kept(
     solve: Callable[[], tuple[Floats, ...]],
 ) -> tuple[Floats, ...]:
     """What was solved of a scene's bearing unit before, or is now."""
-    used = user_cache() if cache is None else cache
-    whole = {
-        **content,
-        "scene": solved_content(scene),
-        "sizes": scene.mesh.model_dump(mode="json"),
-        "made by": solved_by(),
-        "code": source_hash({"fe_drivetrain.fidelity": {"bearing_units.py"}}),
-    }
-    arrays = used.load("solutions", whole)
-    if arrays is None:
-        arrays = {f"{k}": np.array(a, order="C") for k, a in enumerate(solve())}
-        used.keep("solutions", whole, arrays)
+    arrays = kept_arrays(
+        scene,
+        content,
+        {"fe_drivetrain.fidelity": {"bearing_units.py"}},
+        lambda: {f"{k}": array for k, array in enumerate(solve())},
+        cache,
+    )
     return tuple(arrays.values())
 
 

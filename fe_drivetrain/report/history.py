@@ -307,6 +307,30 @@ def past_runs(folder: Path, name: str = "") -> list[PastRun]:
     return [PastRun._make([*row[:4], bool(row[4]), json.loads(row[5]), *row[6:]]) for row in rows]
 
 
+def seconds_before(folder: Path, quick: bool) -> dict[str, float]:
+    """How long cases took when they last ran in one of the two modes.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder of reports; it need not have a history.
+    quick : bool
+        Whether the run was coarser and smaller.
+
+    Returns
+    -------
+    dict
+        Wall time of all steps by the name of the case [s].
+    """
+    if not (folder / FILE).is_file():
+        return {}
+    with _opened(folder) as database:
+        rows = database.execute(
+            "SELECT name, seconds FROM runs WHERE quick = ? ORDER BY run", (quick,)
+        ).fetchall()
+    return dict(rows)
+
+
 @contextmanager
 def _opened(folder: Path) -> Iterator[sqlite3.Connection]:
     """The database, closed at the end; what is written is written as a whole."""

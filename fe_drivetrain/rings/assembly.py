@@ -10,10 +10,11 @@ load case; the motions of the shaft as a rigid body are among them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from fe_drivetrain.bearing.geometry import Bearing
@@ -30,8 +31,9 @@ from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import eliminate
+from fe_drivetrain.response.kept import kept_arrays
 from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
-from fe_drivetrain.rings.housing import contact_rows
+from fe_drivetrain.rings.housing import MADE_BY, contact_rows
 from fe_drivetrain.scene.bearing_unit import RollerRow as SceneRow
 from fe_drivetrain.scene.bearing_unit import Rollers
 from fe_drivetrain.scene.scene import Scene
@@ -221,6 +223,24 @@ def roller_assembly(
             f"bearings {', '.join(bearings)} are given, but the scene has {', '.join(names)}: give "
             "each of them"
         )
+    content = {
+        "rollers of": {name: asdict(bearing) for name, bearing in bearings.items()},
+        "method": method,
+        "weak": WEAK,
+    }
+    found = kept_arrays(scene, content, MADE_BY, lambda: _solved(scene, bearings, method))
+    points = zip(found["points"], found["motions"], found["pushes"], strict=True)
+    return RollerAssembly(
+        dict(bearings),
+        found["stiffness"],
+        found["loads"],
+        {str(name): (motion, push) for name, motion, push in points},
+        found["springs"],
+    )
+
+
+def _solved(scene: Scene, bearings: Mapping[str, Bearing], method: str) -> dict[str, NDArray[Any]]:
+    """Arrays of a `RollerAssembly`, its points as names, "motions" and "pushes"."""
     model, contacts, springs = _model(scene, bearings)
     elimination = eliminate(model.constraints, model.n_dofs)
     total = len(springs) // 2
@@ -241,16 +261,15 @@ def roller_assembly(
             f"the scene without its rollers gives energy back ({least[0]:.3g} N/m): the solver "
             'was not exact enough; give method="direct"'
         )
-    return RollerAssembly(
-        dict(bearings),
-        S,
-        inverse @ (contacts.T @ u[:, size:]),
-        {
-            name: (point.motion @ u[:, size:], point.motion @ u[:, :size])
-            for name, point in model.points.items()
-        },
-        springs,
-    )
+    points = model.points.values()
+    return {
+        "stiffness": S,
+        "loads": inverse @ (contacts.T @ u[:, size:]),
+        "points": np.array(list(model.points), dtype=np.str_),
+        "motions": np.array([point.motion @ u[:, size:] for point in points]),
+        "pushes": np.array([point.motion @ u[:, :size] for point in points]),
+        "springs": springs,
+    }
 
 
 def assembly_equilibrium(

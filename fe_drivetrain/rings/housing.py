@@ -9,7 +9,8 @@ body moves its windows as rigid rings do.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Set
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.operator.incompressible import assemble_unlocked
+from fe_drivetrain.response.kept import kept_arrays
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.scene import Scene
@@ -32,6 +34,12 @@ from fe_drivetrain.solve.solvers import solve
 
 #: Of a raceway in the bore, over the pitch diameter: others are another bearing's.
 LARGEST_BORE = 1.25
+
+MADE_BY: Mapping[str, Set[str] | None] = {
+    "fe_drivetrain.rings": None,
+    "fe_drivetrain.bearing": None,
+}
+"""Whose sources solutions at rollers depend on, see `kept_arrays`."""
 
 _DEGREE = 8  # of the quadrature of a window, which is not smooth
 
@@ -80,6 +88,18 @@ def housing_races(scene: Scene, name: str, bearing: Bearing, method: str = "auto
     InputError
         The bearing does not fit the bore.
     """
+    content = {"housing races": name, "bearing": asdict(bearing), "method": method}
+    kept = kept_arrays(
+        scene,
+        content,
+        MADE_BY,
+        lambda: {"compliance": _compliance(scene, name, bearing, method)},
+    )
+    return Races(bearing, kept["compliance"])
+
+
+def _compliance(scene: Scene, name: str, bearing: Bearing, method: str) -> Floats:
+    """(2 total, 2 total) of the housing at the rollers, bedplate included."""
     solid = housing_solid(scene, name, bearing)
     mesh, F = solid.mesh, solid.contacts
     part = f"{name}.housing"
@@ -90,7 +110,7 @@ def housing_races(scene: Scene, name: str, bearing: Bearing, method: str = "auto
         under = base_centre(unit, mesh)
         motions = F.T @ rigid_motions(mesh.points, under)
         C = C + motions @ np.diag(1.0 / as_numbers(unit.bedplate)) @ motions.T
-    return Races(bearing, C)
+    return C
 
 
 def contact_compliance(

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from fe_drivetrain.common.errors import InputError
 
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 QUICK = (
     "Quick run: coarser and smaller than the case, for a first look; its figures and bands are not "
     "those of the case."
+)
+BESIDE_OTHERS = (
+    "Its times, and the memory of its process, are for a first look, too: other cases may have run "
+    "at the same time, or before in that process."
 )
 
 
@@ -43,9 +47,9 @@ class Case:
         Where the problem and its reference come from.
     run : callable
         Does the work: takes a `Run` and fills a `Page`.
-    alone : bool
+    alone : bool or "full"
         It measures time or memory: nothing may run beside it, and nothing it uses comes from the
-        cache.
+        cache. "full" where no check of its quick form depends on time: that may run beside others.
     settings : tuple of str
         Keys of ``--set`` that are the case's own.
     changes : str
@@ -59,10 +63,14 @@ class Case:
     title: str
     source: str
     run: Callable[[Run, Page], None]
-    alone: bool = False
+    alone: bool | Literal["full"] = False
     settings: tuple[str, ...] = ()
     changes: str = ""
     command: str = ""
+
+    def runs_alone(self, quick: bool) -> bool:
+        """Whether nothing may run beside its quick form, or beside its full one."""
+        return self.alone is True or (self.alone == "full" and not quick)
 
     def results(self, run: Run) -> Results:
         """Run the case; what it found."""
@@ -76,7 +84,7 @@ class Case:
             case=self.name,
             title=f"{page.subject}: {self.title}" if page.subject else self.title,
             source=page.source or self.source,
-            notes=[*([QUICK] if run.quick else []), *page.notes],
+            notes=[*self._of_quick_runs(run.quick), *page.notes],
             summary=page.summary,
             answers=page.answers,
             verdicts=page.verdicts,
@@ -91,6 +99,10 @@ class Case:
                 run.settings, page.seed, run.quick, self.command or self._typed(run)
             ),
         )
+
+    def _of_quick_runs(self, quick: bool) -> list[str]:
+        beside = self.alone and not self.runs_alone(quick)
+        return [*([QUICK] if quick else []), *([BESIDE_OTHERS] if beside else [])]
 
     def _typed(self, run: Run) -> str:
         """What runs it with the same settings."""

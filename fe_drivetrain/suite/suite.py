@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 import threading
 import traceback
@@ -42,9 +43,9 @@ def run_cases(
     """Run cases, each into ``out/GROUP/NAME``, and write ``out/index.html``.
 
     Independent cases run in processes side by side, as many as the cores allow, or on a cluster
-    (`scheduled_by`); those that are to be `alone` come after them on this machine, one by one, each
-    in a process that starts afresh. A case that fails
-    does not keep the others from their work. Each result folder appears whole or not at all; when
+    (`scheduled_by`), those first that took longest before; those that are to be `alone` come after
+    them on this machine, one by one, each in a process that starts afresh. A case that fails does
+    not keep the others from their work. Each result folder appears whole or not at all; when
     stopped, those of finished cases stay, and the page lists the others as not run.
 
     Parameters
@@ -72,7 +73,7 @@ def run_cases(
     InputError
         A result folder cannot be written or holds something else, or no case takes a setting.
     """
-    from fe_drivetrain.report.history import check_history, record_run
+    from fe_drivetrain.report.history import check_history, record_run, seconds_before
     from fe_drivetrain.report.index import problems_before, write_index
     from fe_drivetrain.report.results import read_results
 
@@ -124,7 +125,12 @@ def run_cases(
         check_history(out)
         pages.soon()
         count()
-        beside = [case for case in cases if not case.alone]
+        took = seconds_before(out, quick)
+        # at the end no process waits for another's long one; nobody knows how long a new one is
+        beside = sorted(
+            (case for case in cases if not case.runs_alone(quick)),
+            key=lambda case: -took.get(case.name, math.inf),
+        )
         with pool(len(beside), show, each_for_itself=True) as workers:
             jobs: dict[Future[Problem | None], Case] = {
                 workers.start(
@@ -135,7 +141,7 @@ def run_cases(
             for job in workers.finished(jobs):
                 finish(jobs[job], _outcome(job))
         for case in cases:
-            if case.alone:
+            if case.runs_alone(quick):
                 with Processes(1, show, always=True, each_for_itself=True) as processes:
                     job = processes.start(
                         _run, case, folders[case.name].path, taken[case.name], quick, out

@@ -1,0 +1,57 @@
+"""Arrays that were solved of a scene, taken from the cache where they were solved before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Set
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.made_by import source_hash
+from fe_drivetrain.response.cached import solved_content
+from fe_drivetrain.response.makers import solved_by
+from fe_drivetrain.scene.scene import Scene
+
+
+def kept_arrays(
+    scene: Scene,
+    content: Mapping[str, Any],
+    rooms: Mapping[str, Set[str] | None],
+    solve: Callable[[], Mapping[str, NDArray[Any]]],
+    cache: Cache | None = None,
+) -> dict[str, NDArray[Any]]:
+    """What was solved of a scene before, or is now.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with the sizes of its mesh.
+    content : Mapping[str, Any]
+        What else the arrays depend on, as plain data.
+    rooms : Mapping
+        Whose sources they depend on beside those of `solved_by`, as of `source_hash`.
+    solve : callable
+        Makes the arrays, by name.
+    cache : Cache or None
+        Where they may come from; the user's if not given.
+
+    Returns
+    -------
+    dict[str, ndarray]
+        The same to the last bit, with the same layout in memory, whether kept or solved now.
+    """
+    used = user_cache() if cache is None else cache
+    whole = {
+        **content,
+        "scene": solved_content(scene),
+        "sizes": scene.mesh.model_dump(mode="json"),
+        "made by": solved_by(),
+        "code": source_hash(rooms),
+    }
+    arrays = used.load("solutions", whole)
+    if arrays is None:
+        arrays = {name: np.array(a, order="C") for name, a in solve().items()}
+        used.keep("solutions", whole, arrays)
+    return arrays
