@@ -25,7 +25,7 @@ from fe_drivetrain.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
 
 MAX_ITERATIONS = 150
 
-_LANCZOS_STEPS, _MOST_LEVELS = 8, 10
+LANCZOS_STEPS, _MOST_LEVELS = 8, 10
 
 # Diagonals whose rows single precision has the range for; no entry is larger than the diagonal's.
 _SINGLE = np.finfo(np.float32)
@@ -283,7 +283,7 @@ def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
     p, rz = z.copy(), float(r.ravel() @ z.ravel())
     diagonal, beside = [], []
     alpha, beta = 1.0, 0.0
-    for _ in range(_LANCZOS_STEPS):
+    for _ in range(LANCZOS_STEPS):
         kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)
         curvature = -float(p.ravel() @ Kp.ravel())
         if curvature <= 0.0 or rz <= 0.0:
