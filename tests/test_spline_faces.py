@@ -2,6 +2,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import gmsh
 import numpy as np
@@ -217,3 +218,32 @@ def test_what_is_only_nearly_a_cylinder_is_refused_with_its_deviation(files, inv
     status, out, _ = invoke("part", str(files / name))
     assert status == 0
     assert "no bore: a " in out
+
+
+# parts of others: examples that come with gmsh
+
+
+def gmsh_example(name):
+    root = Path(gmsh.__file__).parents[3]
+    found = root / "share" / "doc" / "gmsh" / name
+    if not found.is_file():
+        pytest.skip(f"this gmsh comes without {name}")
+    return found
+
+
+def test_the_bore_of_a_public_part_of_splines_is_found():
+    found = surveyed(gmsh_example("tutorials/t20_data.step"))
+    (seat,) = found["seats"]
+    assert seat["described"] == "B-spline surface"
+    assert np.allclose(np.abs(seat["axis"]), [0, 1, 0], atol=1e-9)
+    # it is between the two ends, whose blends are no bores
+    assert seat["radius"] == pytest.approx(9.646875, abs=1e-6)
+    assert seat["length"] < found["box"][4] - found["box"][1]
+
+
+def test_faces_of_a_public_part_have_its_colours():
+    found = surveyed(gmsh_example("examples/api/step_boundary_colors.stp"))
+    colours = {tuple(np.round(f["normal"]).astype(int)): f["colour"] for f in found["faces"]}
+    assert colours[(0, 0, 1)] == "#00ff00"
+    assert colours[(0, 1, 0)] == "#ff0000"
+    assert colours[(1, 0, 0)] == "#0080ff"

@@ -45,7 +45,7 @@ def recognised(tag: int, kind: str) -> dict[str, Any]:
         Empty of a face that is described as what it is. Else "off", how far its points are from
         the surface that fits best [mm], and "described", as what; of one that fits "kind" and, as
         of faces described as such, "normal", or "radius", "centre", "axis", "length" and "hole";
-        of one that does not quite fit "nearly", the radius of the cylinder or sphere.
+        of a hollow one that does not quite fit "nearly", the radius of the cylinder or sphere.
     """
     if kind in _EXACT:
         return {}
@@ -69,9 +69,12 @@ def recognised(tag: int, kind: str) -> dict[str, Any]:
     tilted = np.abs(normals @ best.axis).max() > max(_STRAIGHT, 10.0 * math.sqrt(share))
     if not best.radius < extent * 10 or share > _NEARLY or (found == "Cylinder" and tilted):
         return described
+    shape = _round(best, points, at, normals)
+    if share > ROUND and not shape["hole"]:
+        return described
     if share > ROUND:
         return described | {"nearly": best.radius, "shape": found.lower(), "off": best.off}
-    return described | {"kind": found, "off": best.off} | _round(best, points, at, normals)
+    return described | {"kind": found, "off": best.off} | shape
 
 
 def _round(best: Fit, points: Floats, at: Floats, normals: Floats) -> dict[str, Any]:
