@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
@@ -118,7 +119,11 @@ class Tied(NamedTuple):
 
 
 def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: bool = True) -> Tied:
-    """Tie bonded bearings to housings from files, others share nodes with theirs; and all parts.
+    """Tie bearings to housings from files, others share nodes with theirs; and all parts.
+
+    Bonded ones are tied wholly. Sliding ones are tied along the normal of their sphere alone: the
+    rows of the whole tie, each along the direction from the bearing's centre, so that the joint
+    resists no rotation about it.
 
     Parameters
     ----------
@@ -130,19 +135,40 @@ def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: bool = True) -> Tied:
         Whether bearings are tied, too; else further parts alone.
     """
     ties: list[Constraint] = []
+    sliding: dict[int, Floats] = {}
     for unit in units:
-        if not rings or unit.foreign is None or unit.interface != "bonded":
+        if not rings or unit.foreign is None or unit.interface not in ("bonded", "sliding"):
             continue
         name = unit.bearing.name
         slave, master = _finer_first(unit, mesh)
+        if unit.interface == "sliding":
+            sliding[len(ties)] = np.array([unit.bearing.x, 0.0, 0.0])
+            name += " joint"
+        else:
+            name += " tie"
         # standard multipliers would couple each node of the face with each
-        ties.append(mortar_tie(f"{name} tie", mesh.points, slave, master, mesh.points.size, "dual"))
+        ties.append(mortar_tie(name, mesh.points, slave, master, mesh.points.size, "dual"))
     faces = [pair for unit in units for pair in tie_faces(unit)]
     ties += [tie_of(own, mesh.points, mesh.faces[own], mesh.faces[other]) for own, other in faces]
     points = settled(mesh.points, *ties)
     for _ in faces:  # a slave's face may be the master of another part's
         points = settled(points, *ties)
-    return Tied(replace(mesh, points=points), tuple(ties))
+    found = [
+        _along_normals(tie, points, sliding[number]) if number in sliding else tie
+        for number, tie in enumerate(ties)
+    ]
+    return Tied(replace(mesh, points=points), tuple(found))
+
+
+def _along_normals(tie: Constraint, points: Floats, centre: Floats) -> Constraint:
+    """Of a tie with three rows a slave node one, along the direction from a centre."""
+    nodes = tie.pivots[::3] // 3
+    normals = points[nodes] - centre
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    n = len(nodes)
+    chosen = sparse.csr_array((normals.ravel(), np.arange(3 * n), 3 * np.arange(n + 1)))
+    pivots = 3 * nodes + np.abs(normals).argmax(axis=1)
+    return replace(tie, rows=(chosen @ tie.rows).tocsr(), pivots=pivots)
 
 
 def _finer_first(unit: BearingUnit, mesh: Mesh) -> tuple[Ints, Ints]:

@@ -66,6 +66,8 @@ def _look_at_step(request: dict[str, Any]) -> dict[str, Any]:
         try:
             gmsh.model.mesh.generate(2)
             points, triangles, owner = _surface()
+            if step_solid.has_splines(survey):
+                survey["measured"] = _measured()
         except Exception as error:
             why = step_solid.reason(error)
             survey["unmeshed"] = f"{why}{step_solid.where(why)}"
@@ -86,22 +88,37 @@ def _surface() -> tuple[Any, Any, Any]:
     return points, np.concatenate(blocks), np.concatenate(owner)
 
 
+def _measured() -> dict[str, float]:
+    """Volume and area within the surface mesh that is there, its triangles curved [mm^3, mm^2]."""
+    import gmsh
+
+    from fe_drivetrain.geometry.session import numbered_nodes
+    from fe_drivetrain.mesh.facets import facet_points
+
+    gmsh.model.mesh.setOrder(2)
+    points, number = numbered_nodes()
+    volume = area = 0.0
+    for _, face in gmsh.model.getEntities(2):
+        nodes = gmsh.model.mesh.getElementsByType(9, face)[1].reshape(-1, 6)
+        if not len(nodes):
+            continue
+        at = facet_points(points, number[nodes])
+        middle = points[number[nodes[0]], :][3]
+        on = gmsh.model.getClosestPoint(2, face, middle.tolist())[1]
+        side = at.normals[0].mean(axis=0) @ np.array(gmsh.model.getNormal(face, list(on)))
+        volume += np.sign(side) * np.einsum("fqi,fqi,fq->", at.positions, at.normals, at.areas) / 3
+        area += float(at.areas.sum())
+    return {"volume": float(volume), "area": area}
+
+
 def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
     """A mesh of curved tetrahedra in mm, its faces, and the survey."""
-    from fe_drivetrain.common.errors import InputError
     from fe_drivetrain.foreign import step_mesh, step_solid
     from fe_drivetrain.geometry.session import gmsh_session
 
     with gmsh_session():
         survey = step_solid.opened(request["file"], request["smallest_detail"], request["part"])
-        seats = step_solid.seat_cylinders(survey)
-        tags = step_solid.picked(survey, request["seat"], "seat")
-        seat = next((s for s in seats if set(s["tags"]) & set(tags)), None)
-        if seat is None:
-            raise InputError(
-                f"{survey['name']}: the seat must be a bore, a cylinder or a sphere: pick another "
-                "face"
-            )
+        seat = step_mesh.seat_of(survey, request)
         seat["holes"] = (
             step_mesh.bolt_holes(survey, request, _held(survey, request))
             if request.get("bolts")
@@ -110,6 +127,7 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
         step_mesh.cut(survey, request)
         step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
         arrays = _grouped()
+        survey["splines"] = step_solid.has_splines(survey)
         survey.pop("faces")
     arrays["survey"] = _text(survey | {"seat": seat})
     return arrays
@@ -144,6 +162,7 @@ def _mesh_further_part(request: dict[str, Any]) -> dict[str, Any]:
         step_mesh.name_faces(survey, request)
         step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
         arrays = _grouped()
+        survey["splines"] = step_solid.has_splines(survey)
         survey.pop("faces")
     return arrays | {"survey": _text(survey)}
 

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.optimize import least_squares
 from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.fitting import fitted_circle, fitted_cylinder, from_axis
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.geometry import Bolts
 from fe_drivetrain.mesh.facets import facet_points
@@ -85,10 +85,10 @@ def bolt_holes(surface: Surface, held: Ints, radius: float) -> list[Hole]:
         at = surface.points[rim]
         middle = at.mean(axis=0)
         normal = np.linalg.svd(at - middle)[2][2]
-        centre, fitted = _circle(at, normal)
+        centre, fitted = fitted_circle(at, normal)
         if abs(fitted - radius) > 0.1 * radius or _off(at, centre, normal, fitted) > 0.1 * radius:
             continue
-        off = np.abs(_distance(corners, centre, normal) - fitted).max(axis=1)
+        off = np.abs(from_axis(corners, centre, normal) - fitted).max(axis=1)
         along = np.abs(surface.normals @ normal)
         wall = np.flatnonzero((off < _ON_HOLE * radius) & (along < _ALONG))
         wall = _reached(surface.facets[wall, :3], wall, rim)
@@ -215,40 +215,8 @@ def _loops(surface: Surface, facets: Ints) -> list[Ints]:
     return [nodes[loop == number] for number in range(loops)]
 
 
-def _circle(at: Floats, axis: Floats) -> tuple[Floats, float]:
-    """Centre in the mean height of points, and radius, of the circle about an axis (Kasa 1976)."""
-    across = np.linalg.svd(axis[None])[2][1:]
-    middle = at.mean(axis=0)
-    flat = (at - middle) @ across.T
-    A = np.column_stack([2 * flat, np.ones(len(flat))])
-    u, v, k = np.linalg.lstsq(A, (flat**2).sum(axis=1), rcond=None)[0].tolist()
-    return middle + np.array([u, v]) @ across, math.sqrt(max(k + u * u + v * v, 0.0))
-
-
-def _turned(at: Floats, axis: Floats) -> Floats:
-    """The axis near another about which points are on a circle, by least squares."""
-    across = np.linalg.svd(axis[None])[2][1:]
-
-    def along(turn: Floats) -> Floats:
-        found = axis + turn @ across
-        return np.asarray(found / np.linalg.norm(found), dtype=np.float64)
-
-    def off(turn: Floats) -> Floats:
-        centre, radius = _circle(at, along(turn))
-        return _distance(at, centre, along(turn)) - radius
-
-    return along(least_squares(off, np.zeros(2), x_scale=0.1).x)
-
-
-def _distance(at: Floats, centre: Floats, axis: Floats) -> Floats:
-    away = at - centre
-    return np.asarray(
-        np.linalg.norm(away - (away @ axis)[..., None] * axis, axis=-1), dtype=np.float64
-    )
-
-
 def _off(at: Floats, centre: Floats, axis: Floats, radius: float) -> float:
-    return float(np.abs(_distance(at, centre, axis) - radius).max())
+    return float(np.abs(from_axis(at, centre, axis) - radius).max())
 
 
 def _reached(corners: Ints, facets: Ints, start: Ints) -> Ints:
@@ -270,7 +238,7 @@ def _annulus(surface: Surface, facets: Ints, centre: Floats, up: Floats, bolts: 
     """Which facets have their middle under a washer."""
     away = surface.middles[facets] - centre
     flat = np.abs(away @ up) < 1e-4 * surface.size
-    near = _distance(surface.middles[facets], centre, up) < bolts.washer_diameter / 2
+    near = from_axis(surface.middles[facets], centre, up) < bolts.washer_diameter / 2
     return np.asarray(flat & near, dtype=np.bool_)
 
 
@@ -313,9 +281,8 @@ def _fitted(surface: Surface, facets: Ints) -> Cylinder | None:
     if np.abs(normals @ axis).max() > _ALONG:
         return None
     at = surface.points[np.unique(surface.facets[facets, :3])]
-    axis = _turned(at, axis)
-    centre, radius = _circle(at, axis)
-    if not 0 < radius < surface.size or _off(at, centre, axis, radius) > _ROUND * radius:
+    centre, axis, radius, off = fitted_cylinder(at, axis)
+    if not 0 < radius < surface.size or off > _ROUND * radius:
         return None
     heights = (at - centre) @ axis
     middle = centre + axis * (heights.max() + heights.min()) / 2

@@ -16,7 +16,9 @@ import gmsh
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.step_fit import area_and_middle, recognised
 from fe_drivetrain.foreign.step_solids import MOST_SOLIDS, glue, keep, outside, solids
+from fe_drivetrain.foreign.words import nearly
 
 VOLUME_TOLERANCE = 1e-4
 """Relative change of a volume by healing that is refused."""
@@ -179,7 +181,7 @@ def _counted() -> dict[str, Any]:
         "faces": len(gmsh.model.getEntities(2)),
         "edges": len(gmsh.model.getEntities(1)),
         "volume": math.fsum(gmsh.model.occ.getMass(3, t) for _, t in there),
-        "area": math.fsum(gmsh.model.occ.getMass(2, t) for _, t in gmsh.model.getEntities(2)),
+        "area": math.fsum(area_and_middle(t)[0] for _, t in gmsh.model.getEntities(2)),
     }
 
 
@@ -216,13 +218,10 @@ def _labels(path: str) -> list[tuple[str, str]]:
 
 
 def _face(tag: int) -> dict[str, Any]:
-    kind, occ = gmsh.model.getType(2, tag), gmsh.model.occ
-    face: dict[str, Any] = {
-        "tag": tag,
-        "kind": kind,
-        "area": float(occ.getMass(2, tag)),
-        "middle": [float(x) for x in occ.getCenterOfMass(2, tag)],
-    }
+    kind = gmsh.model.getType(2, tag)
+    area, middle = area_and_middle(tag)
+    face: dict[str, Any] = {"tag": tag, "kind": kind, "area": area, "middle": middle.tolist()}
+    face |= recognised(tag, kind)
     _, reals = gmsh.model.getEntityProperties(2, tag)
     if kind == "Plane":
         (u0, v0), (u1, v1) = gmsh.model.getParametrizationBounds(2, tag)
@@ -244,6 +243,11 @@ def _face(tag: int) -> dict[str, Any]:
         face |= {"centre": [float(x) for x in reals[:3]], "radius": float(reals[-1])}
         face["hole"] = _is_hole(tag, np.array(face["centre"]), np.zeros(3))
     return face
+
+
+def has_splines(survey: dict[str, Any]) -> bool:
+    """Whether faces are described as splines, so that OpenCASCADE's volumes are inexact."""
+    return any("described" in face for face in survey["faces"])
 
 
 def _is_hole(tag: int, place: Any, axis: Any) -> bool:
@@ -326,10 +330,14 @@ def _nearest(faces: Sequence[dict[str, Any]], pick: dict[str, Any]) -> str:
     given = " and ".join(f"{key} {value}" for key, value in pick.items())
     if "radius" in pick:
         radii = sorted({round(f["radius"], 4) for f in faces if f.get("hole")})
+        others = [nearly(f) for f in faces if "nearly" in f]
+        almost = f"; a face is {others[0]}" if others else ""
         if not radii:
-            return f"no bore has {given}, for there are no bores: give the part with its seat"
+            return (
+                f"no bore has {given}, for there are no bores{almost}: give the part with its seat"
+            )
         there = ", ".join(f"{r:g}" for r in radii[:20])
-        return f"no bore has {given}; radii of bores are {there} mm: use one of these"
+        return f"no bore has {given}{almost}; radii of bores are {there} mm: use one of these"
     if "label" in pick or "colour" in pick:
         (key,) = pick
         there = ", ".join(sorted({f[key] for f in faces if f[key]})[:20]) or "none"
@@ -341,19 +349,21 @@ def seat_cylinders(survey: dict[str, Any]) -> list[dict[str, Any]]:
     """Bores, faces on one surface taken together, the widest first."""
     found: list[dict[str, Any]] = []
     size = survey["size"]
+    own = {face["tag"]: face for face in survey["faces"]}
     holes = [face for face in survey["faces"] if face.get("hole")]
     # along one line, in order
     for face in sorted(holes, key=lambda f: [round(x / size, 7) for x in f["centre"]]):
         axis, centre = np.array(face.get("axis", (0.0,) * 3)), np.array(face["centre"])
+        apart = SAME * size + 4 * face.get("off", 0.0)  # of fits to pieces of one spline
         half = face.get("length", 2 * face["radius"]) / 2
         for seat in found:
             off = centre - seat["place"]
             along = off @ seat["axis"]
             same = (
                 seat["kind"] == face["kind"]
-                and abs(seat["radius"] - face["radius"]) < SAME * size
-                and np.linalg.norm(np.cross(axis, seat["axis"])) < _ALIGNED
-                and np.linalg.norm(off - along * seat["axis"]) < SAME * size
+                and abs(seat["radius"] - face["radius"]) < apart
+                and np.linalg.norm(np.cross(axis, seat["axis"])) < _ALIGNED * apart / (SAME * size)
+                and np.linalg.norm(off - along * seat["axis"]) < apart
             )
             ends = (min(seat["ends"][0], along - half), max(seat["ends"][1], along + half))
             # bores of the same line with a gap between them are two seats
@@ -381,6 +391,10 @@ def seat_cylinders(survey: dict[str, Any]) -> list[dict[str, Any]]:
             "length": seat["ends"][1] - seat["ends"][0],
             "centre": (seat["place"] + seat["axis"] * sum(seat["ends"]) / 2).tolist(),
             "tags": seat["tags"],
+            "off": max(own[t].get("off", 0.0) for t in seat["tags"]),
+            "described": next(
+                (own[t]["described"] for t in seat["tags"] if "described" in own[t]), ""
+            ),
         }
         for seat in sorted(found, key=lambda s: -s["radius"])
     ]

@@ -12,6 +12,7 @@ from typing import Any
 import gmsh
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.step_fit import area_and_middle
 
 MOST_SOLIDS = 100
 """Most solids of a file."""
@@ -101,8 +102,9 @@ Place = tuple[float, tuple[float, float, float]]
 
 def placed(face: int) -> Place:
     """Area and middle of a face [mm^2, mm]."""
-    x, y, z = gmsh.model.occ.getCenterOfMass(2, face)
-    return float(gmsh.model.occ.getMass(2, face)), (x, y, z)
+    area, middle = area_and_middle(face)
+    x, y, z = middle.tolist()
+    return area, (x, y, z)
 
 
 def became(old: Place, piece: list[tuple[int, int]], size: float) -> set[int]:

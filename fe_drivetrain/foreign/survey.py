@@ -14,6 +14,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.holes import cylinders, planes
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
+from fe_drivetrain.foreign.words import nearly
 from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, STEP_ENDINGS
 from fe_drivetrain.mesh.measures import mass_moments, scaled_jacobians
 from fe_drivetrain.mesh.mesh import Mesh, boundary
@@ -99,13 +100,24 @@ def _of_step(path: Path) -> Survey:
     if len(found["triangles"]):
         low, high = found["points"].min(axis=0), found["points"].max(axis=0)
     rows: list[tuple[str, ...]]
+    size, area = f"{after['volume'] / 1e6:.6g} dm^3", after["area"]
+    if "measured" in data:  # splines, of which OpenCASCADE's integrals are inexact
+        volume, area = data["measured"]["volume"], data["measured"]["area"]
+        apart = abs(volume - after["volume"])
+        size = f"{volume / 1e6:.5g} +- {apart / 1e6:.2g} dm^3"
     lines = [
         f"{path.name}: {after['words']}, {after['faces']} faces, {after['edges']} edges, "
-        f"{after['volume'] / 1e6:.6g} dm^3, {after['area'] / 1e6:.4g} m^2",
+        f"{size}, {area / 1e6:.4g} m^2",
         f"box: {_xyz(low)} to {_xyz(high)} mm",
         f"before healing: {before['words']}, {before['faces']} faces, "
         f"{before['volume'] / 1e6:.6g} dm^3",
     ]
+    if "measured" in data:
+        lines[-1] += f", after it {after['volume'] / 1e6:.6g} dm^3 in the same way"
+        lines.append(
+            "faces are splines: the volume is that within curved facets, and its band how far "
+            "OpenCASCADE's, before and after healing, is from it"
+        )
     if after["solids"] > 1:
         lines += ["", "Solids, glued where they touch; one alone by 'part', its name [mm]:"]
         rows = [
@@ -135,10 +147,13 @@ def _of_step(path: Path) -> Survey:
                 f"length {seat['length']:.6g}" if round_ else "",
                 f"centre {_xyz(seat['centre'])}",
                 f"axis {_xyz(seat['axis'])}" if round_ else "",
+                f"of a {seat['described']}, within {seat['off']:.2g}" if seat["described"] else "",
                 *_tags(seat),
             )
         )
     lines += _table(rows, len(data["seats"]))
+    almost = [face for face in data["faces"] if "nearly" in face]
+    lines += [f"  no bore: {nearly(face)}" for face in almost[:_MOST_ROWS]]
     planes = sorted(_planes(data["faces"]), key=lambda p: -p["area"])
     lines += ["", "Planes, the largest first; the part is held by one or more of them [mm]:"]
     rows = []

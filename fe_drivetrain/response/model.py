@@ -252,7 +252,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
             conditions += joint.constraints
             springs += joint.springs
             points |= {point.name: point for point, _ in joint.springs}
-        elif unit.interface != "bonded":
+        elif unit.interface == "averaged" or (unit.interface == "sliding" and not unit.foreign):
             first = first_dof.get(f"{name} joint", 0)
             conditions.append(_spherical_joint(unit, mesh, first, n_dofs))
         base = f"{name}.housing.base"
@@ -369,12 +369,13 @@ def joint_pairs(mesh: Mesh, bearing: str) -> tuple[Ints, Ints]:
 
 def _spherical_joint(unit: BearingUnit, mesh: Mesh, first_dof: int, n_dofs: int) -> Constraint:
     name = unit.bearing.name
-    inner, outer = joint_pairs(mesh, name)
     label = f"{name} joint"
     points = mesh.points
     centre = np.array([unit.bearing.x, 0.0, 0.0])
     if unit.interface == "sliding":
+        inner, outer = joint_pairs(mesh, name)
         return constraints.sliding_sphere(label, inner, outer, points, centre, n_dofs)
+    inner, outer = (mesh.face_nodes(face) for face in (f"{name}.outer", f"{name}.housing.bore"))
     inner_weights, outer_weights = (
         constraints.centred_weights(
             face_weights(points, mesh.faces[face], len(points), MEANS)[nodes], points[nodes], centre

@@ -206,11 +206,6 @@ class BearingUnit(Keys):
 
 def _check_foreign(unit: "BearingUnit", housing: ForeignHousing) -> None:
     name = unit.bearing.name
-    if unit.interface == "sliding":
-        raise ValueError(
-            f"bearing {name!r} has interface 'sliding', which needs a housing meshed with it, but "
-            "one from a file: make the interface 'averaged' or 'rigid'"
-        )
     if unit.bedplate is not None and housing.bolts is not None and housing.bolts.hold != "washers":
         raise ValueError(
             f"bearing {name!r} has a bedplate and bolts that hold it as {housing.bolts.hold!r}, "

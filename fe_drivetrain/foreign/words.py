@@ -1,0 +1,26 @@
+"""What the messages of several modules say of faces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+ROUND = 1e-4
+"""Of its radius: a face that deviates more from a cylinder or sphere is none."""
+
+
+def nearly(face: Mapping[str, Any]) -> str:
+    """What a face is nearly, in words, with its deviation.
+
+    Parameters
+    ----------
+    face : Mapping
+        Of `fe_drivetrain.foreign.step_fit.recognised`, with "nearly".
+    """
+    off, radius = face["off"], face["nearly"]
+    x, y, z = face["middle"]
+    return (
+        f"a {face['described']} round ({x:.4g}, {y:.4g}, {z:.4g}) mm that deviates {off:.3g} mm "
+        f"from a {face['shape']} of radius {radius:.7g} mm, {off / radius:.2g} of the radius, "
+        f"where at most {ROUND:g} is taken for one"
+    )
