@@ -56,7 +56,7 @@ def scene_loads(scene: Scene) -> tuple[str, ...]:
 _N_GROUPS = 32  # near the square root of the number of nodes on a joint: least fill
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Model:
     """A scene's finite-element model, before it is solved.
 

@@ -109,8 +109,40 @@ class CondensedSolid:
         return u[: self.mesh.points.size]
 
 
+def assembled_parts(mesh: Mesh, materials: Mapping[str, Material]) -> sparse.bsr_array:
+    """Stiffness of parts of a mesh, once for several ways to couple its faces.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    materials : mapping of str to Material
+        Of each part that is assembled, by its name in the mesh.
+
+    Returns
+    -------
+    sparse.bsr_array
+        (3 n, 3 n) of the n nodes [N/m].
+
+    Raises
+    ------
+    InputError
+        A cell has a node that there is not, or is folded over.
+    """
+    cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
+    for some in cells:
+        check_elements(mesh.points, some)
+    return sum(
+        assemble_unlocked(mesh.points, some, material.lame)
+        for some, material in zip(cells, materials.values(), strict=True)
+    )
+
+
 def coupled_solid(
-    mesh: Mesh, materials: Mapping[str, Material], attachments: Sequence[Attachment]
+    mesh: Mesh,
+    materials: Mapping[str, Material],
+    attachments: Sequence[Attachment],
+    stiffness: sparse.bsr_array | None = None,
 ) -> CoupledSolid:
     """Assemble parts of a mesh and couple faces to reference points.
 
@@ -122,6 +154,8 @@ def coupled_solid(
         Of each part that is assembled, by its name in the mesh.
     attachments : sequence of Attachment
         Reference points with their faces.
+    stiffness : sparse.bsr_array or None
+        Of `assembled_parts`, where that is there already.
 
     Raises
     ------
@@ -141,16 +175,12 @@ def coupled_solid(
             weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
             point = constraints.averaged_point(name, nodes, weights, mesh.points, position, n_dofs)
         points.append(point)
-    cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
-    for some in cells:
-        check_elements(mesh.points, some)
-    K = sum(
-        assemble_unlocked(mesh.points, some, material.lame, n_dofs)
-        for some, material in zip(cells, materials.values(), strict=True)
-    )
-    return CoupledSolid(
-        mesh, np.concatenate(cells), K, tuple(attachments), tuple(points), tuple(rigid_faces)
-    )
+    K = assembled_parts(mesh, materials) if stiffness is None else stiffness
+    # reference points have no stiffness of their own
+    ends = np.append(K.indptr, np.full(n_dofs // 3 - n, K.indptr[-1], dtype=K.indptr.dtype))
+    K = sparse.bsr_array((K.data, K.indices, ends), shape=(n_dofs, n_dofs))
+    cells = np.concatenate([mesh.cells[mesh.part_cells(part)] for part in materials])
+    return CoupledSolid(mesh, cells, K, tuple(attachments), tuple(points), tuple(rigid_faces))
 
 
 def condensed_solid(

@@ -182,8 +182,10 @@ def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.b
 
 
 def _copied(K: sparse.bsr_array) -> sparse.bsr_array:
-    """The same pattern with numbers of its own."""
-    return sparse.bsr_array((K.data.copy(), K.indices, K.indptr), shape=K.shape)
+    """The same pattern, in the integers that `kernels` is compiled for, with numbers of its own."""
+    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
+    indices, indptr = (i.astype(np.int32, copy=False) for i in (K.indices, K.indptr))
+    return sparse.bsr_array((K.data.copy(), indices, indptr), shape=K.shape)
 
 
 def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
@@ -208,7 +210,7 @@ def _eliminated(kept: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_
     # little.
     pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
     rows = _rows(kept, pivots)
-    kernels.keep_dofs(kept.indptr, kept.indices, kept.data, mask, mean)
+    _keep_dofs(kept, mask, mean)
     # Degrees of freedom of reference points have no block of their own yet.
     bare = (~free & (kept.diagonal() == 0.0)).astype(float)
     if len(pivots) == 0 and not bare.any():
@@ -221,6 +223,20 @@ def _eliminated(kept: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_
     passed = across + across.T + dependent.T @ (rows @ place.T) @ dependent
     passed = passed + mean * sparse.diags_array(bare)
     return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
+
+
+def _keep_dofs(K: sparse.bsr_array, kept: Floats, diagonal: float) -> None:
+    """Zero rows and columns of degrees of freedom (n_nodes, 3) that are zero, not one.
+
+    Their diagonal gets a number. Few nodes have such, and the blocks of others are not touched.
+    """
+    has = (kept == 0.0).any(axis=1)
+    blocks = np.flatnonzero(np.repeat(has, np.diff(K.indptr)) | has[K.indices])
+    rows, columns = np.searchsorted(K.indptr, blocks, side="right") - 1, K.indices[blocks]
+    K.data[blocks] *= kept[rows, :, None] * kept[columns, None, :]
+    here = rows == columns
+    node, motion = np.nonzero(kept[rows[here]] == 0.0)
+    K.data[blocks[here][node], motion, motion] = diagonal
 
 
 def _rows(K: sparse.bsr_array, chosen: Ints) -> sparse.csr_array:

@@ -35,7 +35,9 @@ def round_off(K: sparse.bsr_array, x: Floats) -> float:
     relative
         Of the worst column; those that are zero do not count.
     """
-    sizes, energies = _sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x))
+    # made out here: NumPy's functions in a compiled loop would take a second to compile
+    sizes, energies = np.zeros((2, len(K.indptr) - 1, x.shape[1]))
+    _add_sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x), sizes, energies)
     there = sizes.sum(axis=0) > 0.0
     if not there.any():
         return 0.0
@@ -45,13 +47,17 @@ def round_off(K: sparse.bsr_array, x: Floats) -> float:
 
 
 @njit(cache=True, parallel=True)
-def _sums(
-    indptr: NDArray[np.int32], indices: NDArray[np.int32], data: Floats, X: Floats
-) -> tuple[Floats, Floats]:
-    """Sums over each block row of |x_i K_ij x_j| and of x_i K_ij x_j, for each column."""
-    n, m = len(indptr) - 1, X.shape[1]
-    size, energy = np.zeros((n, m)), np.zeros((n, m))
-    for i in prange(n):
+def _add_sums(
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    data: Floats,
+    X: Floats,
+    size: Floats,
+    energy: Floats,
+) -> None:
+    """Add over each block row |x_i K_ij x_j| and x_i K_ij x_j, of each column."""
+    m = X.shape[1]
+    for i in prange(len(indptr) - 1):
         for p in range(indptr[i], indptr[i + 1]):
             c = indices[p]
             for r in range(3):
@@ -60,4 +66,3 @@ def _sums(
                         term = X[3 * i + r, k] * data[p, r, s] * X[3 * c + s, k]
                         energy[i, k] += term
                         size[i, k] += abs(term)
-    return size, energy
