@@ -30,7 +30,7 @@ from fe_drivetrain.solve.coupled_solid import (
     CoupledSolid,
     assembled_parts,
     coupled_solid,
-    point_displacements,
+    point_motions_of,
 )
 from fe_drivetrain.solve.error_estimate import SAFETY, error_energies
 
@@ -278,11 +278,15 @@ def _kept(
 
 
 class _SolvedUnit(NamedTuple):
-    """A unit's solid, its parts, displacements (n, 6) for unit loads, and stiffness (6, 6)."""
+    """A unit's solid, its parts, displacements (n, 6) and motions (6, 6) for unit loads; stiffness.
+
+    The stiffness (6, 6) is that of joint, solid and bedplate.
+    """
 
     solid: CoupledSolid
     parts: list[str]
     displacements: Floats
+    compliance: Floats
     stiffness: Floats
 
 
@@ -290,7 +294,7 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     """Band of the mesh, relative: joint and bedplate in series only make its share less."""
     mesh = unit.solid.mesh
     parts = [(mesh.cells[mesh.part_cells(p)], scene.material_of(p).lame) for p in unit.parts]
-    stiffness = np.linalg.inv(unit.solid.loads.T @ unit.displacements)
+    stiffness = np.linalg.inv(unit.compliance)
     motions = unit.displacements @ stiffness
     shares = error_energies(mesh.points, parts, motions) / (0.5 * stiffness.diagonal())
     return SAFETY * float(shares.max())
@@ -341,8 +345,8 @@ def _solved_unit(of: UnitSolid, coupling: Coupling, method: str) -> _SolvedUnit:
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
         ground = free.T @ free
         springs += [*roller_joint(unit, mesh, n_dofs).springs, (solid.points[0], ground)]
-    displacements = point_displacements(solid, held, springs, method)
-    stiffness = np.linalg.inv(solid.loads.T @ displacements)
+    displacements, compliance = point_motions_of(solid, held, springs, method)
+    stiffness = np.linalg.inv(compliance)
     if unit.rollers is not None:
         carried = np.eye(6) - np.linalg.pinv(free) @ free
         stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
@@ -354,7 +358,7 @@ def _solved_unit(of: UnitSolid, coupling: Coupling, method: str) -> _SolvedUnit:
     stiffness = 0.5 * (stiffness + stiffness.T)
     if unit.rollers is None:
         stiffness = in_series(stiffness, joint_stiffness(unit))
-    return _SolvedUnit(solid, parts, displacements, stiffness)
+    return _SolvedUnit(solid, parts, displacements, compliance, stiffness)
 
 
 def _free_motions(stiffness: Floats, length: float) -> Floats:

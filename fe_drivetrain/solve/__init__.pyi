@@ -7,7 +7,7 @@ from .coupled_solid import CoupledSolid as CoupledSolid
 from .coupled_solid import condensed_solid as condensed_solid
 from .coupled_solid import coupled_solid as coupled_solid
 from .coupled_solid import point_compliance as point_compliance
-from .coupled_solid import point_displacements as point_displacements
+from .coupled_solid import point_motions_of as point_motions_of
 from .error_estimate import SAFETY as SAFETY
 from .error_estimate import ErrorEstimate as ErrorEstimate
 from .error_estimate import recovery_estimate as recovery_estimate
