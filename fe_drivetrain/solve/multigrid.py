@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pyamg
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
@@ -222,6 +221,8 @@ def _joined(joints: Joints, options: Options) -> Joined:
 
 
 def _hierarchy(system: System, options: Options) -> Hierarchy:
+    import pyamg  # half a second with what it imports, which a kept solution need not wait for
+
     levels = []
     K, motions, body = system.K, system.near_nullspace, system.body
     if system.prolongation is not None and options.linear_level:
