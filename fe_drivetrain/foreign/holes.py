@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.optimize import least_squares
 from scipy.sparse.csgraph import connected_components
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
@@ -236,6 +235,8 @@ def _turned(at: Floats, axis: Floats) -> Floats:
     def off(turn: Floats) -> Floats:
         centre, radius = _circle(at, along(turn))
         return _distance(at, centre, along(turn)) - radius
+
+    from scipy.optimize import least_squares  # a third of a second, which few wait for
 
     return along(least_squares(off, np.zeros(2), x_scale=0.1).x)
 
