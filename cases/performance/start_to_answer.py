@@ -67,6 +67,7 @@ def waited(wait: Wait, compiled: Path, kept: Path) -> Took:
             environment={
                 "NUMBA_CACHE_DIR": str(compiled),
                 CACHE_VARIABLE: str(kept),
+                "PYTHONDONTWRITEBYTECODE": "",  # an installed package has its bytecode
             },
         )
         wall = time.perf_counter() - start
