@@ -11,7 +11,12 @@ from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.solve.condensation import supported
-from fe_drivetrain.solve.coupled_solid import condensed_solid, coupled_solid, point_compliance
+from fe_drivetrain.solve.coupled_solid import (
+    condensed_solid,
+    coupled_solid,
+    point_compliance,
+    point_motions_of,
+)
 
 MATERIAL = {"shaft": MATERIALS["steel"]}
 
@@ -64,3 +69,16 @@ def test_a_spring_to_ground_at_a_point_adds_to_its_stiffness(mesh: Mesh):
     np.testing.assert_allclose(
         sprung / np.outer(size, size), (bare + spring) / np.outer(size, size), rtol=0, atol=1e-8
     )
+
+
+def test_a_compliance_is_right_to_the_square_of_what_its_displacements_are(mesh: Mesh):
+    hub, _ = attachments("rigid", "rigid")
+    solid = coupled_solid(mesh, MATERIAL, [hub])
+    rear = fixed("rear", mesh.face_nodes("shaft.rear"), solid.n_dofs)
+    exact = point_compliance(solid, [rear], method="superlu")
+    iterated = point_motions_of(solid, [rear], method="multigrid")
+    size = np.sqrt(np.outer(exact.diagonal(), exact.diagonal()))
+    first = np.abs((solid.loads.T @ iterated[0] - exact) / size).max()
+    second = np.abs((iterated[1] - exact) / size).max()
+    assert second < 1e-9
+    assert second < 0.1 * first

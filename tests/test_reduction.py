@@ -40,6 +40,15 @@ def test_eliminated_degrees_of_freedom_stand_alone(reduced):
     assert abs(K - before).max() == 0.0
 
 
+def test_indices_are_what_loops_are_compiled_for_whatever_springs_leave(reduced):
+    model, K, elimination, _ = reduced
+    wide = K.copy()
+    wide.indices, wide.indptr = wide.indices.astype(np.int64), wide.indptr.astype(np.int64)
+    system = reduce(model.mesh.points, model.mesh.cells, wide, elimination)
+    assert system.K.indices.dtype == system.K.indptr.dtype == np.int32
+    assert abs(system.K - reduced_stiffness(K, elimination)).max() == 0.0
+
+
 def test_prolonged_fields_fulfil_the_constraints(reduced, rng):
     _, _, elimination, system = reduced
     coarse = rng.standard_normal(system.prolongation.shape[1])

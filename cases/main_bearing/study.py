@@ -183,7 +183,9 @@ def mesh_of(run: Run, scene: Scene, label: str) -> Meshed:
 def solve_scene(
     run: Run, scene: Scene, label: str, meshed: Meshed | None = None, recovered: bool = False
 ) -> Solved:
-    """Mesh, assemble and solve a scene, or take its solution from the cache, timing each step.
+    """Mesh and solve a scene, or take its solution from the cache, timing each step.
+
+    It is assembled where it is solved.
 
     The operators of the parts, by far the largest of the results, are not kept: what is solved
     side by side travels between processes.
@@ -196,7 +198,7 @@ def solve_scene(
         Whether errors of its reactions are estimated, which takes a solution for each support.
     """
     mesh, mesh_quality = mesh_of(run, scene, label) if meshed is None else meshed
-    with run.step(f"assembly ({label})"):
+    with run.step(f"model ({label})"):
         model = build_model(scene, mesh)
     for warning in model.warnings:
         run.report(f"warning: {label}: {warning}")

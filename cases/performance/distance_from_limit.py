@@ -137,7 +137,8 @@ def pattern_bytes(pattern: Pattern) -> float:
 def element_bytes(problem: Problem, pattern: Pattern) -> float:
     """Cells, places and points read once, blocks cleared once and added to once."""
     blocks = 3.0 * 9 * 8 * len(pattern.indices)  # written, then read and written
-    return blocks + problem.cells.nbytes + pattern.slots.nbytes + problem.points.nbytes
+    read = problem.cells.nbytes + pattern.slots.nbytes + problem.points.nbytes
+    return blocks + float(read)
 
 
 def level_bytes(level: multigrid.Level) -> float:
@@ -166,7 +167,7 @@ def iteration_bytes(system: System, hierarchy: multigrid.Hierarchy) -> float:
     n = system.K.shape[0]
     total = float(DOUBLE * len(system.K.indices)) + 8.0 * n * VECTORS
     for level in hierarchy.levels:
-        between = level.prolongation.nnz + level.restriction.nnz
+        between = float(level.prolongation.nnz + level.restriction.nnz)
         vectors = 8.0 * level.K.shape[0] * VECTORS_OF_LEVEL
         total += 2 * level.degree * level_bytes(level) + 12.0 * between + vectors
     return total

@@ -47,17 +47,15 @@ class Took(NamedTuple):
     results: dict[str, Any]
 
 
-def waited(wait: Wait, folder: Path, fresh: bool) -> Took:
+def waited(wait: Wait, compiled: Path, kept: Path) -> Took:
     """Run a command in a process of its own, and wait for its report.
 
     Parameters
     ----------
     wait : Wait
         Which.
-    folder : Path
-        Holds what is kept from one run to the next: compiled loops, meshes, solutions.
-    fresh : bool
-        Whether nothing is taken from the cache of meshes and solutions, nor kept in it.
+    compiled, kept : Path
+        Hold compiled loops, and meshes and solutions, from one run to the next.
     """
     import resource  # which Windows does not have
 
@@ -67,8 +65,9 @@ def waited(wait: Wait, folder: Path, fresh: bool) -> Took:
         done = run_python(
             *("-c", _PROGRAM, *wait.command, "--out", f"{out}/results"),
             environment={
-                "NUMBA_CACHE_DIR": str(folder / "compiled"),
-                CACHE_VARIABLE: "off" if fresh else str(folder / "kept"),
+                "NUMBA_CACHE_DIR": str(compiled),
+                CACHE_VARIABLE: str(kept),
+                "PYTHONDONTWRITEBYTECODE": "",  # an installed package has its bytecode
             },
         )
         wall = time.perf_counter() - start
@@ -86,15 +85,20 @@ def measured(run: Run, wait: Wait, repeats: int) -> list[Took]:
     name = f"{' '.join(wait.command)}, {wait.before}"
     found = []
     with run.step(name), TemporaryDirectory() as folder:
+        compiled, kept = Path(folder, "compiled"), Path(folder, "kept")
         if wait.before != FIRST:
-            waited(wait, Path(folder), wait.before == ALONE)
+            waited(wait, compiled, kept)
         for number in range(repeats):
             run.report(f"{name} ({number + 1} of {repeats})")
-            if wait.before == FIRST:
-                with TemporaryDirectory() as empty:
-                    found.append(waited(wait, Path(empty), False))
-            else:
-                found.append(waited(wait, Path(folder), wait.before == ALONE))
+            # as a user has it: what a run makes is kept for the rest of it
+            with TemporaryDirectory() as empty:
+                found.append(
+                    waited(
+                        wait,
+                        Path(empty, "compiled") if wait.before == FIRST else compiled,
+                        kept if wait.before == SECOND else Path(empty, "kept"),
+                    )
+                )
     return found
 
 

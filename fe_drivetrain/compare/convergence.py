@@ -30,7 +30,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -289,6 +288,8 @@ def observed_order(sizes: ArrayLike, values: ArrayLike) -> float:
     steepness = np.sign([excess(order) for order in ORDERS])
     if np.sign(first) * np.sign(second) <= 0.0 or steepness.prod() >= 0.0:
         return float("nan")
+    from scipy.optimize import brentq  # a third of a second, which few wait for
+
     return float(brentq(excess, *ORDERS))
 
 

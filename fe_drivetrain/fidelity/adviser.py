@@ -26,6 +26,7 @@ from fe_drivetrain.fidelity.assembly_bands import (
     motion_error,
     reaction_error,
 )
+from fe_drivetrain.fidelity.bearing_units import UnitSolid
 from fe_drivetrain.fidelity.ladder import (
     TITLES,
     LevelModel,
@@ -228,6 +229,7 @@ def advise(
     tolerance: float,
     to_the_top: bool = False,
     report: Callable[[str], object] = lambda step: None,
+    shafts: Sequence[int] | None = None,
 ) -> Advice:
     """Run levels of rising cost until the quantity is known to be within the tolerance.
 
@@ -243,6 +245,8 @@ def advise(
         Whether to go on to the assembly where a cheaper level is known to be enough.
     report : callable
         Called with what is being done.
+    shafts : Sequence[int] or None
+        Levels of shafts on springs; where not given 1 and 2, and to the top 3, too.
 
     Raises
     ------
@@ -276,8 +280,9 @@ def advise(
         model = shaft_level(scene, 1)
         done = add(model, model.cost.seconds, float("nan"))
     springs: Mapping[str, Floats] = {}
+    levels = ((1, 2, 3) if to_the_top else (1, 2)) if shafts is None else shafts
     if not done:
-        springs, done = _run_on_springs(scene, quantity, to_the_top, add, report)
+        springs, done = _run_on_springs(scene, quantity, levels, add, report)
     if not done:
         model, seconds, (band,) = banded_assembly(scene, [quantity], report)
         add(model, seconds, band.half_width, band)
@@ -287,7 +292,7 @@ def advise(
 def _run_on_springs(
     scene: Scene,
     quantity: Quantity,
-    to_the_top: bool,
+    levels: Sequence[int],
     add: Callable[[LevelModel, float, float], bool],
     report: Callable[[str], object],
 ) -> tuple[Mapping[str, Floats], bool]:
@@ -298,12 +303,13 @@ def _run_on_springs(
     """
     length = scene.shaft.length
     report("housings, faces in shape")
-    stiff, seconds = housing_springs(scene, coupling="rigid", cache=UNCACHED)
+    solids: dict[tuple[str, bool], UnitSolid] = {}
+    stiff, seconds = housing_springs(scene, coupling="rigid", cache=UNCACHED, solids=solids)
     report("housings, faces on average")
-    soft = housing_springs(scene, coupling="averaged", cache=UNCACHED)[0]
+    soft = housing_springs(scene, coupling="averaged", cache=UNCACHED, solids=solids)[0]
     previous = None
     on_springs = ", housings as springs" if scene.bearing_units else ""
-    for level in (1, 2, 3) if to_the_top else (1, 2):
+    for level in levels:
         report(f"level {level}: {TITLES[level]}{on_springs}")
         start = time.perf_counter()
         body = condensed_shaft(scene, level)
@@ -312,7 +318,7 @@ def _run_on_springs(
         if level == 3 and any(unit.ring_on_housing for unit in scene.bearing_units):
             report("housings under rings that belong to the solid shaft")
             (hard, seconds), (yielding, _) = (
-                housing_springs(scene, c, level, UNCACHED) for c in ("rigid", "averaged")
+                housing_springs(scene, c, level, UNCACHED, solids) for c in ("rigid", "averaged")
             )
             bounds = hard, yielding
         model, bound = (shaft_level(scene, level, springs, body) for springs in bounds)

@@ -6,10 +6,11 @@ Joint, housing and bedplate are springs in series.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
@@ -19,12 +20,17 @@ from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs, mesh
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
 from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
-from fe_drivetrain.response.kept import kept_arrays
+from fe_drivetrain.response.kept import kept_together
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
-from fe_drivetrain.solve.coupled_solid import CoupledSolid, coupled_solid, point_displacements
-from fe_drivetrain.solve.error_estimate import SAFETY, recovery_estimate
+from fe_drivetrain.solve.coupled_solid import (
+    CoupledSolid,
+    assembled_parts,
+    coupled_solid,
+    point_motions_of,
+)
+from fe_drivetrain.solve.error_estimate import SAFETY, error_energies
 
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
 
@@ -38,6 +44,27 @@ _PRESCRIBED: dict[str, Coupling] = {
 }
 
 
+class UnitSolid(NamedTuple):
+    """Bearing and housing without the shaft, assembled once for both ways to couple the face.
+
+    Attributes
+    ----------
+    scene, name, with_ring : Scene, str, bool
+        Whose, of which bearing, and whether with its ring.
+    together, parts : Tied, list[str]
+        Its mesh, and the parts in it that give.
+    stiffness : sparse.bsr_array
+        (3 n, 3 n) of the n nodes [N/m].
+    """
+
+    scene: Scene
+    name: str
+    with_ring: bool
+    together: Tied
+    parts: list[str]
+    stiffness: sparse.bsr_array
+
+
 def unit_stiffness(
     scene: Scene,
     name: str,
@@ -45,6 +72,7 @@ def unit_stiffness(
     method: str = "auto",
     ring: bool = True,
     cache: Cache | None = None,
+    solids: dict[tuple[str, bool], UnitSolid] | None = None,
 ) -> Floats:
     """Stiffness of a bearing and its housing, solved without the shaft.
 
@@ -69,6 +97,9 @@ def unit_stiffness(
         of the housing, or of the rollers.
     cache : Cache or None
         Where it may come from, the same to the last bit; the user's if not given.
+    solids : dict or None
+        What is assembled of this scene and these sizes is put here, and taken from here, by bearing
+        and whether with its ring: for the other coupling.
 
     Returns
     -------
@@ -76,13 +107,16 @@ def unit_stiffness(
     """
     if (given := _given(scene, name)) is not None:
         return given
-    content = {"stiffness of": name, "coupling": coupling, "method": method, "ring": ring}
-    (found,) = _kept(
-        scene,
-        content,
-        cache,
-        lambda: (_solved_unit(scene, name, coupling, method, ring).stiffness,),
-    )
+    with_ring, coupling = _face_of(scene, name, ring, coupling)
+
+    known = {} if solids is None else solids
+
+    def solved() -> list[Floats]:
+        if (name, with_ring) not in known:
+            known[name, with_ring] = _unit_solid(scene, name, with_ring)
+        return [_solved_unit(known[name, with_ring], coupling, method).stiffness]
+
+    (found,) = _kept(scene, [_content(name, with_ring, coupling, method)], cache, solved)
     return found
 
 
@@ -110,16 +144,15 @@ def unit_stiffnesses(
     if (given := _given(scene, name)) is not None:
         return {"rigid": given, "averaged": given}
 
-    def solved() -> tuple[Floats, ...]:
-        together = _unit_mesh(scene, name)
-        rigid, averaged = (
-            _solved_unit(scene, name, coupling, method, together=together).stiffness
-            for coupling in _COUPLINGS
-        )
-        return rigid, averaged
+    ways = [_face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
 
-    found = _kept(scene, {"stiffnesses of": name, "method": method}, cache, solved)
-    return dict(zip(_COUPLINGS, found, strict=True))
+    def solved() -> list[Floats]:
+        unit = _unit_solid(scene, name, ways[0][0])
+        found = {way: _solved_unit(unit, way[1], method).stiffness for way in set(ways)}
+        return [found[way] for way in ways]
+
+    contents = [_content(name, *way, method) for way in ways]
+    return dict(zip(_COUPLINGS, _kept(scene, contents, cache, solved), strict=True))
 
 
 def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
@@ -185,13 +218,16 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
     if (given := _given(scene, name)) is not None:
         return UnitBounds(given, given, 0.0)
 
-    def solved() -> tuple[Floats, ...]:
-        together = _unit_mesh(scene, name)
-        stiff = _solved_unit(scene, name, "rigid", together=together)
-        soft = _solved_unit(scene, name, "averaged", together=together).stiffness
-        return soft, stiff.stiffness, np.array(_mesh_band(scene, stiff))
+    ways = [_face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
 
-    soft, stiff, mesh = _kept(scene, {"bounds of": name}, cache, solved)
+    def solved() -> list[Floats]:
+        unit = _unit_solid(scene, name, ways[0][0])
+        found = {way: _solved_unit(unit, way[1], "auto") for way in set(ways)}
+        stiff, soft = (found[way] for way in ways)
+        return [stiff.stiffness, soft.stiffness, np.array(_mesh_band(scene, stiff))]
+
+    contents = [_content(name, *way, "auto") for way in ways]
+    stiff, soft, mesh = _kept(scene, [*contents, {"mesh band of": name}], cache, solved)
     return UnitBounds(soft, stiff, float(mesh))
 
 
@@ -203,29 +239,41 @@ def _given(scene: Scene, name: str) -> Floats | None:
     return in_series(unit.condensed.matrix, joint_stiffness(unit))
 
 
+def _face_of(scene: Scene, name: str, ring: bool, coupling: Coupling) -> tuple[bool, Coupling]:
+    """Whether a unit is solved with its ring, and how its face is coupled: as the joint says."""
+    unit = scene.bearing_unit(name)
+    with_ring = unit.ring_on_housing and ring
+    if unit.rollers is not None and not with_ring:
+        return with_ring, "rigid"
+    return with_ring, _PRESCRIBED.get(unit.interface, coupling)
+
+
+def _content(name: str, with_ring: bool, coupling: Coupling, method: str) -> dict[str, Any]:
+    return {"stiffness of": name, "coupling": coupling, "method": method, "ring": with_ring}
+
+
 def _kept(
     scene: Scene,
-    content: Mapping[str, Any],
+    contents: Sequence[Mapping[str, Any]],
     cache: Cache | None,
-    solve: Callable[[], tuple[Floats, ...]],
-) -> tuple[Floats, ...]:
-    """What was solved of a scene's bearing unit before, or is now."""
-    arrays = kept_arrays(
-        scene,
-        content,
-        {"fe_drivetrain.fidelity": {"bearing_units.py"}},
-        lambda: {f"{k}": array for k, array in enumerate(solve())},
-        cache,
-    )
-    return tuple(arrays.values())
+    solve: Callable[[], Sequence[Floats]],
+) -> list[Floats]:
+    """What was solved of a scene's bearing unit before, or, where one of it is missing, is now."""
+    rooms = {"fe_drivetrain.fidelity": {"bearing_units.py"}}
+    found = kept_together(scene, contents, rooms, lambda: [{"0": a} for a in solve()], cache)
+    return [arrays["0"] for arrays in found]
 
 
 class _SolvedUnit(NamedTuple):
-    """A unit's solid, its parts, displacements (n, 6) for unit loads, and stiffness (6, 6)."""
+    """A unit's solid, its parts, displacements (n, 6) and motions (6, 6) for unit loads; stiffness.
+
+    The stiffness (6, 6) is that of joint, solid and bedplate.
+    """
 
     solid: CoupledSolid
     parts: list[str]
     displacements: Floats
+    compliance: Floats
     stiffness: Floats
 
 
@@ -233,50 +281,40 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     """Band of the mesh, relative: joint and bedplate in series only make its share less."""
     mesh = unit.solid.mesh
     parts = [(mesh.cells[mesh.part_cells(p)], scene.material_of(p).lame) for p in unit.parts]
-    stiffness = np.linalg.inv(unit.solid.loads.T @ unit.displacements)
+    stiffness = np.linalg.inv(unit.compliance)
     motions = unit.displacements @ stiffness
-    shares = [
-        recovery_estimate(mesh.points, parts, u).error_energy / (0.5 * k)
-        for u, k in zip(motions.T, stiffness.diagonal().tolist(), strict=True)
-    ]
-    return SAFETY * float(max(shares))
+    shares = error_energies(mesh.points, parts, motions) / (0.5 * stiffness.diagonal())
+    return SAFETY * float(shares.max())
 
 
-def _unit_mesh(scene: Scene, name: str, ring: bool = True) -> Tied:
-    """Bearing and housing without the shaft, with the ring where that gives."""
+def _unit_solid(scene: Scene, name: str, with_ring: bool) -> UnitSolid:
+    """A bearing unit's solid, with the ring where that gives."""
     unit = scene.bearing_unit(name)
     seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
     bearing = unit.bearing.model_copy(update={"bore_diameter": seat})
     alone = unit.model_copy(update={"bearing": bearing})
-    with_ring = unit.ring_on_housing and ring
-    return tied([alone], mesh_parts(None, [alone], scene.mesh), with_ring)
-
-
-def _solved_unit(
-    scene: Scene,
-    name: str,
-    coupling: Coupling,
-    method: str = "auto",
-    ring: bool = True,
-    together: Tied | None = None,
-) -> _SolvedUnit:
-    """A bearing and its housing without the shaft, see `unit_stiffness`."""
-    unit = scene.bearing_unit(name)
-    with_ring = unit.ring_on_housing and ring
-    together = _unit_mesh(scene, name, ring) if together is None else together
-    mesh = together.mesh
+    together = tied([alone], mesh_parts(None, [alone], scene.mesh), with_ring)
     parts = [*([name] if with_ring else []), *unit.housing_parts]
-    coupling = _PRESCRIBED.get(unit.interface, coupling)
+    materials = {part: scene.material_of(part) for part in parts}
+    stiffness = assembled_parts(together.mesh, materials)
+    return UnitSolid(scene, name, with_ring, together, parts, stiffness)
+
+
+def _solved_unit(of: UnitSolid, coupling: Coupling, method: str) -> _SolvedUnit:
+    """A bearing and its housing without the shaft, see `unit_stiffness`."""
+    scene, name, with_ring, together, parts, assembled = of
+    unit, mesh = scene.bearing_unit(name), together.mesh
     if with_ring:
         face = f"{name}.bore"
     elif unit.rollers is not None:
-        face, coupling = f"{name}.outer", "rigid"
+        face = f"{name}.outer"
     else:
         face = f"{name}.housing.bore"
 
     centre = np.array([unit.bearing.x, 0.0, 0.0])
     materials = {part: scene.material_of(part) for part in parts}
-    solid = coupled_solid(mesh, materials, [Attachment(name, face, centre, coupling)])
+    at = [Attachment(name, face, centre, coupling)]
+    solid = coupled_solid(mesh, materials, at, assembled)
     n_dofs = solid.n_dofs
     base = f"{name}.housing.base"
     left_out = np.setdiff1d(
@@ -294,8 +332,8 @@ def _solved_unit(
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
         ground = free.T @ free
         springs += [*roller_joint(unit, mesh, n_dofs).springs, (solid.points[0], ground)]
-    displacements = point_displacements(solid, held, springs, method)
-    stiffness = np.linalg.inv(solid.loads.T @ displacements)
+    displacements, compliance = point_motions_of(solid, held, springs, method)
+    stiffness = np.linalg.inv(compliance)
     if unit.rollers is not None:
         carried = np.eye(6) - np.linalg.pinv(free) @ free
         stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
@@ -307,7 +345,7 @@ def _solved_unit(
     stiffness = 0.5 * (stiffness + stiffness.T)
     if unit.rollers is None:
         stiffness = in_series(stiffness, joint_stiffness(unit))
-    return _SolvedUnit(solid, parts, displacements, stiffness)
+    return _SolvedUnit(solid, parts, displacements, compliance, stiffness)
 
 
 def _free_motions(stiffness: Floats, length: float) -> Floats:

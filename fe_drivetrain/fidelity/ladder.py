@@ -18,7 +18,7 @@ from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
-from fe_drivetrain.fidelity.bearing_units import scene_supports, unit_stiffness
+from fe_drivetrain.fidelity.bearing_units import UnitSolid, scene_supports, unit_stiffness
 from fe_drivetrain.fidelity.nose import on_nose
 from fe_drivetrain.fidelity.shafts import (
     beam_shaft,
@@ -260,6 +260,7 @@ def housing_springs(
     coupling: Coupling = "averaged",
     level: int = 2,
     cache: Cache | None = None,
+    solids: dict[tuple[str, bool], UnitSolid] | None = None,
 ) -> tuple[dict[str, Floats], float]:
     """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
 
@@ -271,11 +272,13 @@ def housing_springs(
         Of the shaft that they are for: a solid one (3) has all rings itself.
     cache : Cache or None
         Where they may come from; the user's if not given.
+    solids : dict or None
+        See `bearing_units.unit_stiffness`.
     """
     start = time.perf_counter()
     found = {
         unit.bearing.name: unit_stiffness(
-            scene, unit.bearing.name, coupling, ring=level < 3, cache=cache
+            scene, unit.bearing.name, coupling, ring=level < 3, cache=cache, solids=solids
         )
         for unit in scene.bearing_units
     }

@@ -6,7 +6,6 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-import meshio
 import numpy as np
 import numpy.typing as npt
 
@@ -67,6 +66,8 @@ def write(
         blocks.append(("tetra10", mesh.cells))
         cell_data = {"part": [mesh.part.astype(np.int32)]}
         options = {"file_format": "vtu"}
+    import meshio  # with a command line of its own, which only what writes files waits for
+
     content = meshio.Mesh(
         mesh.points, blocks, point_data=data, cell_data=cell_data, field_data=field_data
     )

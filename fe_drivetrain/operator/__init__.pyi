@@ -1,3 +1,4 @@
+from .elasticity import Pattern as Pattern
 from .elasticity import assemble as assemble
 from .elasticity import sparsity as sparsity
 from .loads import Traction as Traction

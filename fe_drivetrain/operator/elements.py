@@ -44,11 +44,17 @@ def check_elements(points: Floats, cells: Ints) -> None:
             "coordinates"
         )
     gradients, edges = _table(cells.shape[1])
-    folded, least = _folded(
+    # made out here: NumPy's functions in a compiled loop would take a second to compile
+    least, folded = np.empty(len(cells)), np.empty(len(cells), dtype=np.bool_)
+    _find_folded(
         np.ascontiguousarray(points, dtype=float),
         np.ascontiguousarray(cells, dtype=np.int32),
         gradients,
         edges,
+        np.empty((3, 3)),
+        np.empty((cells.shape[1], 3)),
+        folded,
+        least,
     )
     if folded.any():
         cell = int(np.flatnonzero(folded)[0])
@@ -82,14 +88,18 @@ def _table(n_nodes: int) -> tuple[Floats, NDArray[np.int64]]:
 
 
 @njit(cache=True)
-def _folded(
-    points: Floats, cells: NDArray[np.int32], gradients: Floats, edges: NDArray[np.int64]
-) -> tuple[NDArray[np.bool_], Floats]:
-    """Whether each cell folds over, and the least determinant of its Jacobian."""
+def _find_folded(
+    points: Floats,
+    cells: NDArray[np.int32],
+    gradients: Floats,
+    edges: NDArray[np.int64],
+    J: Floats,
+    nodes: Floats,
+    folded: NDArray[np.bool_],
+    least: Floats,
+) -> None:
+    """Whether each cell folds over, and the least determinant of its Jacobian J (3, 3)."""
     n_cells, k = cells.shape
-    folded = np.zeros(n_cells, np.bool_)
-    least = np.empty(n_cells)
-    J, nodes = np.empty((3, 3)), np.empty((k, 3))
     for c in range(n_cells):
         for a in range(k):
             for i in range(3):
@@ -106,8 +116,9 @@ def _folded(
                 n_points = 1
         low, high = np.inf, 0.0
         for q in range(n_points):
-            J[:] = 0.0
             for p in range(3):
+                for i in range(3):
+                    J[p, i] = 0.0
                 for a in range(k):
                     g = gradients[q, p, a]
                     for i in range(3):
@@ -120,4 +131,3 @@ def _folded(
             low, high = min(low, det), max(high, abs(det))
         least[c] = low
         folded[c] = not (high > 0.0 and low > -_ROUND_OFF * high)
-    return folded, least

@@ -15,7 +15,6 @@ from fe_drivetrain.common.arrays import Floats
 Index = NDArray[np.int32]
 
 
-@njit(cache=True)
 def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
     """Which nodes share a cell.
 
@@ -25,23 +24,42 @@ def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
         Rows of the pattern, sorted; and (n_cells, k, k) where in ``indices`` the pair of local
         nodes (a, b) of each cell stands.
     """
+    # NumPy makes the arrays out here: in a compiled loop that takes a second to compile
     n_cells, k = cells.shape
-    start = np.zeros(n_nodes + 1, np.int64)
+    start, fill = np.zeros(n_nodes + 1, np.int64), np.empty(n_nodes, np.int64)
+    where, seen = np.empty(n_cells * k, np.int64), np.full(n_nodes, -1, np.int64)
+    indptr = np.zeros(n_nodes + 1, np.int32)
+    _count_pairs(cells, start, fill, where, seen, indptr)
+    indices, slots = np.empty(indptr[-1], np.int32), np.empty((n_cells, k, k), np.int32)
+    seen[:] = -1
+    _place_pairs(cells, start, where, seen, np.empty(n_nodes, np.int32), indptr, indices, slots)
+    return indptr, indices, slots
+
+
+@njit(cache=True)
+def _count_pairs(
+    cells: Index,
+    start: NDArray[np.int64],
+    fill: NDArray[np.int64],
+    where: NDArray[np.int64],
+    seen: NDArray[np.int64],
+    indptr: Index,
+) -> None:
+    """Ends of the rows; and in ``where``, from its start, each node's places in ``cells``, flat."""
+    n_cells, k = cells.shape
+    n_nodes = len(fill)
     for c in range(n_cells):
         for a in range(k):
             start[cells[c, a] + 1] += 1
     for i in range(n_nodes):
         start[i + 1] += start[i]
-    fill = start[:-1].copy()
-    where = np.empty(n_cells * k, np.int64)  # the places of each node in ``cells``, flat
+        fill[i] = start[i]
     for c in range(n_cells):
         for a in range(k):
             i = cells[c, a]
             where[fill[i]] = c * k + a
             fill[i] += 1
 
-    seen = np.full(n_nodes, -1, np.int64)
-    indptr = np.zeros(n_nodes + 1, np.int32)
     for i in range(n_nodes):
         count = 0
         for w in range(start[i], start[i + 1]):
@@ -52,11 +70,21 @@ def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
                     count += 1
         indptr[i + 1] = indptr[i] + count
 
-    indices = np.empty(indptr[n_nodes], np.int32)
-    slots = np.empty((n_cells, k, k), np.int32)
-    place = np.empty(n_nodes, np.int32)
-    seen[:] = -1
-    for i in range(n_nodes):
+
+@njit(cache=True)
+def _place_pairs(
+    cells: Index,
+    start: NDArray[np.int64],
+    where: NDArray[np.int64],
+    seen: NDArray[np.int64],
+    place: Index,
+    indptr: Index,
+    indices: Index,
+    slots: Index,
+) -> None:
+    """Columns of the rows, and where each pair of a cell stands among them."""
+    k = cells.shape[1]
+    for i in range(len(place)):
         end = indptr[i]
         for w in range(start[i], start[i + 1]):
             for b in range(k):
@@ -79,7 +107,6 @@ def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
             a = where[w] - c * k
             for b in range(k):
                 slots[c, a, b] = place[cells[c, b]]
-    return indptr, indices, slots
 
 
 @njit(cache=True)
@@ -91,7 +118,9 @@ def _inverse_transposed(J: Floats, A: Floats) -> float:
             q, r = (p + 1) % 3, (p + 2) % 3
             A[i, p] = J[j, q] * J[k, r] - J[j, r] * J[k, q]
     determinant = J[0, 0] * A[0, 0] + J[0, 1] * A[0, 1] + J[0, 2] * A[0, 2]
-    A /= determinant
+    for i in range(3):  # NumPy's quotient of arrays would take half a second to compile
+        for p in range(3):
+            A[i, p] /= determinant
     return float(determinant)
 
 
@@ -245,29 +274,6 @@ def invert(blocks: Floats, out: Floats) -> None:
     """Put the inverses of symmetric (n, 3, 3) blocks into ``out``."""
     for i in range(len(blocks)):
         _inverse_transposed(blocks[i], out[i])
-
-
-@njit(cache=True, parallel=True)
-def keep_dofs(
-    indptr: Index, indices: Index, data: Floats, kept: Floats, diagonal: float, out: Floats
-) -> None:
-    """Zero rows and columns of degrees of freedom that are not kept, and put ``diagonal`` there.
-
-    Parameters
-    ----------
-    kept : Floats
-        (n_nodes, 3): one or zero.
-    out : Floats
-        Takes the blocks; ``data`` itself, or as many others.
-    """
-    for i in prange(len(indptr) - 1):
-        for p in range(indptr[i], indptr[i + 1]):
-            j = indices[p]
-            for r in range(3):
-                for s in range(3):
-                    out[p, r, s] = data[p, r, s] * (kept[i, r] * kept[j, s])
-                if i == j and kept[i, r] == 0.0:
-                    out[p, r, r] = diagonal
 
 
 @njit(inline="always")

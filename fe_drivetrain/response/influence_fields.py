@@ -13,10 +13,9 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
-from fe_drivetrain.interfaces.constraints import Elimination, eliminate
+from fe_drivetrain.interfaces.constraints import Elimination
 from fe_drivetrain.response.model import Model
-from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import solve
+from fe_drivetrain.response.prepared import Prepared, prepared
 
 
 def reaction_influences(
@@ -41,9 +40,9 @@ def reaction_influences(
     Floats
         (n_dofs, k), one a component.
     """
-    elimination = eliminate(model.constraints, model.n_dofs)
-    loads, given = _moved_ground(model, elimination, name, np.eye(6)[:, list(components)])
-    return _solved(model, elimination, loads, given, method)
+    ready = prepared(model, method, len(components))
+    loads, given = _moved_ground(model, ready.elimination, name, np.eye(6)[:, list(components)])
+    return _solved(ready, loads, given)
 
 
 def influences_of_all_reactions(model: Model, method: str = "auto") -> dict[str, Floats]:
@@ -65,15 +64,15 @@ def influences_of_all_reactions(model: Model, method: str = "auto") -> dict[str,
     dict[str, Floats]
         (3 n_nodes, 6) by the name of each bearing and "gearbox".
     """
-    elimination = eliminate(model.constraints, model.n_dofs)
+    ready = prepared(model, method, 6 * len(model.scene.bearing_names))
     names = [*model.scene.bearing_names, "gearbox"]
-    moved = {name: _moved_ground(model, elimination, name, np.eye(6)) for name in names}
+    moved = {name: _moved_ground(model, ready.elimination, name, np.eye(6)) for name in names}
     acting = {name: loads.any(axis=0) | given.any(axis=0) for name, (loads, given) in moved.items()}
     left = max(names, key=lambda name: acting[name].sum())
     solved = [name for name in names if name != left]
     loads, given = (np.hstack([moved[name][k][:, acting[name]] for name in solved]) for k in (0, 1))
     points = model.mesh.points
-    columns = _solved(model, elimination, loads, given, method)[: points.size]
+    columns = _solved(ready, loads, given)[: points.size]
     ends = np.cumsum([acting[name].sum() for name in solved])[:-1]
     found = {}
     for name, of in zip(solved, np.split(columns, ends, axis=1), strict=True):
@@ -118,11 +117,6 @@ def _moved_ground(
     return loads, elimination.particular(moved) if moved else np.zeros_like(loads)
 
 
-def _solved(
-    model: Model, elimination: Elimination, loads: Floats, given: Floats, method: str
-) -> Floats:
+def _solved(ready: Prepared, loads: Floats, given: Floats) -> Floats:
     """(n_dofs, k) displacements under loads, on top of those that are given."""
-    stiffness = model.stiffness
-    system = reduce(model.mesh.points, model.mesh.cells, stiffness, elimination, model.springs)
-    right = elimination.T.T @ (loads - stiffness @ given)
-    return np.asarray(elimination.T @ solve(system, right, method).x + given)
+    return ready.solve(loads - ready.stiffness @ given)[0] + given

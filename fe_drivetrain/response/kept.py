@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from typing import Any
 
 import numpy as np
@@ -42,16 +42,44 @@ def kept_arrays(
     dict[str, ndarray]
         The same to the last bit, with the same layout in memory, whether kept or solved now.
     """
+    (arrays,) = kept_together(scene, [content], rooms, lambda: [solve()], cache)
+    return arrays
+
+
+def kept_together(
+    scene: Scene,
+    contents: Sequence[Mapping[str, Any]],
+    rooms: Mapping[str, Set[str] | None],
+    solve: Callable[[], Sequence[Mapping[str, NDArray[Any]]]],
+    cache: Cache | None = None,
+) -> list[dict[str, NDArray[Any]]]:
+    """`kept_arrays` of several contents that are solved together, where one of them is missing.
+
+    Parameters
+    ----------
+    scene, rooms, cache
+        As of `kept_arrays`.
+    contents : Sequence
+        What else each depends on.
+    solve : callable
+        Makes the arrays of each, by name.
+
+    Returns
+    -------
+    list of dict
+        Of each content.
+    """
     used = user_cache() if cache is None else cache
-    whole = {
-        **content,
+    common = {
         "scene": solved_content(scene),
         "sizes": scene.mesh.model_dump(mode="json"),
         "made by": solved_by(),
         "code": source_hash(rooms),
     }
-    arrays = used.load("solutions", whole)
-    if arrays is None:
-        arrays = {name: np.array(a, order="C") for name, a in solve().items()}
-        used.keep("solutions", whole, arrays)
-    return arrays
+    found = [used.load("solutions", {**content, **common}) for content in contents]
+    if all(arrays is not None for arrays in found):
+        return [arrays for arrays in found if arrays is not None]
+    solved = [{name: np.array(a, order="C") for name, a in each.items()} for each in solve()]
+    for content, arrays in zip(contents, solved, strict=True):
+        used.keep("solutions", {**content, **common}, arrays)
+    return solved

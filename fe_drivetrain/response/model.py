@@ -1,6 +1,6 @@
 """The finite-element model of a scene: operators of its parts, constraints, springs, unit loads."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,7 +56,7 @@ def scene_loads(scene: Scene) -> tuple[str, ...]:
 _N_GROUPS = 32  # near the square root of the number of nodes on a joint: least fill
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Model:
     """A scene's finite-element model, before it is solved.
 
@@ -147,6 +147,28 @@ class Model:
         for axis in range(3):
             F[axis : 3 * len(mass) : 3, 6 + axis] = mass
         return F
+
+
+class _PartStiffness(Mapping[str, sparse.bsr_array]):
+    """Stiffness by part, assembled when it is first asked for: a kept solution needs none."""
+
+    def __init__(self, scene: Scene, mesh: Mesh, n_dofs: int) -> None:
+        self._scene, self._mesh, self._n_dofs = scene, mesh, n_dofs
+        self._known: dict[str, sparse.bsr_array] = {}
+
+    def __getitem__(self, part: str) -> sparse.bsr_array:
+        if part not in self._known:
+            mesh = self._mesh
+            cells = mesh.cells[mesh.part_cells(part)]
+            lame = self._scene.material_of(part).lame
+            self._known[part] = assemble_unlocked(mesh.points, cells, lame, self._n_dofs)
+        return self._known[part]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._mesh.part_names)
+
+    def __len__(self) -> int:
+        return len(self._mesh.part_names)
 
 
 def mesh_scene(scene: Scene) -> Mesh:
@@ -287,17 +309,16 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     moduli = {part: scene.material_of(part).youngs_modulus for part in mesh.part_names}
     warnings = warn_of_weak_restraints(mesh, conditions, springs, moduli)
 
-    part_stiffness, part_mass = {}, {}
+    part_mass = {}
     for part in mesh.part_names:
         material = scene.material_of(part)
         cells = mesh.cells[mesh.part_cells(part)]
-        part_stiffness[part] = assemble_unlocked(mesh.points, cells, material.lame, n_dofs)
         warnings += warn_of_averaging(part, material.lame)
         part_mass[part] = material.density * volume_weights(mesh.points, cells, n)
     return Model(
         scene,
         mesh,
-        part_stiffness,
+        _PartStiffness(scene, mesh, n_dofs),
         part_mass,
         points,
         tuple(conditions),

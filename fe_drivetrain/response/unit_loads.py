@@ -10,11 +10,11 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
-from fe_drivetrain.interfaces.constraints import dofs, eliminate
+from fe_drivetrain.interfaces.constraints import dofs
 from fe_drivetrain.plots.figures import load_bars
 from fe_drivetrain.response.model import LOADS, Model
-from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import Diagnostics, solve
+from fe_drivetrain.response.prepared import prepared
+from fe_drivetrain.solve.solvers import Diagnostics
 
 
 @dataclass(frozen=True)
@@ -163,18 +163,15 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     cases = np.column_stack([np.eye(n_loads), factors])
     F = loads @ cases
 
-    K = model.stiffness
-    elimination = eliminate(model.constraints, model.n_dofs)
-    T = elimination.T
-    system = reduce(model.mesh.points, model.mesh.cells, K, elimination, model.springs)
     try:
-        solution = solve(system, T.T @ F, method)
+        ready = prepared(model, method, F.shape[1])
+        U, diagnostics = ready.solve(F)
     except InputError as error:
         if str(error) == SINGULAR and model.warnings:
             raise InputError(f"{SINGULAR}: {'; '.join(model.warnings)}") from error
         raise
-    U = T @ solution.x
-    reactions = _reactions(model, elimination.multipliers(K @ U - F), U, cases)
+    multipliers = ready.elimination.multipliers(ready.stiffness @ U - F)
+    reactions = _reactions(model, multipliers, U, cases)
 
     direct = np.concatenate([r[:, -1] for r in reactions.values()])
     superposed = np.concatenate([r[:, :-1] @ factors for r in reactions.values()])
@@ -197,7 +194,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         displacements=U[: 3 * n].reshape(n, 3, n_loads),
         equilibrium_error=_equilibrium_error(model, reactions, positions),
         superposition_error=float(np.abs(direct - superposed).max() / np.abs(direct).max()),
-        diagnostics=solution.diagnostics,
+        diagnostics=diagnostics,
     )
 
 

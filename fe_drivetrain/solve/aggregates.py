@@ -6,9 +6,6 @@ and pyamg would estimate anew, from random numbers.
 """
 
 import numpy as np
-from pyamg.aggregation.aggregate import standard_aggregation
-from pyamg.aggregation.smooth import energy_prolongation_smoother
-from pyamg.aggregation.tentative import fit_candidates
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
@@ -49,6 +46,10 @@ def coarsened(
     motions
         (6 n_aggregates, 6).
     """
+    from pyamg.aggregation.aggregate import standard_aggregation
+    from pyamg.aggregation.smooth import energy_prolongation_smoother
+    from pyamg.aggregation.tentative import fit_candidates
+
     tentative, coarse = fit_candidates(standard_aggregation(connected)[0], motions)
     if smoother is None:
         return tentative, coarse

@@ -28,6 +28,10 @@ from fe_drivetrain.solve.condensation import Condensed, condense
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solvers import Solver, factorise, solve
 
+#: Relative error in the energy norm of displacements from which a compliance follows: that is then
+#: right to its square, which is less than what the last digits of the stiffness leave open.
+DISPLACEMENTS = 1e-5
+
 
 @dataclass(frozen=True)
 class CoupledSolid:
@@ -109,8 +113,40 @@ class CondensedSolid:
         return u[: self.mesh.points.size]
 
 
+def assembled_parts(mesh: Mesh, materials: Mapping[str, Material]) -> sparse.bsr_array:
+    """Stiffness of parts of a mesh, once for several ways to couple its faces.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    materials : mapping of str to Material
+        Of each part that is assembled, by its name in the mesh.
+
+    Returns
+    -------
+    sparse.bsr_array
+        (3 n, 3 n) of the n nodes [N/m].
+
+    Raises
+    ------
+    InputError
+        A cell has a node that there is not, or is folded over.
+    """
+    cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
+    for some in cells:
+        check_elements(mesh.points, some)
+    return sum(
+        assemble_unlocked(mesh.points, some, material.lame)
+        for some, material in zip(cells, materials.values(), strict=True)
+    )
+
+
 def coupled_solid(
-    mesh: Mesh, materials: Mapping[str, Material], attachments: Sequence[Attachment]
+    mesh: Mesh,
+    materials: Mapping[str, Material],
+    attachments: Sequence[Attachment],
+    stiffness: sparse.bsr_array | None = None,
 ) -> CoupledSolid:
     """Assemble parts of a mesh and couple faces to reference points.
 
@@ -122,6 +158,8 @@ def coupled_solid(
         Of each part that is assembled, by its name in the mesh.
     attachments : sequence of Attachment
         Reference points with their faces.
+    stiffness : sparse.bsr_array or None
+        Of `assembled_parts`, where that is there already.
 
     Raises
     ------
@@ -141,16 +179,12 @@ def coupled_solid(
             weights = face_weights(mesh.points, mesh.faces[face], n, MEANS)[nodes]
             point = constraints.averaged_point(name, nodes, weights, mesh.points, position, n_dofs)
         points.append(point)
-    cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
-    for some in cells:
-        check_elements(mesh.points, some)
-    K = sum(
-        assemble_unlocked(mesh.points, some, material.lame, n_dofs)
-        for some, material in zip(cells, materials.values(), strict=True)
-    )
-    return CoupledSolid(
-        mesh, np.concatenate(cells), K, tuple(attachments), tuple(points), tuple(rigid_faces)
-    )
+    K = assembled_parts(mesh, materials) if stiffness is None else stiffness
+    # reference points have no stiffness of their own
+    ends = np.append(K.indptr, np.full(n_dofs // 3 - n, K.indptr[-1], dtype=K.indptr.dtype))
+    K = sparse.bsr_array((K.data, K.indices, ends), shape=(n_dofs, n_dofs))
+    cells = np.concatenate([mesh.cells[mesh.part_cells(part)] for part in materials])
+    return CoupledSolid(mesh, cells, K, tuple(attachments), tuple(points), tuple(rigid_faces))
 
 
 def condensed_solid(
@@ -204,13 +238,16 @@ def condensed_solid(
     return CondensedSolid(mesh, body, system.n_free, loads, rigid, elimination, solver)
 
 
-def point_displacements(
+def point_motions_of(
     solid: CoupledSolid,
     held: Sequence[Constraint],
     springs: Sequence[tuple[ReferencePoint, Floats]] = (),
     method: str = "auto",
-) -> Floats:
-    """Displacements of a held solid for unit forces and moments at its reference points.
+) -> tuple[Floats, Floats]:
+    """Displacements of a held solid for unit forces and moments at its points, and its compliance.
+
+    The compliance is F^T U + U^T F - U^T K U, whose error is the work of the errors of two
+    displacements on each other: of second order, and relative at most the square of theirs.
 
     Parameters
     ----------
@@ -225,9 +262,10 @@ def point_displacements(
 
     Returns
     -------
-    ndarray, (n, 6 p)
-        Of all n degrees of freedom, for the p points; ``solid.loads.T`` times this is the
-        compliance there [m/N, 1/N, rad/(N m)].
+    displacements : ndarray, (n, 6 p)
+        Of all n degrees of freedom, for the p points, to `DISPLACEMENTS` in the energy norm.
+    compliance : ndarray, (6 p, 6 p)
+        Motions of the points, to the square of that [m/N, 1/N, rad/(N m)].
 
     Raises
     ------
@@ -239,7 +277,11 @@ def point_displacements(
         K = K + (at.motion.T @ sparse.csr_array(k) @ at.motion).tobsr((3, 3))
     elimination = constraints.eliminate([*held, *solid.rigid_faces], solid.n_dofs)
     system = reduce(solid.mesh.points, solid.cells, K, elimination, springs)
-    return np.asarray(elimination.T @ solve(system, elimination.T.T @ solid.loads, method).x)
+    F = solid.loads
+    solution = solve(system, elimination.T.T @ F, method, DISPLACEMENTS)
+    U = np.asarray(elimination.T @ solution.x)
+    first = F.T @ U
+    return U, first + first.T - U.T @ (K @ U)
 
 
 def point_compliance(
@@ -248,14 +290,14 @@ def point_compliance(
     springs: Sequence[tuple[ReferencePoint, Floats]] = (),
     method: str = "auto",
 ) -> Floats:
-    """Motions of a held solid's points for unit loads there, see `point_displacements`.
+    """Motions of a held solid's points for unit loads there, see `point_motions_of`.
 
     Returns
     -------
     ndarray, (6 p, 6 p)
         Of the p points [m/N, 1/N, rad/(N m)].
     """
-    return np.asarray(solid.loads.T @ point_displacements(solid, held, springs, method))
+    return point_motions_of(solid, held, springs, method)[1]
 
 
 def _pins(points: Floats, allowed: Ints, n_dofs: int) -> Constraint:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from pyamg.strength import symmetric_strength_of_connection
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
@@ -223,6 +222,9 @@ def _joined(joints: Joints, options: Options) -> Joined:
 
 
 def _hierarchy(system: System, options: Options) -> Hierarchy:
+    # half a second with what it imports, which a kept solution need not wait for
+    from pyamg.strength import symmetric_strength_of_connection
+
     levels: list[Level] = []
     K, motions, body = system.K, system.near_nullspace, system.body
     if system.prolongation is not None and options.linear_level:

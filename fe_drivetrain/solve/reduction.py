@@ -148,8 +148,7 @@ def _joints(
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-    bodies = _added(_copied(K), -sums.springs)
-    bodies = _eliminated(bodies, sums.elimination, bodies.data)
+    bodies = _eliminated(_added(_copied(K), -sums.springs), sums.elimination)
     on_ground = _added(bodies, ground.tocsr())
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 
@@ -183,12 +182,14 @@ def _diagonal_places(K: sparse.bsr_array) -> Ints:
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
     """T^T K T, with the mean diagonal at eliminated degrees of freedom; K is left as it is."""
-    return _eliminated(K, elimination, np.empty_like(K.data))
+    return _eliminated(_copied(K), elimination)
 
 
 def _copied(K: sparse.bsr_array) -> sparse.bsr_array:
-    """The same pattern with numbers of its own."""
-    return sparse.bsr_array((K.data.copy(), K.indices, K.indptr), shape=K.shape)
+    """The same pattern, in the integers that `kernels` is compiled for, with numbers of its own."""
+    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
+    indices, indptr = (i.astype(np.int32, copy=False) for i in (K.indices, K.indptr))
+    return sparse.bsr_array((K.data.copy(), indices, indptr), shape=K.shape)
 
 
 def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
@@ -203,20 +204,33 @@ def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
     return K
 
 
-def _eliminated(K: sparse.bsr_array, elimination: Elimination, out: Floats) -> sparse.bsr_array:
-    """As `reduced_stiffness`; ``out``, which may be K's own blocks, takes what keeps its place."""
+def _eliminated(kept: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
+    """As `reduced_stiffness`; the stiffness is overwritten."""
     T, free = elimination.T, elimination.free
-    mean = float(np.einsum("nii->", diagonal_blocks(K))) / len(free)
-    passed = passed_on(K, T, free)
+    mean = float(np.einsum("nii->", diagonal_blocks(kept))) / len(free)
+    passed = passed_on(kept, T, free)
     mask = free.astype(float).reshape(-1, 3)
-    kernels.keep_dofs(K.indptr, K.indices, K.data, mask, mean, out)
-    kept = sparse.bsr_array((out, K.indices, K.indptr), shape=K.shape)
+    _keep_dofs(kept, mask, mean)
     # Degrees of freedom of reference points have no block of their own yet.
-    bare = (~free & np.repeat(_diagonal_places(K) < 0, 3)).astype(float)
+    bare = (~free & np.repeat(_diagonal_places(kept) < 0, 3)).astype(float)
     if passed.nnz == 0 and not bare.any():
         return kept
     passed = passed + mean * sparse.diags_array(bare)
     return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
+
+
+def _keep_dofs(K: sparse.bsr_array, kept: Floats, diagonal: float) -> None:
+    """Zero rows and columns of degrees of freedom (n_nodes, 3) that are zero, not one.
+
+    Their diagonal gets a number. Few nodes have such, and the blocks of others are not touched.
+    """
+    has = (kept == 0.0).any(axis=1)
+    blocks = np.flatnonzero(np.repeat(has, np.diff(K.indptr)) | has[K.indices])
+    rows, columns = np.searchsorted(K.indptr, blocks, side="right") - 1, K.indices[blocks]
+    K.data[blocks] *= kept[rows, :, None] * kept[columns, None, :]
+    here = rows == columns
+    node, motion = np.nonzero(kept[rows[here]] == 0.0)
+    K.data[blocks[here][node], motion, motion] = diagonal
 
 
 def in_blocks(K: sparse.sparray) -> sparse.bsr_array:

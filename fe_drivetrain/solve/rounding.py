@@ -39,8 +39,10 @@ def judged(K: sparse.bsr_array, x: Floats, F: Floats) -> Judged:
     x, F : Floats
         (n, m) solutions and right-hand sides.
     """
-    sums = _sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x), np.ascontiguousarray(F))
-    sizes, energies, squares = (values.sum(axis=0) for values in sums)
+    # made out here: NumPy's functions in a compiled loop would take a second to compile
+    sums = np.zeros((3, len(K.indptr) - 1, x.shape[1]))
+    _add_sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x), np.ascontiguousarray(F), *sums)
+    sizes, energies, squares = sums.sum(axis=1)
     size = np.linalg.norm(F, axis=0)
     size[size == 0.0] = 1.0
     return Judged(float((np.sqrt(squares) / size).max()), worst(sizes, energies))
@@ -83,14 +85,23 @@ def worst(size: Floats, energy: Floats) -> float:
 
 
 @njit(cache=True, parallel=True)
-def _sums(
-    indptr: NDArray[np.int32], indices: NDArray[np.int32], data: Floats, X: Floats, F: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Of each block row and column |x_i K_ij x_j|, x_i K_ij x_j and (f_i - K_ij x_j)^2, summed."""
-    n, m = len(indptr) - 1, X.shape[1]
-    size, energy, square = np.zeros((n, m)), np.zeros((n, m)), np.zeros((n, m))
-    for i in prange(n):
-        force, largest = np.zeros((3, m)), np.zeros((3, m))
+def _add_sums(
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    data: Floats,
+    X: Floats,
+    F: Floats,
+    size: Floats,
+    energy: Floats,
+    square: Floats,
+) -> None:
+    """Add |x_i K_ij x_j|, x_i K_ij x_j and (f_i - K_ij x_j)^2 of each block row, by column."""
+    m = X.shape[1]
+    for i in prange(len(indptr) - 1):
+        force, largest = np.empty((3, m)), np.empty((3, m))
+        for r in range(3):
+            for k in range(m):
+                force[r, k] = largest[r, k] = 0.0
         for p in range(indptr[i], indptr[i + 1]):
             c = 3 * indices[p]
             for r in range(3):
@@ -106,4 +117,3 @@ def _sums(
                 size[i, k] += abs(x) * largest[r, k]
                 energy[i, k] += x * force[r, k]
                 square[i, k] += (F[3 * i + r, k] - force[r, k]) ** 2
-    return size, energy, square

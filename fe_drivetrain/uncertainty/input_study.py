@@ -240,7 +240,7 @@ def _advised(
     """The ladder of each quantity that has one, and the cheapest level that is enough for all."""
     names = [name for name in asked if name.startswith("hub.") or name[-2] in "FM"] or [DEFAULT]
     advices = [
-        advise(scene, Quantity(name, load), tolerance, to_the_top=True, report=report)
+        advise(scene, Quantity(name, load), tolerance, True, report, shafts=LEVELS)
         for name in names
     ]
     worst = {level: max(level_error(advice, level) for advice in advices) for level in LEVELS}
