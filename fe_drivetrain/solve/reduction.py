@@ -182,8 +182,12 @@ def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.b
 
 
 def _copied(K: sparse.bsr_array) -> sparse.bsr_array:
-    """The same pattern with numbers of its own."""
-    return sparse.bsr_array((K.data.copy(), K.indices, K.indptr), shape=K.shape)
+    """The same pattern with numbers of its own, and 32-bit indices as `in_blocks`.
+
+    Springs that were added have left 64-bit ones.
+    """
+    indices, indptr = (i.astype(np.int32, copy=False) for i in (K.indices, K.indptr))
+    return sparse.bsr_array((K.data.copy(), indices, indptr), shape=K.shape)
 
 
 def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
