@@ -151,7 +151,7 @@ def _axes(mesh: Mesh, name: str) -> Floats:
 
 
 def foot_holds(
-    scene: Scene, unit: BearingUnit, mesh: Mesh, n_dofs: int
+    scene: Scene, unit: BearingUnit, mesh: Mesh, n_dofs: int, method: str = "auto"
 ) -> tuple[list[ReferencePoint], list[Constraint]]:
     """What holds a clamped foot while it stays as it is after tightening.
 
@@ -165,6 +165,8 @@ def foot_holds(
         With the housing.
     n_dofs : int
         Degrees of freedom of the model.
+    method : str
+        Solver, as of `clamped_foot`.
 
     Returns
     -------
@@ -176,7 +178,7 @@ def foot_holds(
     housing, name = unit.foreign, unit.bearing.name
     assert housing is not None
     assert housing.bolts is not None
-    closed = clamped_foot(scene, name).tightened.closed
+    closed = clamped_foot(scene, name, method).tightened.closed
     size = housing.bolts.washer_diameter * housing.scale
     patches = foot_patches(mesh, name, size, n_dofs)
     pressed = [p for p, is_closed in zip(patches.points, closed, strict=True) if is_closed]
