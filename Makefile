@@ -7,7 +7,7 @@ demo: ## run the main-bearing study and print where its report is
 
 test: ## run the whole test suite
 	@.ci/setup test
-	@.venv/bin/python -m pytest -q -n auto --dist loadgroup
+	@.venv/bin/python -m pytest -q -n auto
 
 docs: ## build the documentation into build/docs
 	@.ci/setup docs

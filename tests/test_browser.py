@@ -22,10 +22,7 @@ from fe_drivetrain.report.solid_view import write_solid_view
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
 
-pytestmark = [
-    pytest.mark.needs("chromium", "playwright", "axe_playwright_python"),
-    pytest.mark.xdist_group("browser"),
-]
+pytestmark = pytest.mark.needs("chromium", "playwright", "axe_playwright_python")
 
 PAGES = ("index.html", "checks.html", "atlas.html", "group/one/report.html")
 WIDE, NARROW = 1400, 390

@@ -23,10 +23,12 @@ from fe_drivetrain.geometry import (
 )
 from fe_drivetrain.geometry.foreign_housing import Bolts
 from fe_drivetrain.geometry.step_files import write_step
+from fe_drivetrain.response import foot_contact
 from fe_drivetrain.response.foot_contact import clamped_foot
 from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.reading import parse_scene
+from fe_drivetrain.solve.cost_model import Cost
 
 BEARING = Bearing(kind="ring")
 SCENE = """
@@ -246,6 +248,16 @@ def test_hub_loads_that_open_a_foot_are_named_in_one_sentence(clamped, solved):
     assert sentence.startswith("main_bearing: hub loads open its foot for ")
     assert sentence.count(". ") == 0
     assert foot_warnings(clamped, solved, 1e-4 * loads, weights, 0.0) == ()
+
+
+@pytest.mark.parametrize(
+    ("seconds", "fits", "method"),
+    [(1.9, True, "superlu"), (2.1, True, "multigrid"), (1.9, False, "multigrid")],
+)
+def test_a_rigid_seat_costs_multigrid_twice_its_iterations(monkeypatch, seconds, fits, method):
+    costs = [Cost("multigrid", 1.0, 1e6, True), Cost("superlu", seconds, 1e9, fits)]
+    monkeypatch.setattr(foot_contact, "predict", lambda system, n_loads: costs)
+    assert foot_contact._chosen(None, 100) == method
 
 
 def test_a_tightened_foot_presses_as_its_bolts_pull(foot):

@@ -28,6 +28,13 @@ def test_equals_the_triple_product_on_what_is_left(reduced, rng):
     assert system.n_free == free.sum() < model.n_dofs
 
 
+def test_indices_are_those_that_loops_are_compiled_for(reduced):
+    """Others compile every loop of the solvers once more, and fetch twice the indices."""
+    _, K, elimination, system = reduced
+    for reduced_matrix in (system.K, reduced_stiffness(K, elimination)):
+        assert reduced_matrix.indices.dtype == reduced_matrix.indptr.dtype == np.int32
+
+
 def test_eliminated_degrees_of_freedom_stand_alone(reduced):
     _, K, elimination, system = reduced
     gone = np.flatnonzero(~elimination.free)

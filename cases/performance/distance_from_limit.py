@@ -165,7 +165,7 @@ def iteration_bytes(system: System, hierarchy: multigrid.Hierarchy) -> float:
     residual once, the smoother behind d times; a correction goes down and up once.
     """
     n = system.K.shape[0]
-    total = float(DOUBLE * len(system.K.indices)) + 8.0 * n * VECTORS
+    total: float = DOUBLE * len(system.K.indices) + 8.0 * n * VECTORS
     for level in hierarchy.levels:
         between = float(level.prolongation.nnz + level.restriction.nnz)
         vectors = 8.0 * level.K.shape[0] * VECTORS_OF_LEVEL

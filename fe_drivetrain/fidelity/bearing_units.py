@@ -326,7 +326,7 @@ def _solved_unit(of: UnitSolid, coupling: Coupling, method: str) -> _SolvedUnit:
     if not springs:
         held.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
     elif is_clamped(unit):
-        held += foot_holds(scene, unit, mesh, n_dofs)[1]
+        held += foot_holds(scene, unit, mesh, n_dofs, method)[1]
     held += together.conditions(n_dofs)
     if unit.rollers is not None:
         free = _free_motions(joint_stiffness(unit), unit.bearing.raceway_diameter / 2)
