@@ -102,6 +102,7 @@ def run(run: Run, page: Page) -> None:
         f"its STEP file within {100 * off:.2g} %, which is less than the errors of the two meshes, "
         f"{100 * (bounds.mesh + step.mesh):.2g} %."
     )
+    page.image("The block as read from STEP, with its own mesh", run.sketch(placed.mesh))
 
 
 def sized(scene: Scene, coarser: float) -> Scene:

@@ -124,6 +124,7 @@ def run(run: Run, page: Page) -> None:
         "areas exact but for the parabolas that make the circles.",
         f"Meshed as asked: {'; '.join(bounds)}.",
     )
+    page.image("A shaft with a narrow collar", run.sketch(extreme_parts.collared(0.05).shaft))
 
 
 Outcomes = list[extreme_parts.Outcome]

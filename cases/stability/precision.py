@@ -105,6 +105,7 @@ def run(run: Run, page: Page) -> None:
         "A factor in 32 bits with residuals in 64 gives all digits back up to L/D = "
         f"{in_words(highest['bending'][MIXED])}.",
     )
+    page.image("A tube of four diameters", run.sketch(other_precisions.tube(4.0)))
 
 
 def compare(run: Run, page: Page, rows: list[Record], load: str) -> dict[str, float | None]:
