@@ -81,6 +81,7 @@ def unit_stiffness(
     content = {"stiffness of": name, "coupling": coupling, "method": method, "ring": ring}
     (found,) = _kept(
         scene,
+        name,
         content,
         cache,
         lambda: (_solved_unit(scene, name, coupling, method, ring).stiffness,),
@@ -120,7 +121,7 @@ def unit_stiffnesses(
         )
         return rigid, averaged
 
-    found = _kept(scene, {"stiffnesses of": name, "method": method}, cache, solved)
+    found = _kept(scene, name, {"stiffnesses of": name, "method": method}, cache, solved)
     return dict(zip(_COUPLINGS, found, strict=True))
 
 
@@ -193,7 +194,7 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         soft = _solved_unit(scene, name, "averaged", together=together).stiffness
         return soft, stiff.stiffness, np.array(_mesh_band(scene, stiff))
 
-    soft, stiff, mesh = _kept(scene, {"bounds of": name}, cache, solved)
+    soft, stiff, mesh = _kept(scene, name, {"bounds of": name}, cache, solved)
     return UnitBounds(soft, stiff, float(mesh))
 
 
@@ -207,6 +208,7 @@ def _given(scene: Scene, name: str) -> Floats | None:
 
 def _kept(
     scene: Scene,
+    name: str,
     content: Mapping[str, Any],
     cache: Cache | None,
     solve: Callable[[], tuple[Floats, ...]],
@@ -215,7 +217,8 @@ def _kept(
     used = user_cache() if cache is None else cache
     whole = {
         **content,
-        "scene": solved_content(scene),
+        # of the shaft the seat alone, so that other lengths, bores and overhangs find what is kept
+        "scene": solved_content(scene) | {"shaft": _seat(scene, name)},
         "sizes": scene.mesh.model_dump(mode="json"),
         "made by": solved_by(),
         "code": source_hash({"fe_drivetrain.fidelity": {"bearing_units.py"}}),
@@ -249,11 +252,16 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     return SAFETY * float(max(shares))
 
 
+def _seat(scene: Scene, name: str) -> float:
+    """Diameter of the shaft under a bearing [m]: all of the shaft that its unit knows of."""
+    bearing = scene.bearing_unit(name).bearing
+    return scene.shaft.seat_diameter(bearing.x, bearing.width, name)
+
+
 def _unit_mesh(scene: Scene, name: str, ring: bool = True) -> Tied:
     """Bearing and housing without the shaft, with the ring where that gives."""
     unit = scene.bearing_unit(name)
-    seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
-    bearing = unit.bearing.model_copy(update={"bore_diameter": seat})
+    bearing = unit.bearing.model_copy(update={"bore_diameter": _seat(scene, name)})
     alone = unit.model_copy(update={"bearing": bearing})
     with_ring = unit.ring_on_housing and ring
     return tied([alone], mesh_parts(None, [alone], scene.mesh), with_ring)
