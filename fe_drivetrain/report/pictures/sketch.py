@@ -61,8 +61,7 @@ class Body(Protocol):
 
     @property
     def cells(self) -> Ints | tuple[Ints, ...]:
-        """(ne, 4), (ne, 8), (ne, 10), (ne, 20) or (ne, 27) nodes in VTK's order, or
-        such a table for each part."""
+        """Nodes in VTK's order, (ne, 4), (ne, 8), (ne, 10), (ne, 20) or (ne, 27), by part or not."""
 
 
 @dataclass(frozen=True)
