@@ -61,7 +61,7 @@ class Body(Protocol):
 
     @property
     def cells(self) -> Ints | tuple[Ints, ...]:
-        """Nodes in VTK's order, (ne, 4), (ne, 8), (ne, 10), (ne, 20) or (ne, 27), by part or not."""
+        """Nodes in VTK's order: (ne, 4), (ne, 8), (ne, 10), (ne, 20), (ne, 27); or such by part."""
 
 
 @dataclass(frozen=True)
