@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlparse
 
+import numpy as np
 import pytest
 from PIL import Image as Pixels
 from test_report import limit, lines, results, verdict
 
+from fe_drivetrain.commands import main
 from fe_drivetrain.report.bundle import plotly_file
+from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.history import record_run
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.page import write_page
@@ -25,7 +28,11 @@ from fe_drivetrain.response.unit_loads import Response
 pytestmark = pytest.mark.needs("chromium", "playwright", "axe_playwright_python")
 
 PAGES = ("index.html", "checks.html", "atlas.html", "group/one/report.html")
+PAGES += ("compare/report.html", "sweep/report.html")
 WIDE, NARROW = 1400, 390
+PAPER = 687  # pixels between the margins of A4
+#: What statics decides, so that nothing is meshed.
+STATICS = ["compare", "main_bearing_spherical", "--quantity", "main_bearing.Fz"]
 PROBLEMS = {
     "other/later": Problem("waits for its turn", "planned"),
     "other/now": Problem("at work", "running"),
@@ -84,6 +91,13 @@ def reports(
         (folder / name / "results.json").write_text(content.model_dump_json(), "utf-8")
         record_run(folder, content)
         record_run(folder, content)
+    for name, how in (
+        ("sweep", ["--vary", "shaft.front=-2.0:-1.6:3"]),
+        ("compare", ["three_point_suspension", "--quantity", "main_bearing.Fy"]),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            main([*STATICS, *how, "--out", str(folder / name)])
+        assert ended.value.code in (0, 1)
     write_index(folder, PROBLEMS)
     for name in ("group/one", "group/two", "next/three"):
         write_page(folder / name, folder)
@@ -225,6 +239,55 @@ def test_paper_has_all_rows_and_nothing_to_press(browser: Any, reports: Path) ->
             assert not button.is_visible()
         background = "getComputedStyle(document.body).backgroundColor"
         assert opened.page.evaluate(background) == "rgb(255, 255, 255)"
+
+
+# a table of fifteen columns is printed smaller, with its page
+@pytest.mark.parametrize("name", [name for name in PAGES if name != "group/one/report.html"])
+def test_nothing_is_wider_than_paper(browser: Any, reports: Path, name: str) -> None:
+    with Opened(browser, reports / name, PAPER) as opened:
+        opened.page.emulate_media(media="print")
+        opened.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+        assert opened.page.evaluate("document.documentElement.scrollWidth") <= PAPER
+
+
+LABELS = """() => {
+  const found = [];
+  for (const plot of document.querySelectorAll(".js-plotly-plot")) {
+    const frame = plot.getBoundingClientRect();
+    const texts = Array.from(plot.querySelectorAll("svg text")).filter(
+      t => t.textContent.trim() && !t.closest(".modebar"));
+    const boxes = texts.map(t => ({ text: t.textContent, at: t.getBoundingClientRect() }));
+    boxes.forEach((a, i) => {
+      if (a.at.left < frame.left - 1 || a.at.right > frame.right + 1) found.push("cut: " + a.text);
+      for (const b of boxes.slice(i + 1)) {
+        const wide = Math.min(a.at.right, b.at.right) - Math.max(a.at.left, b.at.left);
+        const high = Math.min(a.at.bottom, b.at.bottom) - Math.max(a.at.top, b.at.top);
+        if (wide > 2 && high > 3) found.push(a.text + " over " + b.text);
+      }
+    });
+    const bar = plot.querySelector(".legend .scrollbar");
+    if (bar && bar.getBoundingClientRect().width > 0) found.push("names to be scrolled");
+  }
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("width", [WIDE, NARROW])
+def test_names_of_a_chart_are_whole_and_apart(
+    browser: Any, reports: Path, tmp_path: Path, width: int
+) -> None:
+    names = [f"curve {k}, whose name is longer than half of a screen is wide" for k in range(9)]
+    x = np.geomspace(0.02, 0.2, 9)
+    title = "a quantity with a name as long as that, over the same of another one [-]"
+    curves = [trace(name, x, x**k) for k, name in enumerate(names)]
+    few = [trace("one", np.geomspace(1.0, 1e9, 9), x), trace("other", 2.0 * x, x)]
+    items = [chart("Many", curves, title, "y [-]", "xy"), chart("Few", few, title, "y [m]", "x")]
+    content = results("plain", sections=[Section(title="Charts", items=items)])
+    (tmp_path / "results.json").write_text(content.model_dump_json(), "utf-8")
+    write_page(tmp_path)
+    with Opened(browser, tmp_path / "report.html", width) as opened:
+        assert opened.page.evaluate(LABELS) == []
+        assert opened.said == []
 
 
 def test_the_head_of_a_long_list_stays_in_sight(browser: Any, reports: Path) -> None:

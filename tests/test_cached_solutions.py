@@ -171,6 +171,27 @@ def test_bounds_of_a_bearing_unit_are_kept_to_the_last_bit(
         unit_bounds(change_scene(scene, {"mesh.housing": 0.21}), "main_bearing", cache)
 
 
+def test_of_the_shaft_a_bearing_unit_depends_on_its_seat_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache, scene = Cache(tmp_path), coarse_scene("bonded")
+    found = unit_stiffness(scene, "main_bearing", cache=cache)
+    section = "shaft.sections.0"
+    bored = change_scene(scene, {f"{section}.inner_diameter": 0.2, "shaft.front": -1.0})
+    fresh = unit_stiffness(bored, "main_bearing", cache=Cache(None))
+    assert fresh.tobytes() == found.tobytes()
+
+    def solved(*_: object, **__: object) -> None:
+        raise AssertionError("solved again")
+
+    monkeypatch.setattr(bearing_units, "_solved_unit", solved)
+    kept = unit_stiffness(bored, "main_bearing", cache=cache)
+    assert kept.tobytes() == found.tobytes()
+    wider = change_scene(scene, {f"{section}.outer_diameter": 0.45})
+    with pytest.raises(AssertionError, match="solved again"):
+        unit_stiffness(wider, "main_bearing", cache=cache)
+
+
 def test_threads_and_code_are_in_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
     import numba
 

@@ -16,7 +16,7 @@ from test_report import Page
 
 from fe_drivetrain.report.chart_style import figure_as_json
 from fe_drivetrain.report.page import render
-from fe_drivetrain.report.results import Chart, read_results, results_below
+from fe_drivetrain.report.results import Chart, Image, Solid, read_results, results_below
 
 FOLDER = os.environ.get(QUICK_VARIABLE)
 FILES = results_below(Path(FOLDER)) if FOLDER else {}
@@ -31,6 +31,22 @@ RAW = {
     "a power of ten as typed": r"(?<![\w=.-])\d+(\.\d+)?e[+-]?\d+\b",
     "a prefix twice": r"\b[numk]k[NWJ]\b",
     "a gap before a stop": r"\w [,;](?= |$)",
+}
+
+#: Groups whose questions are about a body, and the cases in them that are about numbers alone.
+OF_BODIES = ("verification", "stability", "bearing", "gear", "foreign")
+WITHOUT_BODY = {
+    "verification/grid_convergence_index",
+    "bearing/ratings",
+    "gear/gear_damage",
+    "gear/mesh_wave",
+    "gear/time_factors",
+    *(f"stability/{name}" for name in ("bearing_life", "life_resolution", "repeatability")),
+    *(f"stability/{name}" for name in ("faults", "time_series", "time_series_length")),
+    # masses on springs
+    *(f"stability/{name}" for name in ("loose_bearings", "near_singular_carriers")),
+    *(f"stability/{name}" for name in ("parametric_resonance", "stiff_limits", "time_step")),
+    "stability/tooth_separation",
 }
 
 
@@ -56,6 +72,12 @@ def raw_text(page: Page) -> list[str]:
         for what, pattern in RAW.items()
         if re.search(pattern, text)
     ]
+
+
+@pytest.mark.parametrize("name", [n for n in FILES if n.split("/")[0] in OF_BODIES])
+def test_a_page_about_a_body_shows_it(name: str) -> None:
+    items = [item for section in read_results(FILES[name]).sections for item in section.items]
+    assert any(isinstance(item, (Image, Solid)) for item in items) != (name in WITHOUT_BODY)
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -12,6 +12,7 @@ from fe_drivetrain.bearing import (
     read_catalogue,
 )
 from fe_drivetrain.cases import case
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Radial clearance [m], axial and radial force [N], and MASTA's displacements [µm] and tilt [mrad].
@@ -130,6 +131,10 @@ def run(run: Run, page: Page) -> None:
     page.table("As they are, nothing fitted", rows)
     page.data("worst difference [%]", worst)
     check_statics(page, span)
+    page.image(
+        "The balls of the deep-groove bearing",
+        run.sketch(*rolling_elements(Bearing("ball", (row,)))),
+    )
 
 
 def check_statics(page: Page, span: float) -> None:

@@ -8,6 +8,7 @@ from fe_drivetrain.cases.bearing.housed import NAME, housed_scene, state_housing
 from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import coupled_equilibrium, factors_of, scene_body
 from fe_drivetrain.fidelity import unit_stiffness
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.rings import AssemblyEquilibrium, assembly_equilibrium, roller_assembly
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -93,6 +94,7 @@ def run(run: Run, page: Page) -> None:
         "the scene. Rollers lie between the outer face of the bearing, which is one body with the "
         "shaft, and the bore of the housing."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))
 
 
 def _left(found: AssemblyEquilibrium, gearbox: tuple[float | str, ...]) -> Floats:

@@ -15,7 +15,7 @@ from fe_drivetrain.cases.bearing.thesis_beam import (
 )
 from fe_drivetrain.common import Bools, Floats
 from fe_drivetrain.coupled import coupled_equilibrium
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Of a bearing S with the moment of the rotor's weight alone [N m].
@@ -88,6 +88,7 @@ def run(run: Run, page: Page) -> None:
         "correlation with the moment's size is one with its direction in disguise: within either "
         "sign of the displacement the moment has mostly one direction."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing_s())))
 
 
 def correlation(a: Floats, b: Floats) -> float:

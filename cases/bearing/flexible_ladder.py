@@ -25,6 +25,7 @@ from fe_drivetrain.cases.bearing.ladder import (
 )
 from fe_drivetrain.common import Floats, MissingToolError
 from fe_drivetrain.export import find_calculix
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.rings import housing_races, housing_solid
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -130,6 +131,7 @@ def run(run: Run, page: Page) -> None:
         "Gap springs have rollers without length, and their time is that of CalculiX for one load "
         "case with the motion of the inner ring given, which has to be found besides."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(finest)))
 
 
 def _springs(

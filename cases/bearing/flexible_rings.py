@@ -30,7 +30,7 @@ from fe_drivetrain.cases.bearing.housed import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.fidelity import unit_stiffness
-from fe_drivetrain.report import Chart, chart, trace
+from fe_drivetrain.report import Chart, chart, rolling_elements, trace
 from fe_drivetrain.rings import housing_races
 from fe_drivetrain.scene import change_scene, joint_stiffness, library_scene
 from fe_drivetrain.suite import Page, Record, Run
@@ -129,6 +129,7 @@ def run(run: Run, page: Page) -> None:
         "part of the contact's law. The housing is condensed once; a load case takes some five "
         f"Newton steps in 5 motions and {len(housed.races.shapes()[1])} shapes of the race."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing_s())))
     page.data("rollers", {n: housed.flexible.rollers[k] for k, n in enumerate(LOADS)})
     page.data("rigid", {n: housed.rigid[k] for k, n in enumerate(LOADS)})
 

@@ -16,6 +16,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.housed import NAME, Size, bearing_s, housed_scene, state_housing
 from fe_drivetrain.common import Floats
 from fe_drivetrain.export import find_calculix, four_point_stiffness, read_dat, run_calculix
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.rings import HousingSolid, contact_compliance, housing_solid
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import Page, Run
@@ -87,6 +88,7 @@ def run(run: Run, page: Page) -> None:
         "deck is 1000 times as stiff, and displacements 1000 times as small, since CalculiX "
         "iterates on springs with large displacements only."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))
 
 
 def calculix_rollers(

@@ -5,6 +5,7 @@ import numpy as np
 from fe_drivetrain.bearing import catalogue_bearing, equilibrium, forces, three_degrees, turn
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.suite import Page, Record, Run, Target
 
 BEARING = catalogue_bearing("bearing_s")
@@ -72,6 +73,7 @@ def run(run: Run, page: Page) -> None:
     for y, table in ((SIDE, True), (PEAK, False)):
         title = f"{y.partition(' [')[0].capitalize()}: {moment}"
         page.sweep(title, rows, ANGLE, y, table=table)
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(BEARING)))
 
 
 def reduced(degrees: float) -> Record:

@@ -37,7 +37,7 @@ from fe_drivetrain.histories import (
     measured,
     model_errors,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
 
 CONSTANT = "constant 1272 MN m/rad"
@@ -98,6 +98,7 @@ def run(run: Run, page: Page) -> None:
         "The reference is Newton with the closed form along straight rollers. Time is that of all "
         "load cases together over their number: from hub loads to rollers."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))
 
 
 def on_constant(body: LinearBody, bearing: Bearing, factors: Floats, K_R: float) -> Answer:

@@ -14,6 +14,7 @@ from fe_drivetrain.bearing import (
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Loads [N, N m]: where closed forms hold, and where they do not.
@@ -149,3 +150,4 @@ def run(run: Run, page: Page) -> None:
         "Rings are rigid here: `flexible_ladder` goes on with races that give way, up to the "
         "contact of the whole solid."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(finest)))

@@ -13,6 +13,7 @@ from fe_drivetrain.bearing import (
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Combined load of bearing S [N, N m].
@@ -106,6 +107,7 @@ def run(run: Run, page: Page) -> None:
         "profile over that of ISO/TS 16281",
         "end over mean load",
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(exact)))
 
 
 def crown(factor: float) -> Record:

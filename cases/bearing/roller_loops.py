@@ -37,7 +37,7 @@ from fe_drivetrain.hub_loads import (
     hub_load_set,
     loop_statistics,
 )
-from fe_drivetrain.report import density_chart, trace
+from fe_drivetrain.report import density_chart, rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Length of an example [s], as in the thesis's figures 4.15 and 4.16.
@@ -113,6 +113,7 @@ def run(run: Run, page: Page) -> None:
         "surrogate holds the pitch of the mean wind: there is no controller to tune. How far the "
         "rotor's mean moment moves the cloud is in the table of directions."
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))
 
 
 def directions(page: Page, loads: dict[str, Floats]) -> None:

@@ -13,7 +13,7 @@ from fe_drivetrain.bearing import (
     sjovall,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
 
 #: 1 / J_r at half a circle of load, as printed in tables of the integral.
@@ -140,6 +140,7 @@ def run(run: Run, page: Page) -> None:
         "diametral clearance [µm]",
         "peak roller [kN]",
     )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))
 
 
 def clearance(um: float) -> Record:

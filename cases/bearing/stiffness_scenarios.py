@@ -24,7 +24,7 @@ from fe_drivetrain.coupled import (
     tilt_curve,
     tilt_springs,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Distance of the middles of the inner races: half the width of Table 4.1 [m].
@@ -67,6 +67,7 @@ def run(run: Run, page: Page) -> None:
         f"{BEST_FIT / 1e6:.0f} MN m/rad."
     )
     statements(page, bearing_s(), factors)
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing_s())))
 
 
 def series(K_R: float) -> float:

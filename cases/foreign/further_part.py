@@ -99,6 +99,8 @@ def run(run: Run, page: Page) -> None:
     if not run.quick:
         found["arm, stiff housing"] = check_arm(run, page, ground, files["b"])
         picture(run, page, on_plate)
+    else:
+        page.image("The housing on its bedplate, as meshed", run.sketch(mesh_scene(on_plate)))
     rows: list[Record] = [
         {"stands on": name} | dict(zip(MOTIONS, (np.diag(c) * 1e9).tolist(), strict=True))
         for name, c in found.items()

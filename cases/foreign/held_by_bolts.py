@@ -114,6 +114,9 @@ def run(run: Run, page: Page) -> None:
     )
     if not run.quick:
         picture(run, page, held(run.folder, names[0], "bolts as beams", SIZES[-1]))
+    else:
+        shown = mesh_scene(held(run.folder, names[0], "bolts as beams", QUICK_SIZES[-1]))
+        page.image("The first of the housings, as meshed", run.sketch(shown))
     page.text(
         "Fixed washers stand for bolts whose preload keeps the joint closed under the washers. "
         "Bolts as beams carry alone: each is a steel beam of 48 mm from the annulus round the "

@@ -14,7 +14,7 @@ from fe_drivetrain.fidelity import unit_stiffness
 from fe_drivetrain.foreign import ClampedFoot
 from fe_drivetrain.geometry import Bearing, Housing, gmsh_session, write_step
 from fe_drivetrain.report import chart, trace
-from fe_drivetrain.response import clamped_foot
+from fe_drivetrain.response import clamped_foot, mesh_scene
 from fe_drivetrain.scene import Scene, change_scene
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -121,6 +121,7 @@ def run(run: Run, page: Page) -> None:
         "stay so. Those pressed least open first, at small loads, and that depends on the size of "
         "patches; what the open foot does depends on it much less."
     )
+    page.image("The block and the shaft in it, as meshed", run.sketch(mesh_scene(scene)))
     page.table("Time on this machine, with others at work", seconds)
     pulled = where_pulled(foot)
     ratio = opened[-1].motion[4] / linear[-1].motion[4]

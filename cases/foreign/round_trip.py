@@ -123,6 +123,7 @@ def run(run: Run, page: Page) -> None:
         f"{100 * by_splines:.2g} %, which is less than the errors of the two meshes, "
         f"{100 * (bounds.mesh + step.mesh):.2g} %."
     )
+    page.image("The block as read from STEP, with its own mesh", run.sketch(placed.mesh))
 
 
 def sized(scene: Scene, coarser: float) -> Scene:

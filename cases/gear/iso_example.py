@@ -2,6 +2,7 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.gear import iso_stiffness
+from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.published_gears import ISO_EXAMPLE_1, iso_example_1
 
@@ -53,3 +54,4 @@ def run(run: Run, page: Page) -> None:
         f"The mean mesh stiffness is {found.mesh / 1e9:.5f} N/(mm µm) with tip diameters of 159.66 "
         "and 872.35 mm; the example prints 17.46485."
     )
+    page.image("The pair of 17 and 103 teeth", run.sketch(*gear_pair(pair)))

@@ -2,6 +2,7 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.printed_ratings import check_mesh
+from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.rated_gears import rated, rated_meshes
 
@@ -46,3 +47,4 @@ def run(run: Run, page: Page) -> None:
         "and K_Halpha = 1 are inputs: deviations and shafts of the example are not public, nor are "
         "its root factors Y."
     )
+    page.image("The pair of 17 and 103 teeth", run.sketch(*gear_pair(mesh.pair)))

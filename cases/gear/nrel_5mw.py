@@ -13,7 +13,7 @@ from fe_drivetrain.gear import (
     sequence,
     sun_phases,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.published_gears import NREL_5MW_PRINTED, nrel_5mw
 
@@ -97,6 +97,7 @@ def run(run: Run, page: Page) -> None:
         "digit; stiffness by ISO 6336-1 agrees within the rounding of the printed factor of the "
         "gear blank."
     )
+    page.image("Sun and planet of stage 1", run.sketch(*gear_pair(pairs["sun 1"])))
 
 
 def phases(page: Page) -> None:

@@ -2,6 +2,7 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.printed_ratings import check_mesh
+from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation.rated_gears import rated, rated_meshes
 
@@ -56,3 +57,4 @@ def run(run: Run, page: Page) -> None:
         "of the pitch: with the pitch deviation alone it is 1.020 in place of 1.069. From grade 6 "
         "on tip relief does not lower K_v (B_k = 1)."
     )
+    page.image("Sun and planet of stage 1", run.sketch(*gear_pair(meshes[0].pair)))

@@ -4,6 +4,7 @@ from math import degrees
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.gear import iso_stiffness, parabolic_mean
+from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.published_gears import nrel_750kw
 
@@ -99,3 +100,4 @@ def run(run: Run, page: Page) -> None:
         f"planet, {stiffness['ring'] / 1e9:.2f} GN/m between planet and ring; values that others "
         f"took for them range from {min(ratios):.2g} to {max(ratios):.2g} of it."
     )
+    page.image("Sun and planet", run.sketch(*gear_pair(pairs["sun"])))

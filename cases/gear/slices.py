@@ -21,6 +21,7 @@ from fe_drivetrain.gear import (
     parabolic_law,
     yang_sun_contact,
 )
+from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.rated_gears import rated_meshes
 
@@ -116,6 +117,7 @@ def run(run: Run, page: Page) -> None:
         "of the loads of slices averaged over a period. ISO 6336-1 takes 0.85 of the mesh "
         "stiffness; slices without coupling have all of it."
     )
+    page.image("Wheel and pinion of stage 3", run.sketch(*gear_pair(PAIR)))
 
 
 def ladder(run: Run) -> list[Record]:

@@ -13,7 +13,7 @@ from fe_drivetrain.gear import (
     tooth_contact,
     von_mises,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.published_gears import nrel_750kw
 
@@ -153,3 +153,4 @@ def run(run: Run, page: Page) -> None:
         "depth over half width",
         "stress over pressure",
     )
+    page.image("Sun and planet", run.sketch(*gear_pair(nrel_750kw()["sun"])))

@@ -23,7 +23,7 @@ from fe_drivetrain.gear import (
     meshing_without_backlash,
     parabolic_law,
 )
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import gear_pair, trace
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.plane_rings import Plane, plane_strain
 from fe_drivetrain.validation.plane_teeth import (
@@ -88,6 +88,7 @@ def run(run: Run, page: Page) -> None:
         "which that thesis does not state. ISO 6336-1 takes solid discs here (C_R = 1)."
     )
     page.answer(*found)
+    page.image("The first of the pairs", run.sketch(*gear_pair(next(iter(PAIRS.values()))[0]())))
 
 
 def one_pair(

@@ -138,6 +138,9 @@ def run(run: Run, page: Page) -> None:
     if not run.quick:
         check_solid(run, page)
     show(page, found, shown, inset)
+    page.image(
+        "The shaft with a flange of a tenth of its own diameter", run.sketch(flanged(0.1, SHOWN))
+    )
     page.data("thickness_over_diameter", thick)
     page.data("flange_over_diameter", ratios)
     page.data("percent", found.error)

@@ -166,6 +166,7 @@ def run(run: Run, page: Page) -> None:
     )
     if not run.quick:
         show_fillets(page, radii, filleted)
+    page.image("A shaft with a step that is filleted", run.sketch(stepped(AT, FILLETED, 0.1)))
     page.data("length_over_diameter", lengths)
     page.data("step_ratio", found.ratios)
     page.data("extra_length", found.extra)

@@ -22,6 +22,7 @@ from fe_drivetrain.suite import Page, Run
 from fe_drivetrain.validation import end_flexibilities as shafts
 from fe_drivetrain.validation import rigid_ended_shafts
 from fe_drivetrain.validation.shaft_theory import Tube, flexure_stress
+from fe_drivetrain.validation.solid_shafts import straight
 
 #: Bore over outer diameter.
 BORES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9)
@@ -160,6 +161,10 @@ def run(run: Run, page: Page) -> None:
     check(run, page, found, band)
     check_solids(run, page)
     show(page, found)
+    page.image(
+        "The shortest shaft with the widest bore",
+        run.sketch(straight((0.0, SHORTEST), 1.0, found.bores[-1])),
+    )
     page.data("length_over_diameter", lengths)
     page.data("bore_over_diameter", bores)
     page.data("timoshenko_deflection_percent", found.error[BENT])

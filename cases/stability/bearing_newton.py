@@ -9,6 +9,7 @@ from fe_drivetrain.bearing import Bearing, RollerRow, catalogue_bearing, equilib
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import decades
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.suite import Page, Record, Run
 
 #: Sizes of axial force, radial forces and moments of random loads [N, N m].
@@ -132,6 +133,9 @@ def run(run: Run, page: Page) -> None:
         table=False,
     )
     page.table("All arms", arms)
+    page.image(
+        "The rollers of bearing S", run.sketch(*rolling_elements(catalogue_bearing("bearing_s")))
+    )
 
 
 def damping(um: float, factor: float, n: int) -> Record:

@@ -124,6 +124,9 @@ def run(run: Run, page: Page) -> None:
         "areas exact but for the parabolas that make the circles.",
         f"Meshed as asked: {'; '.join(bounds)}.",
     )
+    collared = extreme_parts.collared(0.05).shaft
+    assert collared is not None
+    page.image("A shaft with a narrow collar", run.sketch(collared))
 
 
 Outcomes = list[extreme_parts.Outcome]

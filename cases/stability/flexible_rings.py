@@ -16,6 +16,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability.bearing_newton import random_loads
 from fe_drivetrain.common import Floats
 from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.revolution import dofs, meridian
 from fe_drivetrain.rings import races_of_revolution
 from fe_drivetrain.scene import MATERIALS
@@ -125,6 +126,7 @@ def run(run: Run, page: Page) -> None:
             by="wall [mm]",
             log="xy",
         )
+    page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing())))
 
 
 def damping(wall: float, clearance: float, factor: float, n: int) -> Record:

@@ -95,6 +95,7 @@ def run(run: Run, page: Page) -> None:
     of = dict(grouped(rows, "repair"))
     check(page, rows, of, exact)
     show(page, rows, of)
+    page.image("The shaft with its fillet", run.sketch(shaft))
 
 
 def check(page: Page, rows: list[Record], of: Mapping[str, list[Record]], exact: float) -> None:

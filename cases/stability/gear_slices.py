@@ -15,6 +15,7 @@ from fe_drivetrain.gear import (
     loaded,
     supported,
 )
+from fe_drivetrain.report import gear_pair
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation.rated_gears import rated_meshes
 
@@ -58,6 +59,7 @@ def run(run: Run, page: Page) -> None:
         f"With a play of {1e3 * PLAY:.1f} mm both flanks touch from {jam:.0f} on.",
         f"Equilibrium on supports is flagged as not converged below {softest:.0e} N/m.",
     )
+    page.image("Sun and planet of stage 1", run.sketch(*gear_pair(PAIR)))
 
 
 def few_slices(page: Page, ratios: Floats) -> dict[int, float]:

@@ -56,6 +56,7 @@ def run(run: Run, page: Page) -> None:
     page.table(
         "Faults put into a shaft with bearing and housing, and what the program reports", kinds
     )
+    page.image("The library's scene, as meshed here", run.sketch(mesh))
     page.data("cost", cost)
 
 

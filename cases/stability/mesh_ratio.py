@@ -9,7 +9,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import fitted_exponent, last_within
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
-from fe_drivetrain.validation.tied_strips import TIES, tied_strip
+from fe_drivetrain.validation.tied_strips import TIES, strip, tied_strip
 
 #: Elements across the coarser side, and how many times as many across the finer.
 COARSE = 2
@@ -75,6 +75,7 @@ def run(run: Run, page: Page) -> None:
     check_identities(page, rows, matching.patch)
     check_failures(page, rows)
     show(page, rows)
+    page.image("The strip at one to four", run.sketch(strip(COARSE, 4 * COARSE)))
     page.data("all strips", rows)
 
 

@@ -113,6 +113,10 @@ def run(run: Run, page: Page) -> None:
     show(page, settled, as_meshed)
     show_facets(page, as_meshed, ratios, coarse_slaves)
     show_ratios(page, settled, shared)
+    page.image(
+        "Rings that are tied, eight elements round on sixteen",
+        run.sketch(tied_rings.tied(8, 16, "standard").bodies),
+    )
     page.data("settled", settled)
     page.data("as meshed", as_meshed)
     page.data("shared", {"stress": shared.stress, "stiffness": shared.stiffness})

@@ -114,6 +114,7 @@ def run(run: Run, page: Page) -> None:
     check_tube(page, of[TUBE_NAME], oval, run.quick)
     check_rod(page, of[ROD_NAME], run.quick)
     show(page, rows, peak)
+    page.image("The thin tube", run.sketch(TUBE))
 
 
 def check_solver(page: Page, name: str, series: list[Record]) -> None:

@@ -215,3 +215,4 @@ def run(run: Run, page: Page) -> None:
         "digits that it costs, and refuses where none is left.",
         "The error is 2e-16 over that ratio, within two digits, for each form of the joint.",
     )
+    page.image("The shaft and its bearing, as meshed here", run.sketch(mesh))

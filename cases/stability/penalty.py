@@ -63,6 +63,9 @@ def run(run: Run, page: Page) -> None:
         "the springs below, their round-off above. Multigrid stops converging decades earlier.",
         "Elimination, which the program uses throughout, has no such parameter.",
     )
+    page.image(
+        "The first of the bars, two bodies that are coupled", run.sketch(bar(next(iter(KINDS)), 2))
+    )
 
 
 def sweep(run: Run, page: Page, kind: str) -> Record:

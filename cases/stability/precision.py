@@ -8,6 +8,8 @@ from fe_drivetrain.compare import FOUR_DIGITS, fitted_exponent, in_words, safe_r
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.validation import other_precisions
+from fe_drivetrain.validation.other_precisions import BORE, DIAMETER
+from fe_drivetrain.validation.solid_shafts import straight
 
 LOADS = ("bending", "torsion")
 
@@ -104,6 +106,9 @@ def run(run: Run, page: Page) -> None:
         f"{len(meshes)} meshes of L/D = 4.",
         "A factor in 32 bits with residuals in 64 gives all digits back up to L/D = "
         f"{in_words(highest['bending'][MIXED])}.",
+    )
+    page.image(
+        "A tube of four diameters", run.sketch(straight((0.0, 4.0 * DIAMETER), DIAMETER, BORE))
     )
 
 

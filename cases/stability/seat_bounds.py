@@ -159,6 +159,7 @@ def run(run: Run, page: Page) -> None:
     show_widths(page, found)
     show_lengths(page, found)
     show_meshes(page, found, limits)
+    page.image("The ring whose bore is held in a band", run.sketch(seat.ring_of(0.1)))
 
 
 def check_bounds(page: Page, found: Found) -> None:

@@ -160,6 +160,7 @@ def run(run: Run, page: Page) -> None:
         "estimated over true error [-]",
         "x",
     )
+    page.image("The square bar, one brick across", run.sketch(bars.square(27, 1, 8, 1.0)))
 
 
 def square_bars(run: Run) -> Square:

@@ -153,6 +153,7 @@ def run(run: Run, page: Page) -> None:
             "x",
         )
         page.table("Iterations to the same", [row_of(t) for t in swept])
+    page.image("A shaft of five diameters", run.sketch(bodies.uniform(0.7, 0.175, 3.5)))
 
 
 def limit_of(page: Page, name: str, swept: list[Trial]) -> None:

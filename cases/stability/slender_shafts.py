@@ -60,6 +60,9 @@ def run(run: Run, page: Page) -> None:
         "exact to about 1e-6: errors below are its own. That of torsion is exact.",
     )
     sweep.show_condition(page, points, AXIS, safe)
+    page.image(
+        "A shaft of five diameters", run.sketch(bodies.uniform(DIAMETER, WALL, 5.0 * DIAMETER))
+    )
     page.data("slenderness", [p.value for p in points])
     page.data("multigrid_iterations", [p.iterations["multigrid"].iterations for p in points])
     page.data("patch_iterations", [p.iterations["schwarz"].iterations for p in points])

@@ -93,6 +93,7 @@ def run(run: Run, page: Page) -> None:
         "the check reports",
         [{k: None if v != v else v for k, v in row.items() if k != "refused"} for row in beyond],
     )
+    page.image("The bar with a layer of flat elements", run.sketch(slivers.bar(0.1, across)))
     page.data("flatness", column(rows, "flatness"))
     page.data("condition", column(rows, "condition number"))
 

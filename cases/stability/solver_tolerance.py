@@ -11,6 +11,7 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.solve import TOLERANCE
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation import solver_steps
+from fe_drivetrain.validation.solid_shafts import straight
 
 TOLERANCES = decades(-12, -1, 2)
 
@@ -54,6 +55,9 @@ def run(run: Run, page: Page) -> None:
         "Loosest tolerance with four digits, and iterations that it takes and that the program's "
         "takes",
         rows,
+    )
+    page.image(
+        "The hollow shaft, first of the problems", run.sketch(straight((0.0, 2.0), 0.7, 0.3))
     )
     page.data("loosest", loosest)
 

@@ -96,6 +96,9 @@ def run(run: Run, page: Page) -> None:
     """Sweep the radial gearbox stiffness of a spherical and of a bonded main bearing."""
     spherical(run, page)
     bonded(run, page)
+    page.image(
+        "The shaft and its bearing, coarsened", run.sketch(mesh_scene(scene_of("spherical")))
+    )
 
 
 def spherical(run: Run, page: Page) -> None:

@@ -193,6 +193,7 @@ def run(run: Run, page: Page) -> None:
     _, many_high = safe_range(ratios, many, FOUR_DIGITS)
     state_limits(page, of_ring, of_chain, many_high, allowed)
     show(page, of_ring, of_chain, ratios, many)
+    page.image("The ring about a shaft", run.sketch(layers.ring().bodies()))
 
 
 def check_exponents(page: Page, of_ring: Swept, of_chain: Swept, tolerance: float) -> None:

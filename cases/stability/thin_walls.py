@@ -88,6 +88,10 @@ def run(run: Run, page: Page) -> None:
         f"wall they differ by {spread:.1e}.",
     )
     sweep.show_condition(page, points, AXIS, (None, sweep.safe_by_factor(points)))
+    page.image(
+        "A tube of a wall of a tenth of its radius",
+        run.sketch(bodies.uniform(DIAMETER, DIAMETER / 20.0, LENGTH)),
+    )
     page.data("thinness", [p.value for p in points])
     page.data("multigrid_iterations", [p.iterations["multigrid"].iterations for p in points])
     page.data("patch_iterations", [p.iterations["schwarz"].iterations for p in points])

@@ -132,6 +132,7 @@ def run(run: Run, page: Page) -> None:
     show_nodes(page, finest, chosen, min(high.values()))
     show_meshes(page, factors, meshes)
     show_loads(page, finest, secant)
+    page.image("The housing and what it holds, finest mesh", run.sketch(finest.model.mesh))
     page.data("K_R", [m.by_plane for m in meshes])
     page.data("condensed", [m.condensed for m in meshes])
     page.data("radii", chosen.radii)

@@ -74,6 +74,7 @@ def run(run: Run, page: Page) -> None:
         f"Averaging repairs the stiffness, not the matrix: multigrid takes {counts[0]} iterations "
         f"at nu = {nus[0]:g} and stops short at {nus[-1]:g}, where a direct solver steps in.",
     )
+    page.image("The disc that is bonded to rigid plates", run.sketch(solids.disc_mesh(0.1, 16)))
 
 
 def cylinder(run: Run, page: Page) -> float:

@@ -142,4 +142,5 @@ def run(run: Run, page: Page) -> None:
         "Each mesh is generated again from the shape, with sizes from the one before, so that its "
         "curved surfaces are as exact as it is fine."
     )
+    page.image("The shaft with a sharp step", run.sketch(shaft))
     page.data("meshes", rows)

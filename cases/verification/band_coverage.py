@@ -10,6 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, MissingToolError, largest_difference
 from fe_drivetrain.compare import SAFETY
 from fe_drivetrain.fidelity import banded_meridian, banded_solid, meridian_shaft, ringed_shaft
+from fe_drivetrain.report import shaft_with_rings
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.validation.independent_shafts import FOUND, independent_shaft
@@ -201,6 +202,10 @@ def run(run: Run, page: Page) -> None:
         "to the diagonal entries of its row and column. What may be missing from the reference is "
         "added to the error where a band is judged. Shafts have two to four sections, with sharp "
         "steps, fillets, tapers and bores, and one ring or two; all follow from the seed."
+    )
+    page.image(
+        "The first of the random shafts, with the rings of its bearings",
+        run.sketch(*shaft_with_rings(random_scene(seeds[0]))),
     )
     page.data("coverage", found)
     page.data("shafts", rows)

@@ -26,6 +26,7 @@ from fe_drivetrain.fidelity import (
     statics_level,
 )
 from fe_drivetrain.mesh import mean_size
+from fe_drivetrain.report import shaft_with_rings
 from fe_drivetrain.response import mesh_scene
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
@@ -193,6 +194,10 @@ def run(run: Run, page: Page) -> None:
         f"a mesh of sizes times {FINER[1]:g}, or finer, to the limit at first order, and half of "
         "that way is added to the error where a band is judged. Of a reaction, error and band are "
         "of the norm over the hub's loads."
+    )
+    page.image(
+        "The last of the random shafts, with the rings of its bearings",
+        run.sketch(*shaft_with_rings(scene)),
     )
     page.data("coverage", found)
     page.data("figures", rows)

@@ -4,7 +4,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.bracket_plane import Bracket, plane_answer
-from fe_drivetrain.validation.bracket_solid import solid_answer
+from fe_drivetrain.validation.bracket_solid import meshed, solid_answer
 
 FILLET, HEIGHT, ARM, LEG = 0.05, 0.1, 0.3, 0.2  # m
 BRACKET = Bracket(FILLET, HEIGHT, ARM, LEG)
@@ -87,4 +87,5 @@ def run(run: Run, page: Page) -> None:
     )
     size = f"{FILLET} / {HEIGHT} / {ARM} / {LEG}"
     chosen = "a bracket of ordinary proportions; there is no published one with these"
+    page.image("The bracket, coarsest mesh", run.sketch(meshed(BRACKET, levels[0])))
     page.assume("fillet, height, arm, leg", size, "m", chosen)

@@ -313,6 +313,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
     )
     for one in found:
         page.data(one.label, one.differences)
+    page.image("The scene, as meshed here", run.sketch(mesh))
 
 
 def _worst(differences: Mapping[str, Floats]) -> float:

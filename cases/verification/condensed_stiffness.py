@@ -173,4 +173,5 @@ def run(run: Run, page: Page) -> None:
         "y",
     )
     page.table("Eigenvalues [N/m], rotations in units of the body's length", rows)
+    page.image("The quarter ring, the second of the bodies", run.sketch(block))
     page.data("eigenvalues [N/m], rotations in units of the body's length", rows)

@@ -10,6 +10,7 @@ from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.curved_bars import bent_and_pulled, missed_at_surface
 from fe_drivetrain.validation.plane_rings import CurvedBar, plane_strain
+from fe_drivetrain.validation.ring_solids import ring_sector
 
 INNER, OUTER = 0.1, 0.3  # m
 BAR = CurvedBar(INNER, OUTER)
@@ -87,4 +88,8 @@ def run(run: Run, page: Page) -> None:
     page.text(
         "Plane strain, hexahedra of 27 nodes, a quarter circle. The ends carry the exact "
         "tractions, so no clamp disturbs the stress."
+    )
+    page.image(
+        "The quarter circle that is solved, of one mesh",
+        run.sketch(ring_sector(INNER, OUTER, 0.05, QUARTER, (4, 8, 1))),
     )

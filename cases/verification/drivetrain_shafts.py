@@ -8,6 +8,7 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation import published_drivetrains as published
 from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, diameter, implied
+from fe_drivetrain.validation.solid_shafts import straight
 from fe_drivetrain.validation.twisted_tubes import twisted_tube
 
 LENGTHS = 0.5, 1.0, 2.0
@@ -86,5 +87,9 @@ def run(run: Run, page: Page) -> None:
         "first two frequencies do not feel it. The low-speed shaft of A and B would see "
         f"{of_a[STRESS]:.1f} MPa: a thick, short flange rather than a shaft. The frequencies of "
         "all four are found under drivetrain/."
+    )
+    page.image(
+        "The low-speed shaft of drivetrain D, as its stiffness and damper imply it",
+        run.sketch(straight((0.0, uniform.length), uniform.diameter)),
     )
     page.data("implied_low_speed_shaft", uniform._asdict())

@@ -85,5 +85,6 @@ def run(run: Run, page: Page) -> None:
         "meshes of free tetrahedra gave no steady order, so two far apart are compared, with the "
         "safety factor for that (Roache 1994)."
     )
+    page.image("The shouldered shaft", run.sketch(fillet_factors.shouldered(WIDE, RADIUS)))
     page.data("K_t", rows)
     page.data("elements along the fillet", meshes)

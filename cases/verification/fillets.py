@@ -19,6 +19,7 @@ from fe_drivetrain.validation.fillet_factors import (
     of_a_fit,
     peterson,
     published_scatter,
+    shouldered,
     tipton,
 )
 
@@ -105,6 +106,7 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
     )
     rows = [shoulder(load, f) for f in factors]
     page.table("Every shoulder", rows)
+    page.image("The sharpest of the shoulders", run.sketch(shouldered(f.wide, f.radius)))
     page.data(f"shoulders in {load}", rows)
 
 

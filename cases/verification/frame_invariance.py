@@ -7,6 +7,7 @@ from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import build_model, unit_load_response
 from fe_drivetrain.suite import Page, Record, Run, Target, column, grouped
+from fe_drivetrain.validation.manufactured import quarter_ring, regular
 from fe_drivetrain.validation.turned_frames import (
     differences,
     moved_model,
@@ -86,4 +87,5 @@ def run(run: Run, page: Page) -> None:
         "make another one. Joint, springs, gravity and hub loads turn with it."
     )
     page.table("Largest differences, relative to the largest value of each load", rows)
+    page.image("The quarter ring", run.sketch(regular(27, quarter_ring)(2)))
     page.data("differences", rows)

@@ -7,6 +7,7 @@ from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.interference_fits import ExactFit, Pressed, exact_fit, press
+from fe_drivetrain.validation.ring_solids import ring_sector
 
 RADII = BORE, SEAT, OUTER = 0.15, 0.3175, 0.348  # m
 MISFIT = 100e-6  # m, on the radius
@@ -82,5 +83,14 @@ def run(run: Run, page: Page) -> None:
     )
     bearing = "bore and d1 of SKF 331555B (Stirling 2023, chapter 4) as the ring's wall"
     usual = "of the order of an interference fit of this diameter; the answer is linear in it"
+    page.image(
+        "A quarter of the shaft and of the ring pressed on it, in the finest mesh",
+        run.sketch(
+            *(
+                ring_sector(*radii, 0.05, 0.5 * np.pi, (n, 12, 1))
+                for radii, n in (((BORE, SEAT), 4), ((SEAT, OUTER), 1))
+            )
+        ),
+    )
     page.assume("seat and outside of the ring", "0.635 / 0.696", "m", bearing)
     page.assume("misfit on the radius", 1e6 * MISFIT, "µm", usual)

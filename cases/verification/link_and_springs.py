@@ -243,6 +243,10 @@ def run(run: Run, page: Page) -> None:
         "Table 2. With d = 0 or 1 no shaft longer than wide has both",
         shafts,
     )
+    page.image(
+        "The low-speed shaft that the table implies",
+        run.sketch(solid_shafts.straight((0.0, L), DIAMETER)),
+    )
     page.data("split", {row["load"]: row["solid"] for row in rows})
 
 

@@ -82,3 +82,7 @@ def run(run: Run, page: Page) -> None:
         "element keeps its own. Meshes of shafts and rings are not of that kind."
     )
     add_convergence(page, "Errors on trapezoids", trapezoids)
+    page.image(
+        "The quarter ring, in two, four and two elements",
+        run.sketch(m.regular(27, m.quarter_ring)(2)),
+    )

@@ -32,3 +32,6 @@ def run(run: Run, page: Page) -> None:
     add_manufactured(
         run, page, series, "Straight P2 on a curved body: see the case straight_on_curved."
     )
+    page.image(
+        "The quarter ring in curved tetrahedra", run.sketch(m.regular(10, m.quarter_ring)(2))
+    )

@@ -149,6 +149,7 @@ def run(run: Run, page: Page) -> None:
         "matrix by the energy of six motions of the front; nothing is shared with the meridian but "
         "the shaft and the material."
     )
+    page.image("The last of the shafts", run.sketch(shaft))
     page.data("stiffness", rows)
     page.data("time", cost)
 

@@ -14,6 +14,7 @@ from fe_drivetrain.validation.patched_interfaces import (
     sphere_kinematics,
     sprung_block,
     tied_blocks,
+    two_blocks,
 )
 
 DIVISIONS = "elements along a side of the sector"
@@ -86,5 +87,8 @@ def run(run: Run, page: Page) -> None:
         "pressure on a facet is integrated with the facet's own normals. The averaged joint "
         "carries the sphere's resultant only: it passes no pressure, and adds nothing to what "
         "presses on both faces."
+    )
+    page.image(
+        "Two of the oblique blocks, hexahedra on tetrahedra", run.sketch(two_blocks((27, 10, 2, 3)))
     )
     page.data("stress errors", exact | by_nodes)

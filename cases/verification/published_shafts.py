@@ -14,6 +14,7 @@ from fe_drivetrain.cases.verification import (
 from fe_drivetrain.cases.verification.published_checks import MainShaft, main_shaft
 from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.solid_shafts import straight
 
 #: By the turbine of a row: what judges it.
 TURBINES: dict[str, Callable[[Page, Mapping[str, Any], Record, MainShaft], None]] = {
@@ -43,5 +44,8 @@ def run(run: Run, page: Page, row: Mapping[str, Any]) -> None:
             "the turbine has no gearbox: the field would hold the generator's structure too, "
             "which is not published",
         )
+    page.image(
+        "The main shaft", run.sketch(straight((0.0, shaft.length), shaft.outer, shaft.inner))
+    )
     page.data("stiffness", shaft.found.stiffness)
     page.data("band", shaft.found.band)

@@ -10,6 +10,7 @@ from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation import squeezed_rings as rings
 from fe_drivetrain.validation.plane_rings import plane_strain
+from fe_drivetrain.validation.ring_solids import ring_sector
 
 RADIUS, FORCE = 0.33, 1e6  # m, of the wall's middle; N/m of width
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=0.0)
@@ -85,6 +86,11 @@ def run(run: Run, page: Page) -> None:
         "Plane strain, E' = E / (1 - nu^2), a quarter of the ring. Each load is a smooth bump of "
         "pressure over one wall thickness of arc, the same for elements and series "
         f"({rings.ORDERS} even harmonics)."
+    )
+    thick = ring(ratios[0])
+    page.image(
+        "A quarter of the thickest ring",
+        run.sketch(ring_sector(thick.inner, thick.outer, 0.1, 0.5 * np.pi, (4, 12, 1))),
     )
     page.data("curved beam [m]", [ring(ratio).curved_beam() for ratio in ratios])
     page.data("thin ring [m]", [ring(ratio).thin() for ratio in ratios])

@@ -86,5 +86,8 @@ def run(run: Run, page: Page) -> None:
         "One half wave is meshed, between planes of symmetry."
     )
     bearing = "bore and d1 of SKF 331555B (Stirling 2023, chapter 4) as the ring's wall"
+    page.image(
+        "Half a wave of the ring at n = 2, coarsest mesh", run.sketch(half_wave(INNER, OUTER, 2, 1))
+    )
     page.assume("bore and outside of the ring", "0.635 / 0.696", "m", bearing)
     page.data("exact over thin ring", ratio)

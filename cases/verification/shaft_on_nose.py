@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.beam import cowper_shear_coefficient
 from fe_drivetrain.cases import case
 from fe_drivetrain.fidelity import shaft_level
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import shaft_with_rings, trace
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -152,4 +152,8 @@ def run(run: Run, page: Page) -> None:
             {"mesh size [m]": size, "solid [nm/N]": 1e9 * found}
             for size, found in zip(sizes, solids, strict=True)
         ],
+    )
+    page.image(
+        "The shaft, its bearings and the nose that they stand on",
+        run.sketch(*shaft_with_rings(scene_of(1.0, 0.5))),
     )

@@ -18,6 +18,7 @@ from fe_drivetrain.validation.spherical_shells import (
     Pressed,
     Shell,
     core_stiffness,
+    cut_open,
     displaced_core,
     mesh_of,
     move_core,
@@ -127,6 +128,10 @@ def run(run: Run, page: Page) -> None:
     for joint in JOINTS:
         computed = [m.stiffness for m in moved[joint]]
         page.data(joint, {"exact": exact[joint], "computed": computed})
+    page.image(
+        "Half of both shells",
+        run.sketch(cut_open(mesh_of(INNER, OUTER, 4, 2))),
+    )
 
 
 def band(sizes: list[float], values: list[float]) -> float:

@@ -180,4 +180,7 @@ def run(run: Run, page: Page) -> None:
             if row.get(SHAPE)
         ],
     )
+    page.image(
+        "The shaft with a sharp step", run.sketch(rigid_ended_shafts.SHAFTS["stepped, sharp"])
+    )
     page.data("effectivity", found)

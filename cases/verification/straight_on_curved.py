@@ -89,3 +89,4 @@ def run(run: Run, page: Page) -> None:
         "order of h in a volume of the order of h, √(h² h) = h^1.5 in the energy norm. Its mean "
         "shifts all displacements by h²."
     )
+    page.image("The slice of a tube, coarsest mesh", run.sketch(blocks[0]))

@@ -4,7 +4,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped
 from fe_drivetrain.validation.plane_rings import Lame, Plane, plane_strain
-from fe_drivetrain.validation.ring_slices import pressed_ring
+from fe_drivetrain.validation.ring_slices import EIGHTH, pressed_ring
+from fe_drivetrain.validation.ring_solids import ring_sector
 
 E, NU = 200e9, 0.3
 STEEL = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
@@ -88,4 +89,8 @@ def run(run: Run, page: Page) -> None:
         "An eighth of the ring between planes of symmetry, one element wide. Mid-side nodes lie "
         "on the true circles. The mean displacement of the bore is the work of the pressure over "
         "pressure and area."
+    )
+    page.image(
+        "The eighth of the ring that is solved",
+        run.sketch(ring_sector(RING.inner, RING.outer, 0.075, EIGHTH, (4, 4, 1))),
     )

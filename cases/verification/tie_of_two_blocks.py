@@ -147,6 +147,10 @@ def run(run: Run, page: Page) -> None:
     page.data("ratios", found.labels)
     page.data("errors", {q: {kind: found.errors(kind, q) for kind in TIES} for q in TITLES})
     whole = found.whole.values()
+    page.image(
+        "Both halves of the bar, of two and three elements a side",
+        run.sketch(tied_bars.tied(2, 3, "standard")[0]),
+    )
     page.data("whole bar", {q: [getattr(bar, q) for bar in whole] for q in TITLES})
 
 

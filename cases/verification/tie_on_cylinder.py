@@ -206,6 +206,7 @@ def run(run: Run, page: Page) -> None:
         "with dual multipliers only what is constant in a facet does, and the rest is wrong from "
         "node to node, though right in the mean."
     )
+    page.image("The tied rings", run.sketch(tied(*pairs[0])[0]))
     page.data("tied", rows)
     page.data("shared", shared)
     page.data("exact torsion [N m/rad]", references[TORSION].value)

@@ -88,3 +88,7 @@ def run(run: Run, page: Page) -> None:
         "Strength of Materials II, article 42), and a slice a two-hundredth of its wall thick, "
         "with free faces, gives them. The ends of a long cylinder stay plane, without net force."
     )
+    page.image(
+        "The sector that is solved, coarsest mesh",
+        run.sketch(divided_sector(list(PLACES.values()), LEVELS[0], (OUTER - INNER) / 8, SECTOR)),
+    )

@@ -19,6 +19,7 @@ from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs, mesh_parts, tied
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
+from fe_drivetrain.response.cached import solved_content
 from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
 from fe_drivetrain.response.kept import kept_together
 from fe_drivetrain.scene.component import Attachment
@@ -116,7 +117,7 @@ def unit_stiffness(
             known[name, with_ring] = _unit_solid(scene, name, with_ring)
         return [_solved_unit(known[name, with_ring], coupling, method).stiffness]
 
-    (found,) = _kept(scene, [_content(name, with_ring, coupling, method)], cache, solved)
+    (found,) = _kept(scene, name, [_content(name, with_ring, coupling, method)], cache, solved)
     return found
 
 
@@ -152,7 +153,7 @@ def unit_stiffnesses(
         return [found[way] for way in ways]
 
     contents = [_content(name, *way, method) for way in ways]
-    return dict(zip(_COUPLINGS, _kept(scene, contents, cache, solved), strict=True))
+    return dict(zip(_COUPLINGS, _kept(scene, name, contents, cache, solved), strict=True))
 
 
 def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
@@ -227,7 +228,7 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
         return [stiff.stiffness, soft.stiffness, np.array(_mesh_band(scene, stiff))]
 
     contents = [_content(name, *way, "auto") for way in ways]
-    stiff, soft, mesh = _kept(scene, [*contents, {"mesh band of": name}], cache, solved)
+    stiff, soft, mesh = _kept(scene, name, [*contents, {"mesh band of": name}], cache, solved)
     return UnitBounds(soft, stiff, float(mesh))
 
 
@@ -254,13 +255,18 @@ def _content(name: str, with_ring: bool, coupling: Coupling, method: str) -> dic
 
 def _kept(
     scene: Scene,
+    name: str,
     contents: Sequence[Mapping[str, Any]],
     cache: Cache | None,
     solve: Callable[[], Sequence[Floats]],
 ) -> list[Floats]:
     """What was solved of a scene's bearing unit before, or, where one of it is missing, is now."""
     rooms = {"fe_drivetrain.fidelity": {"bearing_units.py"}}
-    found = kept_together(scene, contents, rooms, lambda: [{"0": a} for a in solve()], cache)
+    # of the shaft the seat alone, so that other lengths, bores and overhangs find what is kept
+    depends = solved_content(scene) | {"shaft": _seat(scene, name)}
+    found = kept_together(
+        scene, contents, rooms, lambda: [{"0": a} for a in solve()], cache, depends
+    )
     return [arrays["0"] for arrays in found]
 
 
@@ -287,11 +293,16 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     return SAFETY * float(shares.max())
 
 
+def _seat(scene: Scene, name: str) -> float:
+    """Diameter of the shaft under a bearing [m]: all of the shaft that its unit knows of."""
+    bearing = scene.bearing_unit(name).bearing
+    return scene.shaft.seat_diameter(bearing.x, bearing.width, name)
+
+
 def _unit_solid(scene: Scene, name: str, with_ring: bool) -> UnitSolid:
     """A bearing unit's solid, with the ring where that gives."""
     unit = scene.bearing_unit(name)
-    seat = scene.shaft.seat_diameter(unit.bearing.x, unit.bearing.width, name)
-    bearing = unit.bearing.model_copy(update={"bore_diameter": seat})
+    bearing = unit.bearing.model_copy(update={"bore_diameter": _seat(scene, name)})
     alone = unit.model_copy(update={"bearing": bearing})
     together = tied([alone], mesh_parts(None, [alone], scene.mesh), with_ring)
     parts = [*([name] if with_ring else []), *unit.housing_parts]

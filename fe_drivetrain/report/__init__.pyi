@@ -17,9 +17,12 @@ from .number_text import formatted as formatted
 from .page import write_page as write_page
 from .pictures import NoPictureError as NoPictureError
 from .pictures import can_draw as can_draw
+from .pictures import gear_pair as gear_pair
 from .pictures import picture_of_deformation as picture_of_deformation
 from .pictures import picture_of_displacements as picture_of_displacements
 from .pictures import picture_of_model as picture_of_model
+from .pictures import rolling_elements as rolling_elements
+from .pictures import shaft_with_rings as shaft_with_rings
 from .results import AssumptionRow as AssumptionRow
 from .results import Cell as Cell
 from .results import Chart as Chart

@@ -52,6 +52,7 @@ def kept_together(
     rooms: Mapping[str, Set[str] | None],
     solve: Callable[[], Sequence[Mapping[str, NDArray[Any]]]],
     cache: Cache | None = None,
+    depends: Mapping[str, Any] | None = None,
 ) -> list[dict[str, NDArray[Any]]]:
     """`kept_arrays` of several contents that are solved together, where one of them is missing.
 
@@ -63,6 +64,8 @@ def kept_together(
         What else each depends on.
     solve : callable
         Makes the arrays of each, by name.
+    depends : Mapping[str, Any] or None
+        What of the scene they depend on; `solved_content` if not given.
 
     Returns
     -------
@@ -71,7 +74,7 @@ def kept_together(
     """
     used = user_cache() if cache is None else cache
     common = {
-        "scene": solved_content(scene),
+        "scene": solved_content(scene) if depends is None else depends,
         "sizes": scene.mesh.model_dump(mode="json"),
         "made by": solved_by(),
         "code": source_hash(rooms),

@@ -18,7 +18,7 @@ from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import arithmetic, program_hash
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.geometry.shaft import Shaft
-from fe_drivetrain.report.pictures.sketch import Body, sketch
+from fe_drivetrain.report.pictures.sketch import Body, Faces, sketch
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -107,8 +107,8 @@ class Run:
         found: _T = json.loads(str(before["figures"]))
         return found
 
-    def sketch(self, *bodies: Body | Shaft, file: str = "model.png") -> str:
-        """Write a small picture of bodies, as meshed, or of a shaft; the file's name for a page."""
+    def sketch(self, *bodies: Body | Shaft | list[Faces], file: str = "model.png") -> str:
+        """Write a small picture of bodies, as meshed, shafts or surfaces; its name for a page."""
         (self.folder / file).write_bytes(sketch(*bodies))
         return file
 

@@ -13,6 +13,7 @@ from fe_drivetrain.interfaces import Constraint, eliminate, fixed, rigid_face, r
 from fe_drivetrain.mesh import Block, brick, joined
 from fe_drivetrain.operator import assemble
 from fe_drivetrain.solve import TOLERANCE, System, factorise, multigrid, reduce
+from fe_drivetrain.validation.two_bodies import Bodies
 
 OPTIONS = multigrid.Options(coarsest=50)
 """Few nodes are left to the dense factor, so that small meshes have the levels of large ones."""
@@ -49,6 +50,11 @@ class Series:
     end: Constraint
     load: int
     centre: Floats
+
+    def bodies(self) -> Bodies:
+        """Each body by itself, for a picture."""
+        cells = (self.block.cells[self.members == k] for k in range(len(self.parts)))
+        return Bodies(self.block.points, tuple(cells), ())
 
     def system(self, moduli: Sequence[float], rigid: Sequence[int] = ()) -> tuple[System, Floats]:
         """System and load of 1 N or N m.

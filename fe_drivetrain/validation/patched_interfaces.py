@@ -106,6 +106,22 @@ def tied_blocks(pairs: Sequence[Pair]) -> tuple[dict[str, float], dict[str, floa
 
 def _tied(make: Callable[..., Constraint], pair: Pair, power: float, **more: Any) -> float:
     """Stress error of two blocks, the slave's elements graded by a power."""
+    bodies = two_blocks(pair, power)
+    slave, master = bodies.faces[0]["z1"], bodies.faces[1]["z0"]
+    tie = make("tie", bodies.points, slave, master, bodies.points.size, **more)
+    return _error_of(bodies, [tie])
+
+
+def two_blocks(pair: Pair, power: float = 1.3) -> Bodies:
+    """Two oblique blocks on one another, not yet tied.
+
+    Parameters
+    ----------
+    pair : tuple
+        Nodes of an element of the lower one, the slave, and of the upper; divisions of their sides.
+    power : float
+        By which the slave's elements are graded.
+    """
     made = []
     for k, (nodes, n) in enumerate(zip(pair[:2], pair[2:], strict=True)):
         graded = None if k else np.linspace(0.0, 1.0, n + 1) ** power
@@ -114,10 +130,7 @@ def _tied(make: Callable[..., Constraint], pair: Pair, power: float, **more: Any
             return oblique(x * [1.0, 1.0, 0.5] + [0.0, 0.0, bottom])
 
         made.append(brick((n, n, 1), nodes, shape, edges=(graded, graded, None)))
-    bodies = two_bodies.together(*made)
-    slave, master = bodies.faces[0]["z1"], bodies.faces[1]["z0"]
-    tie = make("tie", bodies.points, slave, master, bodies.points.size, **more)
-    return _error_of(bodies, [tie])
+    return two_bodies.together(*made)
 
 
 def _error_of(bodies: Bodies, ties: list[Constraint]) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -254,6 +254,13 @@ def mesh_of(inner: Shell, outer: Shell, across: int, through: int, bonded: bool 
     cells = both.cells[: len(first.cells)], both.cells[len(first.cells) :]
     names = ("core", "inner", "outer", "outside")
     return Mesh(both.points, cells, *(both.faces[name] for name in names))
+
+
+def cut_open(mesh: Mesh) -> Mesh:
+    """The half with y > 0, for a picture; an even number of elements across has a plane there."""
+    least = -1e-6 * float(np.abs(mesh.points).max())
+    inner, outer = (own[(mesh.points[own, 1] > least).all(axis=1)] for own in mesh.cells)
+    return replace(mesh, cells=(inner, outer))
 
 
 def _sphere(shell: Shell, across: int, through: int) -> Block:

@@ -55,8 +55,8 @@ class Strip:
     warned: bool
 
 
-def tied_strip(own: int, other: int, kind: str, grading: float = GRADING) -> Strip:
-    """Solve the strip with so many elements across the slave and across the master."""
+def strip(own: int, other: int, grading: float = GRADING) -> two_bodies.Bodies:
+    """Both halves of the strip, with so many elements across the slave and across the master."""
     graded = np.linspace(0.0, 1.0, own + 1) ** grading
 
     def placed(start: float) -> Floats:
@@ -65,7 +65,12 @@ def tied_strip(own: int, other: int, kind: str, grading: float = GRADING) -> Str
     size = np.array([LENGTH, HEIGHT, DEPTH])
     first = brick((1, own, 1), 10, lambda x: x * size + placed(0.0), edges=(None, graded, None))
     second = brick((1, other, 1), 10, lambda x: x * size + placed(LENGTH))
-    bodies = two_bodies.together(first, second)
+    return two_bodies.together(first, second)
+
+
+def tied_strip(own: int, other: int, kind: str, grading: float = GRADING) -> Strip:
+    """Solve the strip with so many elements across the slave and across the master."""
+    bodies = strip(own, other, grading)
     tie, warned = tied(bodies, kind)
     n = bodies.points.size
     K = bodies.stiffness(LAME)

@@ -3,4 +3,7 @@ from .deformation import picture_of_displacements as picture_of_displacements
 from .model import picture_of_model as picture_of_model
 from .off_screen import NoPictureError as NoPictureError
 from .off_screen import can_draw as can_draw
+from .rollers import rolling_elements as rolling_elements
+from .sketch import shaft_with_rings as shaft_with_rings
 from .sketch import sketch as sketch
+from .teeth import gear_pair as gear_pair

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import io
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
-from fe_drivetrain.geometry.shaft import Section, Shaft
+from fe_drivetrain.geometry.shaft import Section, Segment, Shaft
 from fe_drivetrain.mesh.facets import outside
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.plots.style import PALETTE
@@ -31,7 +32,7 @@ _EYE = np.array([-0.55, -1.0, 0.55]) / math.sqrt(0.55**2 + 1.0 + 0.55**2)
 _RIGHT = np.array([1.0, -0.55, 0.0]) / math.hypot(1.0, 0.55)
 _UP = np.cross(_RIGHT, -_EYE)
 _LIGHT = np.array([-0.3, -0.75, 0.6]) / math.sqrt(0.3**2 + 0.75**2 + 0.6**2)
-_ROUND = 48  # pieces of a turn of a shaft
+_ROUND, _ARC = 48, 8  # pieces of a turn of a shaft, and of a fillet
 _INK, _FAINT = (31, 41, 51), (123, 135, 148)
 
 
@@ -52,24 +53,40 @@ class Faces:
 
 
 class Body(Protocol):
-    """What has nodes and elements: a mesh, a block, hexahedra of a shaft."""
+    """What has nodes and elements: a mesh, a block, hexahedra of a shaft, several blocks."""
 
     @property
     def points(self) -> Floats:
         """(n, 3) positions of nodes [m]."""
 
     @property
-    def cells(self) -> Ints:
-        """(ne, 4), (ne, 8), (ne, 10), (ne, 20) or (ne, 27) nodes in VTK's order."""
+    def cells(self) -> Ints | tuple[Ints, ...]:
+        """Nodes in VTK's order: (ne, 4), (ne, 8), (ne, 10), (ne, 20), (ne, 27); or such by part."""
 
 
-def sketch(*bodies: Body | Shaft) -> bytes:
+@dataclass(frozen=True)
+class Piece:
+    """A body for `sketch` that stands in no other class.
+
+    Attributes
+    ----------
+    points : Floats
+        (n, 3) positions of nodes [m].
+    cells : Ints
+        (ne, k) nodes in VTK's order.
+    """
+
+    points: Floats
+    cells: Ints
+
+
+def sketch(*bodies: Body | Shaft | list[Faces]) -> bytes:
     """Bodies in parallel perspective, each in a colour of its own, with axes and a scale.
 
     Parameters
     ----------
-    *bodies : Body or Shaft
-        Meshes, whose elements are seen, part by part where they have several, or shafts.
+    *bodies : Body, Shaft or list of Faces
+        Meshes, whose elements are seen, part by part where they have several, shafts, or surfaces.
 
     Returns
     -------
@@ -80,8 +97,11 @@ def sketch(*bodies: Body | Shaft) -> bytes:
 
     groups, colours = [], []
     parts = [part for body in bodies for part in _parts(body)]
-    for k, body in enumerate(parts):
-        faces = revolved(body) if isinstance(body, Shaft) else surface(body.points, body.cells)
+    for k, part in enumerate(parts):
+        if isinstance(part, list):
+            faces = part
+        else:
+            faces = revolved(part) if isinstance(part, Shaft) else surface(part.points, part.cells)
         groups += faces
         colours += [PALETTE[k % len(PALETTE)]] * sum(len(group.loops) for group in faces)
     flat = [loop for group in groups for loop in group.loops]
@@ -166,38 +186,75 @@ def _in_pieces(at: Floats, n: int) -> Faces:
 
 
 def revolved(shaft: Shaft) -> list[Faces]:
-    """Outer surface, bore and end faces of a shaft; fillets are not drawn."""
-    outside, inside, x = [], [], shaft.front
+    """Outer surface with its fillets, bore and end faces of a shaft."""
+    inside, x = [], shaft.front
     for piece in shaft.pieces:
         last = x + piece.length
-        end = piece.outer_diameter if piece.outer_diameter_end is None else piece.outer_diameter_end
-        outside += [(x, 0.5 * piece.outer_diameter), (last, 0.5 * end)]
         inside += [(x, 0.5 * piece.inner_diameter), (last, 0.5 * piece.inner_diameter)]
         x = last
-    meridian = np.array([*outside, *inside[::-1], outside[0]])
-    turn = np.linspace(0.0, 2.0 * np.pi, _ROUND + 1)
-    round_it = np.stack([np.ones(_ROUND + 1), np.cos(turn), np.sin(turn)], axis=1)
+    lines = [_flat(segment) for segment in shaft.outer_profile()]
+    back = [lines[-1][-1], *inside[::-1], lines[0][0]]
+    lines += [np.array(ends) for ends in pairwise(back)]
+    return turned(lines)
+
+
+def turned(lines: Sequence[Floats], around: int = _ROUND) -> list[Faces]:
+    """Surfaces of revolution about x.
+
+    Parameters
+    ----------
+    lines : Sequence[Floats]
+        (n, 2) x and radius [m] along smooth lines, with the body on their right.
+    around : int
+        Flat pieces of a turn.
+    """
+    turn = np.linspace(0.0, 2.0 * np.pi, around + 1)
+    round_it = np.stack([np.ones(around + 1), np.cos(turn), np.sin(turn)], axis=1)
     found = []
-    for start, stop in pairwise(meridian):
-        if np.array_equal(start, stop) or max(start[1], stop[1]) == 0.0:
+    for line in lines:
+        if np.array_equal(line[0], line[-1]) or line[:, 1].max() == 0.0:
             continue
         # in short bands: their depths say which is in front of which
-        length = float(np.linalg.norm(stop - start))
-        count = min(max(math.ceil(4.0 * length / max(start[1], stop[1])), 1), 60)
-        for k in range(count):
-            ends = (start + (stop - start) * share / count for share in (k, k + 1))
+        length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+        count = min(max(math.ceil(4.0 * length / line[:, 1].max()), 1), 60)
+        count = max(count // (len(line) - 1), 1)
+        bands = [
+            [start + (stop - start) * share / count for share in (k, k + 1)]
+            for start, stop in pairwise(line)
+            for k in range(count)
+        ]
+        for k, ends in enumerate(bands):
             one, two = (round_it * [end[0], end[1], end[1]] for end in ends)
             loops = np.stack([one[:-1], one[1:], two[1:], two[:-1]], axis=1)
-            sides = [k == 0, False, k == count - 1, False]
-            found.append(Faces(loops, np.tile(sides, (_ROUND, 1))))
+            sides = [k == 0, False, k == len(bands) - 1, False]
+            found.append(Faces(loops, np.tile(sides, (around, 1))))
     return found
 
 
-def _parts(body: Body | Shaft) -> list[Body | Shaft]:
-    """The parts of a mesh that has several, each by itself."""
-    if not isinstance(body, Mesh):
+def _flat(segment: Segment) -> Floats:
+    """(n, 2) a piece of a meridian, an arc in short straight lines."""
+    start, end = np.array(segment.start), np.array(segment.end)
+    if segment.centre is None:
+        return np.array([start, end])
+    centre = np.array(segment.centre)
+    (x0, y0), (x1, y1) = start - centre, end - centre
+    first = math.atan2(y0, x0)
+    # the shorter way round
+    angle = math.remainder(math.atan2(y1, x1) - first, 2.0 * math.pi)
+    turned = first + angle * np.linspace(0.0, 1.0, _ARC + 1)
+    arc = centre + math.hypot(x0, y0) * np.stack([np.cos(turned), np.sin(turned)], axis=1)
+    arc[[0, -1]] = start, end
+    return arc
+
+
+def _parts(body: Body | Shaft | list[Faces]) -> list[Piece | Shaft | list[Faces]]:
+    """The parts of a body that has several, each by itself."""
+    if isinstance(body, (Shaft, list)):
         return [body]
-    return [replace(body, cells=body.cells[body.part_cells(name)]) for name in body.part_names]
+    if isinstance(body, Mesh):
+        return [Piece(body.points, body.cells[body.part_cells(n)]) for n in body.part_names]
+    several = body.cells if isinstance(body.cells, tuple) else (body.cells,)
+    return [Piece(body.points, cells) for cells in several]
 
 
 def _seen(points: Floats) -> Floats:
