@@ -1,4 +1,4 @@
-"""The cases of what a user waits for run, and check what time must not change."""
+"""The cases of what a user waits for, and why, run and check what time must not change."""
 
 import pytest
 from conftest import QuickRun
@@ -20,3 +20,17 @@ def test_a_command_takes_no_less_than_its_processes_need(quick_run: QuickRun) ->
     (row,) = results.figures["waits"]
     assert 0 < row["least [s]"] <= row["median [s]"] <= row["most [s]"]
     assert row["on processors [s]"] > 0
+
+
+@pytest.mark.quick("performance/distance_from_limit")
+def test_every_phase_has_a_floor_in_proportion_to_what_it_moves(quick_run: QuickRun) -> None:
+    results = quick_run("performance/distance_from_limit")
+    assert all(verdict.passed for verdict in results.verdicts)
+    rate = max(results.figures["bandwidths"])
+    rows = {row["phase"]: row for row in results.figures["phases"]}
+    for row in rows.values():
+        assert row["floor [s]"] * rate == pytest.approx(1e6 * row["bytes [MB]"])
+    # conjugate gradients and a cycle: the stiffness once in double and twice in single precision
+    blocks = rows["reduction"]["bytes [MB]"] / 2 / 76
+    each = rows["iterations"]["bytes [MB]"] / results.figures["iterations"]
+    assert 1.0 < each / (blocks * (76 + 2 * 40)) < 1.5

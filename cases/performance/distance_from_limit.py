@@ -85,6 +85,8 @@ def run(run: Run, page: Page) -> None:
     for text in METHOD:
         page.text(text)
     page.data("bandwidths", rates)
+    page.data("phases", rows)
+    page.data("iterations", found[0].iterations)
 
 
 def timed(problem: Problem) -> Solved:

@@ -58,12 +58,16 @@ def kept_together(
 
     Parameters
     ----------
-    scene, rooms, cache
+    scene : Scene
         As of `kept_arrays`.
     contents : Sequence
         What else each depends on.
+    rooms : Mapping
+        As of `kept_arrays`.
     solve : callable
         Makes the arrays of each, by name.
+    cache : Cache or None
+        As of `kept_arrays`.
     depends : Mapping[str, Any] or None
         What of the scene they depend on; `solved_content` if not given.
 
