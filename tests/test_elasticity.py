@@ -245,3 +245,11 @@ def test_volume_weights_sum_to_the_volume_of_any_element(nodes, rng):
     assert weights.sum() == pytest.approx(1.0, rel=1e-13)
     centre = (block.points.min(axis=0) + block.points.max(axis=0)) / 2
     np.testing.assert_allclose(weights @ block.points, centre, rtol=1e-12, atol=1e-13)
+
+
+def test_an_element_without_volume_has_a_stiffness_of_no_numbers():
+    """It raises nothing here: who checks the mesh says which element it is."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
+    with np.errstate(all="ignore"):
+        K = assemble(points, np.arange(4)[None], (1.0, 1.0))
+    assert not np.isfinite(K.data).any()

@@ -109,9 +109,9 @@ def _place_pairs(
                 slots[c, a, b] = place[cells[c, b]]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _inverse_transposed(J: Floats, A: Floats) -> float:
-    """Put J^-T into A; the determinant of J."""
+    """Put J^-T into A, of no numbers where there is none; the determinant of J."""
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         for p in range(3):
@@ -278,21 +278,31 @@ def invert(blocks: Floats, out: Floats) -> None:
 
 @njit(inline="always")
 def _node_residual(
-    i: int, indptr: Index, indices: Index, data: Floats, X: Floats, B: Floats
-) -> Floats:
-    """``B - K X`` (3, m) of node i; a copy of its own, so that no compiler fears a part of X."""
-    m = X.shape[1]
-    y = np.empty((3, m))
-    for r in range(3):
+    i: int, indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, columns: int
+) -> tuple[Floats, Floats, Floats]:
+    """``B - K X`` (m,) of node i in each direction, all arrays flat.
+
+    Copies of their own, so that no compiler fears a part of X. Three rows in one loop over columns
+    and indices that cannot be negative: two thirds of the time of a loop for each row.
+    """
+    f, g, h = np.empty(columns), np.empty(columns), np.empty(columns)
+    m, three, nine = np.uint64(columns), np.uint64(3), np.uint64(9)
+    t = three * np.uint64(i) * m
+    for k in range(m):
+        f[k], g[k], h[k] = b[t + k], b[t + m + k], b[t + m + m + k]
+    for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+        s, q = three * np.uint64(indices[p]) * m, nine * p
+        f0, f1, f2 = data[q], data[q + np.uint64(1)], data[q + np.uint64(2)]
+        q += three
+        g0, g1, g2 = data[q], data[q + np.uint64(1)], data[q + np.uint64(2)]
+        q += three
+        h0, h1, h2 = data[q], data[q + np.uint64(1)], data[q + np.uint64(2)]
         for k in range(m):
-            y[r, k] = B[3 * i + r, k]
-    for p in range(indptr[i], indptr[i + 1]):
-        c = 3 * indices[p]
-        for r in range(3):
-            u, v, w = data[p, r, 0], data[p, r, 1], data[p, r, 2]
-            for k in range(m):
-                y[r, k] -= u * X[c, k] + v * X[c + 1, k] + w * X[c + 2, k]
-    return y
+            u, v, w = x[s + k], x[s + m + k], x[s + m + m + k]
+            f[k] -= f0 * u + f1 * v + f2 * w
+            g[k] -= g0 * u + g1 * v + g2 * w
+            h[k] -= h0 * u + h1 * v + h2 * w
+    return f, g, h
 
 
 def residual(
@@ -303,19 +313,19 @@ def residual(
         x, b, y = X.reshape(-1), B.reshape(-1), out.reshape(-1)
         _residual_of_one(indptr, indices, data.reshape(-1), x, b, y)
     else:
-        _residual_of_many(indptr, indices, data, X, B, out)
+        x, b = X.reshape(-1), B.reshape(-1)
+        _residual_of_many(indptr, indices, data.reshape(-1), x, b, out)
 
 
 @njit(cache=True, parallel=True, fastmath=True)
 def _residual_of_many(
-    indptr: Index, indices: Index, data: Floats, X: Floats, B: Floats, out: Floats
+    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
 ) -> None:
-    m = X.shape[1]
+    m = out.shape[1]
     for i in prange(len(indptr) - 1):
-        y = _node_residual(i, indptr, indices, data, X, B)
-        for r in range(3):
-            for k in range(m):
-                out[3 * i + r, k] = y[r, k]
+        f, g, h = _node_residual(i, indptr, indices, data, x, b, m)
+        for k in range(m):
+            out[3 * i, k], out[3 * i + 1, k], out[3 * i + 2, k] = f[k], g[k], h[k]
 
 
 @njit(inline="always")
@@ -374,7 +384,8 @@ def chebyshev_step(
         x, b, d, y = (M.reshape(-1) for M in (X, B, D, out))
         _step_of_one(indptr, indices, data.reshape(-1), inverse, x, b, d, y, momentum, step)
     else:
-        _step_of_many(indptr, indices, data, inverse, X, B, D, out, momentum, step)
+        x, b = X.reshape(-1), B.reshape(-1)
+        _step_of_many(indptr, indices, data.reshape(-1), inverse, x, b, D, out, momentum, step)
 
 
 @njit(cache=True, parallel=True, fastmath=True)
@@ -383,23 +394,23 @@ def _step_of_many(
     indices: Index,
     data: Floats,
     inverse: Floats,
-    X: Floats,
-    B: Floats,
+    x: Floats,
+    b: Floats,
     D: Floats,
     out: Floats,
     momentum: float,
     step: float,
 ) -> None:
-    m = X.shape[1]
+    m = D.shape[1]
     for i in prange(len(indptr) - 1):
-        y = _node_residual(i, indptr, indices, data, X, B)
+        f, g, h = _node_residual(i, indptr, indices, data, x, b, m)
         for r in range(3):
             row = 3 * i + r
             u, v, w = inverse[i, r, 0], inverse[i, r, 1], inverse[i, r, 2]
             for k in range(m):
-                d = momentum * D[row, k] + step * (u * y[0, k] + v * y[1, k] + w * y[2, k])
+                d = momentum * D[row, k] + step * (u * f[k] + v * g[k] + w * h[k])
                 D[row, k] = d
-                out[row, k] = X[row, k] + d
+                out[row, k] = x[row * m + k] + d
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"})
