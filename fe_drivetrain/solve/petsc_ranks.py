@@ -33,7 +33,8 @@ def _package() -> None:
         sys.modules[package.__name__] = package
 
 
-_package()
+if "fe_drivetrain" not in sys.modules:  # started by its path
+    _package()
 
 from fe_drivetrain.common import memory  # noqa: E402
 from fe_drivetrain.solve import own_rows, stopping  # noqa: E402
