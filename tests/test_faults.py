@@ -4,6 +4,7 @@ Faults are put exactly where they can do harm: before each operation of the file
 makes, in a child process of its own.
 """
 
+import ctypes
 import errno
 import os
 import signal
@@ -22,6 +23,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tiny_case import check_one
 
+from fe_drivetrain.commands import terminal
 from fe_drivetrain.commands.run import run_and_print
 from fe_drivetrain.common import files
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache
@@ -530,3 +532,36 @@ def test_a_signal_while_it_meshes_solves_or_writes_leaves_the_old_results(
     assert hidden(tmp_path / "cache") == []
     run_case(marked(NEW), out)
     assert [p.name for p in out.parent.iterdir()] == ["b"]
+
+
+def test_a_stop_that_a_librarys_callback_drops_is_raised_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As SIGTERM while compiled code is loaded; and not in the midst of what it unwinds."""
+    dropped: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda found: dropped.append(found.exc_type))
+
+    @ctypes.CFUNCTYPE(None)
+    def callback() -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.01)
+
+    cleaned: list[str] = []
+
+    def work() -> int:
+        callback()
+        try:
+            time.sleep(10.0)
+        finally:
+            time.sleep(0.5)
+            cleaned.append("wholly")
+        return 0
+
+    begin = time.perf_counter()
+    with pytest.raises(SystemExit) as end:
+        terminal.guarded(work)
+    assert end.value.code == terminal.TERMINATED
+    assert time.perf_counter() - begin < 5.0
+    assert dropped == [SystemExit]
+    assert cleaned == ["wholly"]
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)

@@ -28,6 +28,9 @@ def as_typed() -> str:
     return shlex.join(["fe-drivetrain", *sys.argv[1:]])
 
 
+_AGAIN = 0.2  # s, until a stop that nothing has taken up is raised again
+
+
 def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
     """Do the work of a command; mistakes of the user become one sentence on standard error.
 
@@ -71,20 +74,31 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
 
 @contextmanager
 def _stopped_by_terminate() -> Iterator[None]:
-    """Unwind on SIGTERM as on Ctrl-C, so that no half-written file is left."""
+    """Unwind on SIGTERM as on Ctrl-C, so that no half-written file is left.
+
+    What is raised in a callback of a library is dropped there, as in compiled code that is loaded:
+    so it is raised again, until something unwinds.
+    """
 
     def stop(number: int, frame: FrameType | None) -> None:
-        raise SystemExit(TERMINATED)
+        if hasattr(signal, "setitimer"):  # not on Windows
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+        if not isinstance(sys.exc_info()[1], SystemExit):
+            raise SystemExit(TERMINATED)
 
+    numbers = [signal.SIGTERM, *([signal.SIGALRM] if hasattr(signal, "SIGALRM") else [])]
     try:
-        before = signal.signal(signal.SIGTERM, stop)
+        before = {number: signal.signal(number, stop) for number in numbers}
     except ValueError:  # only the main thread may handle signals
         yield
         return
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        if hasattr(signal, "setitimer"):
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def write(stream: TextIO, text: str) -> None:

@@ -16,7 +16,11 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.interfaces.constraints import Elimination, eliminate
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import Diagnostics, Solver, factorise
+from fe_drivetrain.solve.solvers import TOLERANCE, Diagnostics, Solver, factorise
+
+#: Of the energy norm. Forces on supports and their sums are linear in what an iteration leaves, and
+#: not squared as stiffness is: one digit more.
+_TOLERANCE = 0.1 * TOLERANCE
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +80,9 @@ def prepared(model: Model, method: str, n_rhs: int) -> Prepared:
         elimination = eliminate(model.constraints, model.n_dofs)
         mesh = model.mesh
         system = reduce(mesh.points, mesh.cells, stiffness, elimination, model.springs)
-        found = method, Prepared(stiffness, elimination, factorise(system, method, n_rhs))
+        found = (
+            method,
+            Prepared(stiffness, elimination, factorise(system, method, n_rhs, _TOLERANCE)),
+        )
         _PREPARED[model] = found
     return found[1]
