@@ -54,7 +54,7 @@ def solved(one):
 def test_a_spherical_joint_in_a_housing_from_a_file_gives_as_the_parametric_one(housings, form):
     own = solved(scene(form)).motions["hub"]
     scale = np.sqrt(np.outer(*2 * [own[:, :6].diagonal()]))
-    for kind, within in (("mesh", 2e-3), ("step", 0.02)):  # the ring alone, and all is meshed anew
+    for kind, within in (("mesh", 2e-3), ("step", 0.02)):  # the ring alone, and all is meshed again
         found = solved(scene(form, housings[kind]))
         assert found.equilibrium_error < 1e-8
         assert np.abs((found.motions["hub"][:, :6] - own[:, :6]) / scale).max() < within

@@ -128,7 +128,7 @@ def test_what_the_solids_do_at_the_rollers_is_kept(
         turned = bearing().with_rows(phase=0.1)
         softer = change_scene(scene, {"gearbox.stiffness.0": 1e6})
         for other in ((scene, turned), (softer, bearing())):
-            with pytest.raises(TypeError):  # solved anew, by nothing
+            with pytest.raises(TypeError):  # solved again, by nothing
                 roller_assembly(other[0], {NAME: other[1]})
     assert list(kept.points) == list(made.points)
     for one, two in (
@@ -153,5 +153,5 @@ def test_the_compliance_of_a_housing_is_kept(
     monkeypatch.setattr(housing_module, "_compliance", None)
     assert np.array_equal(made.compliance, housing_races(scene, NAME, bearing()).compliance)
     on_bedplate = change_scene(scene, {f"bearing_units.{NAME}.bedplate": [1e9] * 6})
-    with pytest.raises(TypeError):  # solved anew, by nothing
+    with pytest.raises(TypeError):  # solved again, by nothing
         housing_races(on_bedplate, NAME, bearing())

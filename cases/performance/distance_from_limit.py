@@ -6,12 +6,12 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.interfaces import Elimination, eliminate, fixed
+from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.operator import Pattern, assemble, kernels, sparsity
 from fe_drivetrain.peers import Problem, problems
 from fe_drivetrain.report import trace
@@ -108,7 +108,7 @@ def timed(problem: Problem) -> Solved:
     given[held] = values
     elimination = eliminate([fixed("prescribed", held, n)], n)
     F = np.where(elimination.free[:, None], -(K @ given.reshape(-1, 1)), 0.0)
-    system = clocked("reduction", lambda: reduced(problem, K, elimination))
+    system = clocked("reduction", lambda: reduce(points, cells, K, elimination))
     hierarchy = clocked("set-up", lambda: multigrid.build(system))
     found = clocked(
         "iterations",
@@ -119,15 +119,10 @@ def timed(problem: Problem) -> Solved:
         "pattern": pattern_bytes(pattern),
         "elements": element_bytes(problem, pattern),
         "reduction": 2.0 * DOUBLE * len(K.indices),
-        "set-up": set_up_bytes(system, hierarchy),
+        "set-up": set_up_bytes(hierarchy),
         "iterations": found.iterations * iteration_bytes(system, hierarchy),
     }
     return Solved(seconds, moved, found.iterations)
-
-
-def reduced(problem: Problem, K: Any, elimination: Elimination) -> System:
-    """The system with its constraints eliminated."""
-    return reduce(problem.points, problem.cells, K, elimination)
 
 
 def pattern_bytes(pattern: Pattern) -> float:
@@ -148,7 +143,7 @@ def level_bytes(level: multigrid.Level) -> float:
     return float((SINGLE if level.K.dtype == np.float32 else DOUBLE) * len(level.K.indices))
 
 
-def set_up_bytes(system: System, hierarchy: multigrid.Hierarchy) -> float:
+def set_up_bytes(hierarchy: multigrid.Hierarchy) -> float:
     """Of each level: one copy, the passes of Lanczos, one product for the next level."""
     total = 0.0
     for number, level in enumerate(hierarchy.levels):

@@ -22,13 +22,12 @@ PASSED, FAILED, MISTAKE, STOPPED, TERMINATED = 0, 1, 2, 130, 143
 
 KEPT = "results of an earlier run are unchanged"
 
+_AGAIN = 0.2  # s, until a stop that nothing has taken up is raised again
+
 
 def as_typed() -> str:
     """The words of this command, to be typed again."""
     return shlex.join(["fe-drivetrain", *sys.argv[1:]])
-
-
-_AGAIN = 0.2  # s, until a stop that nothing has taken up is raised again
 
 
 def guarded(work: Callable[[], int], kept: str = KEPT) -> int:

@@ -309,12 +309,11 @@ def residual(
     indptr: Index, indices: Index, data: Floats, X: Floats, B: Floats, out: Floats
 ) -> None:
     """``out = B - K X``."""
+    flat, x, b = data.reshape(-1), X.reshape(-1), B.reshape(-1)
     if X.shape[1] == 1:
-        x, b, y = X.reshape(-1), B.reshape(-1), out.reshape(-1)
-        _residual_of_one(indptr, indices, data.reshape(-1), x, b, y)
+        _residual_of_one(indptr, indices, flat, x, b, out.reshape(-1))
     else:
-        x, b = X.reshape(-1), B.reshape(-1)
-        _residual_of_many(indptr, indices, data.reshape(-1), x, b, out)
+        _residual_of_many(indptr, indices, flat, x, b, out)
 
 
 @njit(cache=True, parallel=True, fastmath=True)
@@ -380,12 +379,12 @@ def chebyshev_step(
     inverse : Floats
         (n_nodes, 3, 3) inverses of the diagonal blocks.
     """
+    flat, x, b = data.reshape(-1), X.reshape(-1), B.reshape(-1)
     if X.shape[1] == 1:
-        x, b, d, y = (M.reshape(-1) for M in (X, B, D, out))
-        _step_of_one(indptr, indices, data.reshape(-1), inverse, x, b, d, y, momentum, step)
+        d, y = D.reshape(-1), out.reshape(-1)
+        _step_of_one(indptr, indices, flat, inverse, x, b, d, y, momentum, step)
     else:
-        x, b = X.reshape(-1), B.reshape(-1)
-        _step_of_many(indptr, indices, data.reshape(-1), inverse, x, b, D, out, momentum, step)
+        _step_of_many(indptr, indices, flat, inverse, x, b, D, out, momentum, step)
 
 
 @njit(cache=True, parallel=True, fastmath=True)

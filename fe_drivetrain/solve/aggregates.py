@@ -2,7 +2,7 @@
 
 Vanek, Mandel, Brezina 1996, Computing 56, 179-196. The prolongation is smoothed by a step of the
 block Jacobi iteration, whose inverses and largest eigenvalue the smoother of the level needs anyway
-and pyamg would estimate anew, from random numbers.
+and pyamg would estimate again, from random numbers.
 """
 
 import numpy as np
