@@ -140,7 +140,7 @@ def element_bytes(problem: Problem, pattern: Pattern) -> float:
 
 def level_bytes(level: multigrid.Level) -> float:
     """One pass over the stiffness of a level."""
-    return float((SINGLE if level.K.dtype == np.float32 else DOUBLE) * len(level.K.indices))
+    return float((SINGLE if level.K.data.dtype == np.float32 else DOUBLE) * len(level.K.indices))
 
 
 def set_up_bytes(hierarchy: multigrid.Hierarchy) -> float:
@@ -148,7 +148,7 @@ def set_up_bytes(hierarchy: multigrid.Hierarchy) -> float:
     total = 0.0
     for number, level in enumerate(hierarchy.levels):
         blocks = len(level.K.indices)
-        copied = DOUBLE * blocks + 9.0 * 4 * blocks if level.K.dtype == np.float32 else 0.0
+        copied = float(DOUBLE * blocks + level.K.data.nbytes)
         following = hierarchy.levels[number + 1].K if number + 1 < len(hierarchy.levels) else None
         written = DOUBLE * len(following.indices) if following is not None else 0.0
         total += copied + multigrid.LANCZOS_STEPS * level_bytes(level) + DOUBLE * blocks + written
@@ -165,7 +165,7 @@ def iteration_bytes(system: System, hierarchy: multigrid.Hierarchy) -> float:
     total: float = DOUBLE * len(system.K.indices) + 8.0 * n * VECTORS
     for level in hierarchy.levels:
         between = float(level.prolongation.nnz + level.restriction.nnz)
-        vectors = 8.0 * level.K.shape[0] * VECTORS_OF_LEVEL
+        vectors = 8.0 * level.inverse.shape[0] * 3 * VECTORS_OF_LEVEL
         total += 2 * level.degree * level_bytes(level) + 12.0 * between + vectors
     return total
 

@@ -58,7 +58,7 @@ def tried(solid: Callable[[float], Solid], value: float) -> Trial:
         iterations.append(found.iterations if arrived else -1)
         work.append(np.einsum("nm,nm->m", F, found.x))
         bodies_alone = made.hierarchy if isinstance(made, multigrid.Joined) else made
-        stored = str(bodies_alone.levels[0].K.dtype)
+        stored = str(bodies_alone.levels[0].K.data.dtype)
     both = min(iterations) >= 0
     difference = float(np.abs(work[1] / work[0] - 1.0).max()) if both else 0.0
     return Trial(value, iterations[0], iterations[1], difference, stored)

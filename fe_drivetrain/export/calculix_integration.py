@@ -7,7 +7,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.mesh.shapes import element_kind
-from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator import element_loops
 from fe_drivetrain.operator.elasticity import sparsity
 from fe_drivetrain.response.model import Model
 
@@ -57,6 +57,6 @@ def four_point_stiffness(
     data = np.zeros((len(pattern.indices), 3, 3))
     nodes = np.ascontiguousarray(cells, dtype=np.int32)
     every = np.arange(len(cells))
-    kernels.add_curved(points, nodes, every, gradients, weights, *lame, pattern.slots, data)
+    element_loops.add_curved(points, nodes, every, gradients, weights, *lame, pattern.slots, data)
     shape = (n_dofs, n_dofs)
     return sparse.bsr_array((data, pattern.indices, pattern.indptr), shape=shape)

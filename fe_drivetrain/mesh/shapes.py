@@ -152,8 +152,8 @@ def shape_functions(element: Element, points: Floats) -> tuple[Floats, Floats]:
 
 def is_straight(points: Floats, cells: Ints) -> NDArray[np.bool_]:
     """Which ten-node tetrahedra have only straight edges, and so an affine map; (n_cells,)."""
-    ends = points[cells[:, TETRAHEDRON_EDGES]]
-    middle = points[cells[:, 4:]]
-    length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
-    offset = np.linalg.norm(middle - ends.mean(axis=2), axis=2)
+    ends = cells[:, TETRAHEDRON_EDGES]
+    one, other = points[ends[:, :, 0]], points[ends[:, :, 1]]
+    along, off = other - one, points[cells[:, 4:]] - 0.5 * (one + other)
+    length, offset = (np.sqrt(np.einsum("nei,nei->ne", v, v)) for v in (along, off))
     return np.asarray((offset <= _STRAIGHT * length).all(axis=1))

@@ -16,7 +16,7 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind, is_straight
-from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator import element_loops
 from fe_drivetrain.operator.slabs import slabs
 
 
@@ -53,7 +53,7 @@ def sparsity(cells: Ints, n_nodes: int) -> Pattern:
         A cell has a node that there is not.
     """
     check_nodes(cells, n_nodes)
-    return Pattern(*kernels.sparsity(np.ascontiguousarray(cells, dtype=np.int32), n_nodes))
+    return Pattern(*element_loops.sparsity(np.ascontiguousarray(cells, dtype=np.int32), n_nodes))
 
 
 def assemble(
@@ -109,9 +109,9 @@ def assemble(
     def add(some: Ints) -> None:
         straight, curved = some[affine[some]], some[~affine[some]]
         if len(straight):  # a loop that is not needed is not compiled either
-            kernels.add_affine(points, nodes, straight, reference, *lame, pattern.slots, data)
+            element_loops.add_affine(points, nodes, straight, reference, *lame, pattern.slots, data)
         if len(curved):
-            kernels.add_curved(
+            element_loops.add_curved(
                 points, nodes, curved, gradients, weights, *lame, pattern.slots, data
             )
 

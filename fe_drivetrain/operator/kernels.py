@@ -1,240 +1,23 @@
-"""Compiled loops over elements and over node blocks: what NumPy cannot say without large copies.
+"""Compiled loops over node blocks: what NumPy cannot say without large copies.
 
 Matrices are block CSR with 3x3 blocks, one block row a node (``indptr``, ``indices``, ``data`` as
-in ``scipy.sparse.bsr_array``). Right-hand sides are the columns of C-ordered (n, m) arrays, and
-every loop takes all of them in one pass over the matrix. Compiled by numba at the first call
-(seconds), then kept in its cache on disk.
+in ``scipy.sparse.bsr_array``); or ``data`` is flat, and has each node's three rows one after the
+other, see `by_rows`. Right-hand sides are the columns of C-ordered (n, m) arrays, and every loop
+takes all of them in one pass over the matrix. Compiled by numba at the first call (seconds), then
+kept in its cache on disk.
 """
 
 import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
+from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
 
 Index = NDArray[np.int32]
 
-
-def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
-    """Which nodes share a cell.
-
-    Returns
-    -------
-    indptr, indices, slots
-        Rows of the pattern, sorted; and (n_cells, k, k) where in ``indices`` the pair of local
-        nodes (a, b) of each cell stands.
-    """
-    # NumPy makes the arrays out here: in a compiled loop that takes a second to compile
-    n_cells, k = cells.shape
-    start, fill = np.zeros(n_nodes + 1, np.int64), np.empty(n_nodes, np.int64)
-    where, seen = np.empty(n_cells * k, np.int64), np.full(n_nodes, -1, np.int64)
-    indptr = np.zeros(n_nodes + 1, np.int32)
-    _count_pairs(cells, start, fill, where, seen, indptr)
-    indices, slots = np.empty(indptr[-1], np.int32), np.empty((n_cells, k, k), np.int32)
-    seen[:] = -1
-    _place_pairs(cells, start, where, seen, np.empty(n_nodes, np.int32), indptr, indices, slots)
-    return indptr, indices, slots
-
-
-@njit(cache=True)
-def _count_pairs(
-    cells: Index,
-    start: NDArray[np.int64],
-    fill: NDArray[np.int64],
-    where: NDArray[np.int64],
-    seen: NDArray[np.int64],
-    indptr: Index,
-) -> None:
-    """Ends of the rows; and in ``where``, from its start, each node's places in ``cells``, flat."""
-    n_cells, k = cells.shape
-    n_nodes = len(fill)
-    for c in range(n_cells):
-        for a in range(k):
-            start[cells[c, a] + 1] += 1
-    for i in range(n_nodes):
-        start[i + 1] += start[i]
-        fill[i] = start[i]
-    for c in range(n_cells):
-        for a in range(k):
-            i = cells[c, a]
-            where[fill[i]] = c * k + a
-            fill[i] += 1
-
-    for i in range(n_nodes):
-        count = 0
-        for w in range(start[i], start[i + 1]):
-            for b in range(k):
-                j = cells[where[w] // k, b]
-                if seen[j] != i:
-                    seen[j] = i
-                    count += 1
-        indptr[i + 1] = indptr[i] + count
-
-
-@njit(cache=True)
-def _place_pairs(
-    cells: Index,
-    start: NDArray[np.int64],
-    where: NDArray[np.int64],
-    seen: NDArray[np.int64],
-    place: Index,
-    indptr: Index,
-    indices: Index,
-    slots: Index,
-) -> None:
-    """Columns of the rows, and where each pair of a cell stands among them."""
-    k = cells.shape[1]
-    for i in range(len(place)):
-        end = indptr[i]
-        for w in range(start[i], start[i + 1]):
-            for b in range(k):
-                j = cells[where[w] // k, b]
-                if seen[j] != i:
-                    seen[j] = i
-                    indices[end] = j
-                    end += 1
-        # By insertion: rows are short, and NumPy's sort would take a second to compile.
-        for p in range(indptr[i] + 1, end):
-            j, q = indices[p], p
-            while q > indptr[i] and indices[q - 1] > j:
-                indices[q] = indices[q - 1]
-                q -= 1
-            indices[q] = j
-        for p in range(indptr[i], end):
-            place[indices[p]] = p
-        for w in range(start[i], start[i + 1]):
-            c = where[w] // k
-            a = where[w] - c * k
-            for b in range(k):
-                slots[c, a, b] = place[cells[c, b]]
-
-
-@njit(cache=True, error_model="numpy")
-def _inverse_transposed(J: Floats, A: Floats) -> float:
-    """Put J^-T into A, of no numbers where there is none; the determinant of J."""
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        for p in range(3):
-            q, r = (p + 1) % 3, (p + 2) % 3
-            A[i, p] = J[j, q] * J[k, r] - J[j, r] * J[k, q]
-    determinant = J[0, 0] * A[0, 0] + J[0, 1] * A[0, 1] + J[0, 2] * A[0, 2]
-    for i in range(3):  # NumPy's quotient of arrays would take half a second to compile
-        for p in range(3):
-            A[i, p] /= determinant
-    return float(determinant)
-
-
-@njit(cache=True)
-def _add_pair(H: Floats, lam: float, mu: float, data: Floats, ab: int, ba: int) -> None:
-    """Add lam H + mu H^T + mu tr(H) I at (a, b), and its transpose at (b, a)."""
-    trace = mu * (H[0, 0] + H[1, 1] + H[2, 2])
-    for i in range(3):
-        for j in range(3):
-            value = lam * H[i, j] + mu * H[j, i]
-            if i == j:
-                value += trace
-            data[ab, i, j] += value
-            if ab != ba:
-                data[ba, j, i] += value
-
-
-@njit(cache=True, fastmath=True, nogil=True)
-def add_affine(
-    points: Floats,
-    cells: Index,
-    chosen: NDArray[np.int64],
-    reference: Floats,
-    lam: float,
-    mu: float,
-    slots: Index,
-    data: Floats,
-) -> None:
-    """Add the stiffness of tetrahedra with straight edges: one reference tensor for all.
-
-    Parameters
-    ----------
-    chosen : NDArray[np.int64]
-        Which cells.
-    reference : Floats
-        (k, k, 3, 3) integrals of dN_a/dxi_p dN_b/dxi_q over the reference element.
-    lam, mu : float
-        Lame's constants [Pa].
-    slots, data : Index, Floats
-        From `sparsity`, and the blocks to add to.
-    """
-    k = cells.shape[1]
-    J, A, M, H = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    for e in chosen:
-        for i in range(3):
-            origin = points[cells[e, 0], i]
-            for p in range(3):
-                J[i, p] = points[cells[e, p + 1], i] - origin
-        size = abs(_inverse_transposed(J, A))
-        for a in range(k):
-            for b in range(a, k):
-                R = reference[a, b]
-                for i in range(3):
-                    for q in range(3):
-                        M[i, q] = size * (A[i, 0] * R[0, q] + A[i, 1] * R[1, q] + A[i, 2] * R[2, q])
-                for i in range(3):
-                    for j in range(3):
-                        H[i, j] = M[i, 0] * A[j, 0] + M[i, 1] * A[j, 1] + M[i, 2] * A[j, 2]
-                _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
-
-
-@njit(cache=True, fastmath=True, nogil=True)
-def add_curved(
-    points: Floats,
-    cells: Index,
-    chosen: NDArray[np.int64],
-    gradients: Floats,
-    weights: Floats,
-    lam: float,
-    mu: float,
-    slots: Index,
-    data: Floats,
-) -> None:
-    """Add the stiffness of isoparametric elements of any kind, by quadrature.
-
-    Parameters
-    ----------
-    chosen : NDArray[np.int64]
-        Which cells.
-    gradients, weights : Floats
-        (n_q, 3, k) reference gradients and (n_q,) weights of the rule.
-    lam, mu : float
-        Lame's constants [Pa].
-    slots, data : Index, Floats
-        From `sparsity`, and the blocks to add to.
-    """
-    k, n_q = cells.shape[1], len(weights)
-    J, A, H = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    G, WG = np.empty((k, 3, n_q)), np.empty((k, 3, n_q))
-    for e in chosen:
-        for q in range(n_q):
-            J[:] = 0.0
-            for a in range(k):
-                for i in range(3):
-                    x = points[cells[e, a], i]
-                    for p in range(3):
-                        J[i, p] += x * gradients[q, p, a]
-            size = abs(_inverse_transposed(J, A)) * weights[q]
-            for a in range(k):
-                for i in range(3):
-                    g = 0.0
-                    for p in range(3):
-                        g += A[i, p] * gradients[q, p, a]
-                    G[a, i, q] = g
-                    WG[a, i, q] = size * g
-        for a in range(k):
-            for b in range(a, k):
-                for i in range(3):
-                    for j in range(3):
-                        h = 0.0
-                        for q in range(n_q):
-                            h += WG[a, i, q] * G[b, j, q]
-                        H[i, j] = h
-                _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
+# Nodes that a thread takes at once have one place for what their neighbours do.
+_PIECES = 32
 
 
 @njit(cache=True)
@@ -269,16 +52,61 @@ def places(
     return found
 
 
+@njit(cache=True, error_model="numpy")
+def inverse_transposed(J: Floats, A: Floats) -> float:
+    """Put J^-T into A, of no numbers where there is none; the determinant of J."""
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        for p in range(3):
+            q, r = (p + 1) % 3, (p + 2) % 3
+            A[i, p] = J[j, q] * J[k, r] - J[j, r] * J[k, q]
+    determinant = J[0, 0] * A[0, 0] + J[0, 1] * A[0, 1] + J[0, 2] * A[0, 2]
+    for i in range(3):  # NumPy's quotient of arrays would take half a second to compile
+        for p in range(3):
+            A[i, p] /= determinant
+    return float(determinant)
+
+
 @njit(cache=True)
 def invert(blocks: Floats, out: Floats) -> None:
     """Put the inverses of symmetric (n, 3, 3) blocks into ``out``."""
     for i in range(len(blocks)):
-        _inverse_transposed(blocks[i], out[i])
+        inverse_transposed(blocks[i], out[i])
+
+
+def by_rows(indptr: Index, blocks: Floats, out: Floats) -> None:
+    """Put the three rows of each node one after the other into the flat ``out``.
+
+    In single precision blocks take a loop over one column a fifth longer than in double precision,
+    for each of nine entries is converted by itself; of rows, eight at once, two thirds of that.
+    """
+    _put_by_rows(indptr, blocks.reshape(-1), out)
+
+
+@njit(cache=True, parallel=True)
+def _put_by_rows(indptr: Index, blocks: Floats, out: Floats) -> None:
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    for i in prange(len(indptr) - 1):
+        first, end = np.uint64(indptr[i]), np.uint64(indptr[i + 1])
+        t = np.uint64(9) * first
+        for r in range(three):
+            q = np.uint64(9) * first + three * r
+            for _ in range(first, end):
+                out[t], out[t + one], out[t + two] = blocks[q], blocks[q + one], blocks[q + two]
+                t += three
+                q += np.uint64(9)
 
 
 @njit(inline="always")
 def _node_residual(
-    i: int, indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, columns: int
+    i: int,
+    indptr: Index,
+    indices: Index,
+    data: Floats,
+    rowwise: bool,
+    x: Floats,
+    b: Floats,
+    columns: int,
 ) -> tuple[Floats, Floats, Floats]:
     """``B - K X`` (m,) of node i in each direction, all arrays flat.
 
@@ -286,78 +114,132 @@ def _node_residual(
     and indices that cannot be negative: two thirds of the time of a loop for each row.
     """
     f, g, h = np.empty(columns), np.empty(columns), np.empty(columns)
-    m, three, nine = np.uint64(columns), np.uint64(3), np.uint64(9)
+    m, one, two, three = np.uint64(columns), np.uint64(1), np.uint64(2), np.uint64(3)
+    first, end = np.uint64(indptr[i]), np.uint64(indptr[i + 1])
+    q = np.uint64(9) * first
+    along, across = np.uint64(9), three
+    if rowwise:
+        along, across = three, three * (end - first)
     t = three * np.uint64(i) * m
     for k in range(m):
         f[k], g[k], h[k] = b[t + k], b[t + m + k], b[t + m + m + k]
-    for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
-        s, q = three * np.uint64(indices[p]) * m, nine * p
-        f0, f1, f2 = data[q], data[q + np.uint64(1)], data[q + np.uint64(2)]
-        q += three
-        g0, g1, g2 = data[q], data[q + np.uint64(1)], data[q + np.uint64(2)]
-        q += three
-        h0, h1, h2 = data[q], data[q + np.uint64(1)], data[q + np.uint64(2)]
+    for p in range(first, end):
+        s, q1, q2 = three * np.uint64(indices[p]) * m, q + across, q + across + across
+        f0, f1, f2 = data[q], data[q + one], data[q + two]
+        g0, g1, g2 = data[q1], data[q1 + one], data[q1 + two]
+        h0, h1, h2 = data[q2], data[q2 + one], data[q2 + two]
         for k in range(m):
             u, v, w = x[s + k], x[s + m + k], x[s + m + m + k]
             f[k] -= f0 * u + f1 * v + f2 * w
             g[k] -= g0 * u + g1 * v + g2 * w
             h[k] -= h0 * u + h1 * v + h2 * w
+        q += along
     return f, g, h
+
+
+def product(K: sparse.bsr_array, X: Floats) -> Floats:
+    """``K X`` (n, m), on all cores: SciPy's product takes one."""
+    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
+    indptr, indices = (i.astype(np.int32, copy=False) for i in (K.indptr, K.indices))
+    X = np.ascontiguousarray(X, dtype=np.float64)
+    out = np.empty_like(X)
+    residual(indptr, indices, K.data, X, np.zeros_like(X), out)
+    return np.negative(out, out=out)
 
 
 def residual(
     indptr: Index, indices: Index, data: Floats, X: Floats, B: Floats, out: Floats
 ) -> None:
     """``out = B - K X``."""
-    flat, x, b = data.reshape(-1), X.reshape(-1), B.reshape(-1)
-    if X.shape[1] == 1:
-        _residual_of_one(indptr, indices, flat, x, b, out.reshape(-1))
+    flat, x, b, rowwise = data.reshape(-1), X.reshape(-1), B.reshape(-1), data.ndim == 1
+    if X.shape[1] > 1:
+        _residual_of_many(indptr, indices, flat, rowwise, x, b, out)
+    elif rowwise:
+        _residual_of_rows(indptr, indices, flat, x, b, out.reshape(-1))
     else:
-        _residual_of_many(indptr, indices, flat, x, b, out)
+        _residual_of_one(indptr, indices, flat, x, b, out.reshape(-1))
 
 
 @njit(cache=True, parallel=True, fastmath=True)
 def _residual_of_many(
-    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
+    indptr: Index, indices: Index, data: Floats, rowwise: bool, x: Floats, b: Floats, out: Floats
 ) -> None:
     m = out.shape[1]
     for i in prange(len(indptr) - 1):
-        f, g, h = _node_residual(i, indptr, indices, data, x, b, m)
+        f, g, h = _node_residual(i, indptr, indices, data, rowwise, x, b, m)
         for k in range(m):
             out[3 * i, k], out[3 * i + 1, k], out[3 * i + 2, k] = f[k], g[k], h[k]
-
-
-@njit(inline="always")
-def _node_force(
-    i: int, indptr: Index, indices: Index, data: Floats, x: Floats
-) -> tuple[float, float, float]:
-    """``K x`` of node i for one column, all arrays flat.
-
-    Three sums in registers, at indices that cannot be negative: twice as fast as the loop over
-    columns. With additions reordered (`fastmath`) it would be slower than that.
-    """
-    f = g = h = 0.0
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
-        c, q = three * np.uint64(indices[p]), np.uint64(9) * p
-        u, v, w = x[c], x[c + one], x[c + two]
-        f += data[q] * u + data[q + one] * v + data[q + two] * w
-        q += three
-        g += data[q] * u + data[q + one] * v + data[q + two] * w
-        q += three
-        h += data[q] * u + data[q + one] * v + data[q + two] * w
-    return f, g, h
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"})
 def _residual_of_one(
     indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
 ) -> None:
+    """Three sums in registers, at indices that cannot be negative.
+
+    Twice as fast as the loop over columns. With additions reordered (`fastmath`) it would be slower
+    than that.
+    """
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
     for i in prange(len(indptr) - 1):
-        f, g, h = _node_force(i, indptr, indices, data, x)
+        f = g = h = 0.0
+        for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+            c, q = three * np.uint64(indices[p]), np.uint64(9) * p
+            u, v, w = x[c], x[c + one], x[c + two]
+            f += data[q] * u + data[q + one] * v + data[q + two] * w
+            q += three
+            g += data[q] * u + data[q + one] * v + data[q + two] * w
+            q += three
+            h += data[q] * u + data[q + one] * v + data[q + two] * w
         out[3 * i] = b[3 * i] - f
         out[3 * i + 1] = b[3 * i + 1] - g
         out[3 * i + 2] = b[3 * i + 2] - h
+
+
+@njit(cache=True)
+def _most(indptr: Index, first: int, end: int) -> int:
+    """Most blocks of a node, of some."""
+    most = 0
+    for i in range(first, end):
+        most = max(most, indptr[i + 1] - indptr[i])
+    return most
+
+
+@njit(inline="always")
+def _node_rows(
+    i: int, indptr: Index, indices: Index, data: Floats, x: Floats, near: Floats
+) -> tuple[float, float, float]:
+    """``K x`` of node i for one column, by rows; its neighbours' values come to ``near``."""
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    first = np.uint64(indptr[i])
+    length = np.uint64(0)
+    for p in range(first, np.uint64(indptr[i + 1])):
+        c = three * np.uint64(indices[p])
+        near[length], near[length + one], near[length + two] = x[c], x[c + one], x[c + two]
+        length += three
+    f = g = h = 0.0
+    q = np.uint64(9) * first
+    q1, q2 = q + length, q + length + length
+    for k in range(length):
+        f += data[q + k] * near[k]
+        g += data[q1 + k] * near[k]
+        h += data[q2 + k] * near[k]
+    return f, g, h
+
+
+@njit(cache=True, parallel=True, fastmath=True)
+def _residual_of_rows(
+    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
+) -> None:
+    n = len(indptr) - 1
+    for piece in prange(_PIECES):
+        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
+        near = np.empty(3 * _most(indptr, low, high))
+        for i in range(low, high):
+            f, g, h = _node_rows(i, indptr, indices, data, x, near)
+            out[3 * i] = b[3 * i] - f
+            out[3 * i + 1] = b[3 * i + 1] - g
+            out[3 * i + 2] = b[3 * i + 2] - h
 
 
 def chebyshev_step(
@@ -376,15 +258,17 @@ def chebyshev_step(
 
     Parameters
     ----------
+    data : Floats
+        By rows.
     inverse : Floats
         (n_nodes, 3, 3) inverses of the diagonal blocks.
     """
-    flat, x, b = data.reshape(-1), X.reshape(-1), B.reshape(-1)
+    x, b = X.reshape(-1), B.reshape(-1)
     if X.shape[1] == 1:
         d, y = D.reshape(-1), out.reshape(-1)
-        _step_of_one(indptr, indices, flat, inverse, x, b, d, y, momentum, step)
+        _step_of_one(indptr, indices, data, inverse, x, b, d, y, momentum, step)
     else:
-        _step_of_many(indptr, indices, flat, inverse, x, b, D, out, momentum, step)
+        _step_of_many(indptr, indices, data, inverse, x, b, D, out, momentum, step)
 
 
 @njit(cache=True, parallel=True, fastmath=True)
@@ -402,7 +286,7 @@ def _step_of_many(
 ) -> None:
     m = D.shape[1]
     for i in prange(len(indptr) - 1):
-        f, g, h = _node_residual(i, indptr, indices, data, x, b, m)
+        f, g, h = _node_residual(i, indptr, indices, data, True, x, b, m)
         for r in range(3):
             row = 3 * i + r
             u, v, w = inverse[i, r, 0], inverse[i, r, 1], inverse[i, r, 2]
@@ -412,7 +296,7 @@ def _step_of_many(
                 out[row, k] = x[row * m + k] + d
 
 
-@njit(cache=True, parallel=True, fastmath={"contract"})
+@njit(cache=True, parallel=True, fastmath=True)
 def _step_of_one(
     indptr: Index,
     indices: Index,
@@ -425,14 +309,73 @@ def _step_of_one(
     momentum: float,
     step: float,
 ) -> None:
+    n = len(indptr) - 1
+    for piece in prange(_PIECES):
+        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
+        near = np.empty(3 * _most(indptr, low, high))
+        for i in range(low, high):
+            f, g, h = _node_rows(i, indptr, indices, data, x, near)
+            f, g, h = b[3 * i] - f, b[3 * i + 1] - g, b[3 * i + 2] - h
+            for r in range(3):
+                row = 3 * i + r
+                change = inverse[i, r, 0] * f + inverse[i, r, 1] * g + inverse[i, r, 2] * h
+                d[row] = momentum * d[row] + step * change
+                out[row] = x[row] + d[row]
+
+
+def add_product(A: sparse.csr_array, X: Floats, out: Floats) -> None:
+    """``out += A X``, of a matrix in rows with 32-bit indices."""
+    if X.shape[1] == 1:
+        _add_product_of_one(A.indptr, A.indices, A.data, X.reshape(-1), out.reshape(-1))
+    else:
+        _add_product_of_many(A.indptr, A.indices, A.data, X, out)
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"})
+def _add_product_of_one(
+    indptr: Index, indices: Index, data: Floats, x: Floats, out: Floats
+) -> None:
     for i in prange(len(indptr) - 1):
-        f, g, h = _node_force(i, indptr, indices, data, x)
-        f, g, h = b[3 * i] - f, b[3 * i + 1] - g, b[3 * i + 2] - h
-        for r in range(3):
-            row = 3 * i + r
-            change = inverse[i, r, 0] * f + inverse[i, r, 1] * g + inverse[i, r, 2] * h
-            d[row] = momentum * d[row] + step * change
-            out[row] = x[row] + d[row]
+        f = 0.0
+        for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+            f += data[p] * x[np.uint64(indices[p])]
+        out[i] += f
+
+
+@njit(cache=True, parallel=True, fastmath=True)
+def _add_product_of_many(
+    indptr: Index, indices: Index, data: Floats, X: Floats, out: Floats
+) -> None:
+    for i in prange(len(indptr) - 1):
+        for p in range(indptr[i], indptr[i + 1]):
+            for k in range(X.shape[1]):
+                out[i, k] += data[p] * X[indices[p], k]
+
+
+def kept_blocks(indptr: Index, indices: Index, data: Floats, kept: Floats, out: Floats) -> None:
+    """Blocks with rows and columns of degrees of freedom zeroed where (n_nodes, 3) ``kept`` is."""
+    whole = np.asarray(kept.all(axis=1))
+    _keep_blocks(indptr, indices, data.reshape(-1), kept, whole, out.reshape(-1))
+
+
+@njit(cache=True, parallel=True)
+def _keep_blocks(
+    indptr: Index,
+    indices: Index,
+    data: Floats,
+    kept: Floats,
+    whole: NDArray[np.bool_],
+    out: Floats,
+) -> None:
+    three, nine = np.uint64(3), np.uint64(9)
+    for i in prange(len(indptr) - 1):
+        for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+            j, q = np.uint64(indices[p]), nine * p
+            for k in range(nine):
+                out[q + k] = data[q + k]
+            if not (whole[i] and whole[j]):
+                for k in range(nine):
+                    out[q + k] *= kept[i, k // three] * kept[j, k % three]
 
 
 @njit(cache=True, parallel=True, fastmath=True)

@@ -40,6 +40,7 @@ def solve(problem: Problem, variant: str, clock: Clock) -> list[float]:
     """The stiffnesses, by one solve of all motions."""
     from fe_drivetrain.interfaces import eliminate, fixed
     from fe_drivetrain.operator import assemble, sparsity
+    from fe_drivetrain.operator.kernels import product
     from fe_drivetrain.solve import reduce
     from fe_drivetrain.solve import solve as solve_system
 
@@ -65,10 +66,10 @@ def solve(problem: Problem, variant: str, clock: Clock) -> list[float]:
             column.reshape(-1, 3)[nodes] = values
         elimination = eliminate([fixed("prescribed", nodes, 3 * n)], 3 * n)
         system = reduce(problem.points, problem.cells, K, elimination)
-        F = np.where(elimination.free[:, None], -(K @ given), 0.0)
+        F = np.where(elimination.free[:, None], -product(K, given), 0.0)
     with clock.step("solve"):
         solution = solve_system(system, F, variant, TOLERANCE)
         moved = given + np.where(elimination.free[:, None], solution.x, 0.0)
     clock.iterations = solution.diagnostics.iterations or None
     clock.notes = {"method": solution.diagnostics.method, "reason": solution.diagnostics.reason}
-    return [float(stiffness) for stiffness in (moved * (K @ moved)).sum(axis=0)]
+    return [float(stiffness) for stiffness in (moved * product(K, moved)).sum(axis=0)]

@@ -14,6 +14,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
 from fe_drivetrain.interfaces.constraints import Elimination
+from fe_drivetrain.operator import kernels
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.prepared import Prepared, prepared
 
@@ -119,4 +120,4 @@ def _moved_ground(
 
 def _solved(ready: Prepared, loads: Floats, given: Floats) -> Floats:
     """(n_dofs, k) displacements under loads, on top of those that are given."""
-    return ready.solve(loads - ready.stiffness @ given)[0] + given
+    return ready.solve(loads - kernels.product(ready.stiffness, given))[0] + given

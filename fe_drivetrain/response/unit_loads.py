@@ -11,6 +11,7 @@ from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import dofs
+from fe_drivetrain.operator import kernels
 from fe_drivetrain.plots.figures import load_bars
 from fe_drivetrain.response.model import LOADS, Model
 from fe_drivetrain.response.prepared import prepared
@@ -170,7 +171,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         if str(error) == SINGULAR and model.warnings:
             raise InputError(f"{SINGULAR}: {'; '.join(model.warnings)}") from error
         raise
-    multipliers = ready.elimination.multipliers(ready.stiffness @ U - F)
+    multipliers = ready.elimination.multipliers(kernels.product(ready.stiffness, U) - F)
     reactions = _reactions(model, multipliers, U, cases)
 
     direct = np.concatenate([r[:, -1] for r in reactions.values()])

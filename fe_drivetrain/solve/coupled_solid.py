@@ -19,6 +19,7 @@ from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, Elimination, ReferencePoint
 from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.operator import kernels
 from fe_drivetrain.operator.elements import check_elements
 from fe_drivetrain.operator.incompressible import assemble_unlocked
 from fe_drivetrain.operator.mass import mass_matrix
@@ -106,7 +107,7 @@ class CondensedSolid:
 
     def fields(self, motions: Floats) -> Floats:
         """Displacements of all nodes (3 n, m) for several motions (6 p, m), see `displacements`."""
-        forces = self.body.stiffness @ motions
+        forces = kernels.product(self.body.stiffness, motions)
         T = self._elimination.T
         u = np.asarray(T @ self._solver.solve(T.T @ (self._loads @ forces)).x)
         u += self._rigid @ (motions[:6] - self._loads[:, :6].T @ u)
@@ -281,7 +282,7 @@ def point_motions_of(
     solution = solve(system, elimination.T.T @ F, method, DISPLACEMENTS)
     U = np.asarray(elimination.T @ solution.x)
     first = F.T @ U
-    return U, first + first.T - U.T @ (K @ U)
+    return U, first + first.T - U.T @ kernels.product(K, U)
 
 
 def point_compliance(

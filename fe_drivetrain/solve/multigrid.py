@@ -9,8 +9,10 @@ twelve right-hand sides go through together: the matrices are read once for all.
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
@@ -70,16 +72,24 @@ class Options:
     single: bool = True
 
 
+class ByRows(NamedTuple):
+    """A matrix in 3x3 blocks, its entries flat and each node's three rows one after the other."""
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    data: Floats
+
+
 @dataclass(frozen=True)
 class Level:
     """One level and the way to the next coarser one.
 
     Attributes
     ----------
-    K : sparse.bsr_array
-        Stiffness, 3x3 blocks; in single precision where that has the range: half the bytes for a
-        smoother to read. Conjugate gradients have the finest one in double precision, so
-        answers are as exact. Rounding is symmetric, and so is the hierarchy.
+    K : ByRows
+        Stiffness; in single precision where that has the range: half the bytes for a smoother to
+        read. Conjugate gradients have the finest one in double precision, so answers are as exact.
+        Rounding is symmetric, and so is the hierarchy.
     inverse : Floats
         (n_blocks, 3, 3) inverses of its diagonal blocks.
     largest : float
@@ -90,7 +100,7 @@ class Level:
         To and from the next level.
     """
 
-    K: sparse.bsr_array
+    K: ByRows
     inverse: Floats
     largest: float
     degree: int
@@ -112,8 +122,7 @@ class Hierarchy:
         matrices = [m for level in self.levels for m in (level.prolongation, level.restriction)]
         matrices += [level.K for level in self.levels[1:]]
         held = sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
-        # the finest one in double precision is the system's own
-        held += sum(L.K.data.nbytes for L in self.levels[:1] if L.K.dtype == np.float32)
+        held += sum(level.K.data.nbytes for level in self.levels[:1])  # its pattern is the system's
         held += sum(level.inverse.nbytes for level in self.levels)
         return int(held + self.coarsest[0].nbytes)
 
@@ -124,12 +133,15 @@ class Hierarchy:
     def _cycle(self, number: int, B: Floats) -> Floats:
         if number == len(self.levels):
             factor, lower = self.coarsest
-            return np.asarray(linalg.lapack.dpotrs(factor, B, lower)[0])  # without its checks
+            found = linalg.lapack.dpotrs(factor, B, lower)[0]  # without the checks of cho_solve
+            return np.ascontiguousarray(found)
         level = self.levels[number]
         X = smooth(level, None, B, self.options)
         R = np.empty_like(B)
-        kernels.residual(level.K.indptr, level.K.indices, level.K.data, X, B, R)
-        X += level.prolongation @ self._cycle(number + 1, level.restriction @ R)
+        kernels.residual(*level.K, X, B, R)
+        coarse = np.zeros((level.restriction.shape[0], B.shape[1]))
+        kernels.add_product(level.restriction, R, coarse)
+        kernels.add_product(level.prolongation, self._cycle(number + 1, coarse), X)
         return smooth(level, X, B, self.options)
 
 
@@ -169,7 +181,6 @@ class Joined:
 
 def smooth(level: Level, X: Floats | None, B: Floats, options: Options) -> Floats:
     """Chebyshev iteration for K X = B (Saad 2003, algorithm 12.1); X = 0 where not given."""
-    K = level.K
     high, low = level.largest, options.smoothed * level.largest
     centre, half = 0.5 * (high + low), 0.5 * (high - low)
     momentum, step, rho = 0.0, 1.0 / centre, half / centre
@@ -180,9 +191,7 @@ def smooth(level: Level, X: Floats | None, B: Floats, options: Options) -> Float
             X = D.copy()
         else:
             out = np.empty_like(X)
-            kernels.chebyshev_step(
-                K.indptr, K.indices, K.data, level.inverse, X, B, D, out, momentum, step
-            )
+            kernels.chebyshev_step(*level.K, level.inverse, X, B, D, out, momentum, step)
             X = out
         if number + 1 < level.degree:
             following = 1.0 / (2.0 * centre / half - rho)
@@ -229,7 +238,7 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
     K, motions, body = system.K, system.near_nullspace, system.body
     if system.prolongation is not None and options.linear_level:
         P = system.prolongation
-        levels.append(Level(*_smoothing(K, options), options.degree, P.tocsr(), P.T.tocsr()))
+        levels.append(Level(*_smoothing(K, options), options.degree, _in_rows(P), _in_rows(P.T)))
         K = coarse_product(K, P)
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
@@ -241,7 +250,7 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         smoothing = _smoothing(in_blocks(K), options)
         degree = options.coarse_degree if levels else options.degree
         P, motions = coarsened(K, motions, connected, options.prolongation_smoother, *smoothing[1:])
-        levels.append(Level(*smoothing, degree, P.tocsr(), P.T.tocsr()))
+        levels.append(Level(*smoothing, degree, _in_rows(P), _in_rows(P.T)))
         K, connected = P.T @ K @ P, None
     last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
@@ -253,19 +262,27 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         raise InputError(SINGULAR) from error
 
 
-def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[sparse.bsr_array, Floats, float]:
+def _in_rows(P: sparse.sparray) -> sparse.csr_array:
+    """The matrix in rows, with 32-bit indices as `kernels` is compiled for."""
+    P = P.tocsr()
+    indices, indptr = (i.astype(np.int32, copy=False) for i in (P.indices, P.indptr))
+    return sparse.csr_array((P.data, indices, indptr), shape=P.shape)
+
+
+def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[ByRows, Floats, float]:
     """Stiffness, inverse blocks and largest eigenvalue of a level."""
     diagonal = diagonal_blocks(K)
     sizes = np.einsum("nii->ni", diagonal)  # a view
     sizes[sizes <= 0.0] = 1.0
     inverse = np.empty_like(diagonal)
     kernels.invert(diagonal, inverse)
-    if options.single and sizes.min() > _SMALLEST and sizes.max() < _LARGEST:
-        K = sparse.bsr_array((K.data.astype(np.float32), K.indices, K.indptr), shape=K.shape)
-    return K, inverse, largest_eigenvalue(K, inverse)
+    single = options.single and sizes.min() > _SMALLEST and sizes.max() < _LARGEST
+    rows = ByRows(K.indptr, K.indices, np.empty(K.data.size, np.float32 if single else np.float64))
+    kernels.by_rows(K.indptr, K.data, rows.data)
+    return rows, inverse, largest_eigenvalue(rows, inverse)
 
 
-def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
+def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
     """An upper bound of the eigenvalues of diag^-1 K, by a few steps of Lanczos.
 
     A single flat element has an eigenvalue far above the others, that a power method hardly sees;
@@ -274,19 +291,19 @@ def largest_eigenvalue(K: sparse.bsr_array, inverse: Floats) -> float:
 
     Parameters
     ----------
-    K : sparse.bsr_array
+    K : ByRows or sparse.bsr_array
         (n, n) symmetric positive semi-definite, 3x3 blocks.
     inverse : Floats
         (n / 3, 3, 3) inverses of its diagonal blocks.
     """
-    r = np.random.default_rng(0).standard_normal((K.shape[0], 1))
+    r = np.random.default_rng(0).standard_normal((3 * len(inverse), 1))
     zero, Kp, z = np.zeros_like(r), np.empty_like(r), np.empty_like(r)
     kernels.times_blocks(inverse, r, 1.0, z)
     p, rz = z.copy(), float(r.ravel() @ z.ravel())
     diagonal, beside = [], []
     alpha, beta = 1.0, 0.0
     for _ in range(LANCZOS_STEPS):
-        kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)
+        kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)  # either form of K
         curvature = -float(p.ravel() @ Kp.ravel())
         if curvature <= 0.0 or rz <= 0.0:
             break

@@ -148,7 +148,7 @@ def _joints(
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-    bodies = _eliminated(_added(_copied(K), -sums.springs), sums.elimination)
+    bodies = reduced_stiffness(_added(K, -sums.springs), sums.elimination)
     on_ground = _added(bodies, ground.tocsr())
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 
@@ -182,62 +182,52 @@ def _diagonal_places(K: sparse.bsr_array) -> Ints:
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
     """T^T K T, with the mean diagonal at eliminated degrees of freedom; K is left as it is."""
-    return _eliminated(_copied(K), elimination)
-
-
-def _copied(K: sparse.bsr_array) -> sparse.bsr_array:
-    """The same pattern, in the integers that `kernels` is compiled for, with numbers of its own."""
-    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
-    indices, indptr = (i.astype(np.int32, copy=False) for i in (K.indices, K.indptr))
-    return sparse.bsr_array((K.data.copy(), indices, indptr), shape=K.shape)
-
-
-def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
-    """K with a few entries added: to itself where it has places for them."""
-    blocks = few.tobsr((3, 3))
-    rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
-    columns = blocks.indices.astype(np.int64)
-    places = kernels.places(K.indptr, K.indices, rows, columns)
-    if (places < 0).any():
-        return in_blocks(K + blocks)
-    K.data[places] += blocks.data
-    return K
-
-
-def _eliminated(kept: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
-    """As `reduced_stiffness`; the stiffness is overwritten."""
     T, free = elimination.T, elimination.free
-    mean = float(np.einsum("nii->", diagonal_blocks(kept))) / len(free)
-    passed = passed_on(kept, T, free)
-    mask = free.astype(float).reshape(-1, 3)
-    _keep_dofs(kept, mask, mean)
+    diagonal = _diagonal_places(K)
+    mean = float(np.einsum("nii->", K.data[diagonal[diagonal >= 0]])) / len(free)
+    passed = passed_on(K, T, free)
+    indices, indptr = _short(K)
+    data = np.empty_like(K.data)
+    kernels.kept_blocks(indptr, indices, K.data, free.astype(float).reshape(-1, 3), data)
+    kept = sparse.bsr_array((data, indices, indptr), shape=K.shape)
+    gone = np.flatnonzero(~free)
+    places = diagonal[gone // 3]
+    has = places >= 0
+    data[places[has], gone[has] % 3, gone[has] % 3] = mean
     # Degrees of freedom of reference points have no block of their own yet.
-    bare = (~free & np.repeat(_diagonal_places(kept) < 0, 3)).astype(float)
+    bare = np.zeros(len(free))
+    bare[gone[~has]] = mean
     if passed.nnz == 0 and not bare.any():
         return kept
-    passed = passed + mean * sparse.diags_array(bare)
+    passed = passed + sparse.diags_array(bare)
     return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
 
 
-def _keep_dofs(K: sparse.bsr_array, kept: Floats, diagonal: float) -> None:
-    """Zero rows and columns of degrees of freedom (n_nodes, 3) that are zero, not one.
+def _short(K: sparse.bsr_array) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Columns and rows of a matrix in the integers that `kernels` is compiled for."""
+    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
+    return K.indices.astype(np.int32, copy=False), K.indptr.astype(np.int32, copy=False)
 
-    Their diagonal gets a number. Few nodes have such, and the blocks of others are not touched.
-    """
-    has = (kept == 0.0).any(axis=1)
-    blocks = np.flatnonzero(np.repeat(has, np.diff(K.indptr)) | has[K.indices])
-    rows, columns = np.searchsorted(K.indptr, blocks, side="right") - 1, K.indices[blocks]
-    K.data[blocks] *= kept[rows, :, None] * kept[columns, None, :]
-    here = rows == columns
-    node, motion = np.nonzero(kept[rows[here]] == 0.0)
-    K.data[blocks[here][node], motion, motion] = diagonal
+
+def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
+    """The sum of K and a few entries."""
+    blocks = few.tobsr((3, 3))
+    rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
+    columns = blocks.indices.astype(np.int64)
+    indices, indptr = _short(K)
+    places = kernels.places(indptr, indices, rows, columns)
+    if (places < 0).any():
+        return in_blocks(K + blocks)
+    data = K.data.copy()
+    data[places] += blocks.data
+    return sparse.bsr_array((data, indices, indptr), shape=K.shape)
 
 
 def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
     """The matrix in 3x3 blocks, sorted, with 32-bit indices as `kernels` is compiled for."""
     blocks = K.tobsr((3, 3))
     blocks.sort_indices()
-    indices, indptr = (i.astype(np.int32, copy=False) for i in (blocks.indices, blocks.indptr))
+    indices, indptr = _short(blocks)
     return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
 
 

@@ -41,7 +41,12 @@ def judged(K: sparse.bsr_array, x: Floats, F: Floats) -> Judged:
     """
     # made out here: NumPy's functions in a compiled loop would take a second to compile
     sums = np.zeros((3, len(K.indptr) - 1, x.shape[1]))
-    _add_sums(K.indptr, K.indices, K.data, np.ascontiguousarray(x), np.ascontiguousarray(F), *sums)
+    x, F = np.ascontiguousarray(x), np.ascontiguousarray(F)
+    if x.shape[1] == 1:
+        flat = K.data.reshape(-1), x.reshape(-1), F.reshape(-1)
+        _add_sums_of_one(K.indptr, K.indices, *flat, *sums[:, :, 0])
+    else:
+        _add_sums_of_many(K.indptr, K.indices, K.data, x, F, *sums)
     sizes, energies, squares = sums.sum(axis=1)
     size = np.linalg.norm(F, axis=0)
     size[size == 0.0] = 1.0
@@ -85,7 +90,36 @@ def worst(size: Floats, energy: Floats) -> float:
 
 
 @njit(cache=True, parallel=True)
-def _add_sums(
+def _add_sums_of_one(
+    indptr: NDArray[np.int32],
+    indices: NDArray[np.int32],
+    data: Floats,
+    x: Floats,
+    b: Floats,
+    size: Floats,
+    energy: Floats,
+    square: Floats,
+) -> None:
+    """As `_add_sums_of_many` for one column, all arrays flat."""
+    three = np.uint64(3)
+    for i in prange(len(indptr) - 1):
+        for r in range(3):
+            force = largest = 0.0
+            for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+                q = np.uint64(9) * p + three * np.uint64(r)
+                c = three * np.uint64(indices[p])
+                for s in range(three):
+                    term = data[q + s] * x[c + s]
+                    force += term
+                    largest += abs(term)
+            u = x[3 * i + r]
+            size[i] += abs(u) * largest
+            energy[i] += u * force
+            square[i] += (b[3 * i + r] - force) ** 2
+
+
+@njit(cache=True, parallel=True)
+def _add_sums_of_many(
     indptr: NDArray[np.int32],
     indices: NDArray[np.int32],
     data: Floats,

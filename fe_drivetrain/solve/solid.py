@@ -9,6 +9,7 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import Constraint, eliminate, held_dofs
+from fe_drivetrain.operator import kernels
 from fe_drivetrain.operator.elasticity import assemble
 from fe_drivetrain.operator.elements import check_elements
 from fe_drivetrain.solve.reduction import reduce
@@ -123,9 +124,9 @@ def solve_unchecked(
         offset = offset + elimination.particular({"prescribed": values})
     everything = np.vstack([some for some, _ in parts])
     system = reduce(points, everything, K, elimination)
-    solution = solve(system, elimination.T.T @ (loads - K @ offset), method)
+    solution = solve(system, elimination.T.T @ (loads - kernels.product(K, offset)), method)
     u = elimination.T @ solution.x + offset
-    Ku = K @ u
+    Ku = kernels.product(K, u)
     multipliers = elimination.multipliers(Ku - loads)
     reactions = {c.name: c.rows.T @ multipliers[c.name] for c in held}
     return Static(u, reactions, 0.5 * np.einsum("nm,nm->m", u, Ku), K, solution.diagnostics)

@@ -15,7 +15,7 @@ from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.shapes import element_kind
-from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator import element_loops
 from fe_drivetrain.solve.reduction import Elements
 
 _DIGITS = 3
@@ -207,7 +207,7 @@ class CutOut:
         points = self._elements.points[nodes]
         for lam, mu in np.unique(lame, axis=0):
             some = np.flatnonzero((lame == (lam, mu)).all(axis=1))
-            kernels.add_curved(points, cells32, some, *self._table, lam, mu, slots, data)
+            element_loops.add_curved(points, cells32, some, *self._table, lam, mu, slots, data)
         return data.reshape(n, n, 3, 3).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
 
 
