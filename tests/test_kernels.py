@@ -1,4 +1,4 @@
-"""Compiled loops over node blocks say what dense matrices say, in both forms and for any columns."""
+"""Loops over node blocks say what dense matrices say, in both forms and for any columns."""
 
 import numpy as np
 import pytest

@@ -107,7 +107,7 @@ class CondensedSolid:
 
     def fields(self, motions: Floats) -> Floats:
         """Displacements of all nodes (3 n, m) for several motions (6 p, m), see `displacements`."""
-        forces = kernels.product(self.body.stiffness, motions)
+        forces = self.body.stiffness @ motions
         T = self._elimination.T
         u = np.asarray(T @ self._solver.solve(T.T @ (self._loads @ forces)).x)
         u += self._rigid @ (motions[:6] - self._loads[:, :6].T @ u)

@@ -3,7 +3,7 @@
 The quadratic level is smoothed by Chebyshev polynomials in the block-Jacobi preconditioned
 stiffness, and corrected by the linear elements on the same corners (p-multigrid). Below that,
 smoothed aggregation (Vanek, Mandel, Brezina 1996) with the rigid motions as near-nullspace. Up to
-twelve right-hand sides go through together: the matrices are read once for all.
+sixteen right-hand sides go through together: the matrices are read once for all.
 """
 
 import math
@@ -19,6 +19,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator.vectors import LANES
 from fe_drivetrain.solve.aggregates import coarsened
 from fe_drivetrain.solve.coarse_product import coarse_product
 from fe_drivetrain.solve.reduction import Joints, System, diagonal_blocks, in_blocks
@@ -32,8 +33,8 @@ LANCZOS_STEPS, _MOST_LEVELS = 8, 10
 _SINGLE = np.finfo(np.float32)
 _SMALLEST, _LARGEST = float(_SINGLE.tiny / _SINGLE.eps), float(_SINGLE.max)
 
-# Rows of whole vectors, and blocks of vectors that stay in the cache between two smoothing steps.
-_VECTOR, _COLUMNS = 4, 12
+# Right-hand sides whose parts of a row stay in the cache between two smoothing steps.
+_COLUMNS = 16
 
 
 @dataclass(frozen=True)
@@ -128,6 +129,9 @@ class Hierarchy:
 
     def precondition(self, R: Floats) -> Floats:
         """One V-cycle for all columns of R; symmetric positive definite."""
+        columns = R.shape[1]
+        if columns > 1 and columns % LANES:
+            return self._cycle(0, kernels.in_lanes(R))[:, :columns]
         return self._cycle(0, np.ascontiguousarray(R))
 
     def _cycle(self, number: int, B: Floats) -> Floats:
@@ -395,9 +399,8 @@ def _solved(
 ) -> Iteration:
     """Conjugate gradients for a few columns, as `conjugate_gradients`."""
     count = F.shape[1]
-    if count > _VECTOR:
-        # ten columns take longer than twelve: a loop over part of a vector goes one by one
-        F = np.pad(F, ((0, 0), (0, -count % _VECTOR)))
+    if count > 1:
+        F = kernels.in_lanes(F)
     found = Iteration(np.zeros_like(F), 0, 0.0)  # where all columns are zero
     errors: list[float] = []
     with one_blas_thread():

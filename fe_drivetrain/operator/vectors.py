@@ -1,0 +1,103 @@
+"""Eight numbers at once in a compiled loop: sums over a node's neighbours that stay in registers.
+
+A compiler vectorises the innermost loop. Over right-hand sides that loop is short and its sums go
+through memory at each neighbour; over neighbours it has numbers far apart. What would put the two
+together, LLVM's vectorisation of straight code, numba has switched off since it miscompiled
+(numba/numba, pull request 8852). So loops say here what they mean: a vector of as many columns, of
+which LLVM makes registers of whatever width the processor has.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic, models, register_model
+
+# its stubs take the first argument for one that a loop gives
+_in_loops: Callable[[Any], Any] = intrinsic
+
+LANES = 8
+"""Numbers in a vector."""
+
+_NUMBER, _PLACE = ir.DoubleType(), ir.IntType(32)
+_LANES = ir.VectorType(_NUMBER, LANES)
+
+
+class Vector(types.Type):  # type: ignore[misc]
+    """What a compiled loop takes such a vector for."""
+
+    def __init__(self) -> None:
+        super().__init__(name=f"{LANES} numbers")
+
+
+_VECTOR = Vector()
+
+
+@register_model(Vector)
+class _Registers(models.PrimitiveModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, kind: Vector) -> None:
+        super().__init__(manager, kind, _LANES)  # type: ignore[no-untyped-call]
+
+
+def _address(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:
+    data = context.make_array(kind)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [index]), _LANES.as_pointer())
+
+
+def _spread(builder: Any, kind: Any, number: Any) -> Any:
+    """The same number in all lanes."""
+    if kind.bitwidth == 32:
+        number = builder.fpext(number, _NUMBER)
+    nothing = ir.Constant(_LANES, ir.Undefined)
+    first = builder.insert_element(nothing, number, ir.Constant(_PLACE, 0))
+    return builder.shuffle_vector(
+        first, nothing, ir.Constant(ir.VectorType(_PLACE, LANES), [0] * LANES)
+    )
+
+
+@_in_loops
+def load(typing: Any, array: Any, index: Any) -> Any:
+    """The numbers of a flat array from an index on."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return builder.load(_address(context, builder, signature.args[0], *given), align=8)
+
+    return _VECTOR(array, index), generate
+
+
+@_in_loops
+def store(typing: Any, vector: Any, array: Any, index: Any) -> Any:
+    """Put a vector into a flat array from an index on."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        address = _address(context, builder, signature.args[1], *given[1:])
+        builder.store(given[0], address, align=8)
+        return context.get_dummy_value()
+
+    return types.void(vector, array, index), generate
+
+
+@_in_loops
+def times(typing: Any, number: Any, vector: Any) -> Any:
+    """The product of a number and a vector."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        number, vector = given
+        return builder.fmul(_spread(builder, signature.args[0], number), vector)
+
+    return _VECTOR(number, vector), generate
+
+
+@_in_loops
+def plus(typing: Any, vector: Any, number: Any, other: Any) -> Any:
+    """The sum of a vector and the product of a number and another one, rounded once or twice."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        vector, number, other = given
+        product = builder.fmul(
+            _spread(builder, signature.args[1], number), other, flags=("contract",)
+        )
+        return builder.fadd(vector, product, flags=("contract",))
+
+    return _VECTOR(vector, number, other), generate
