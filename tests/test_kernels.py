@@ -67,6 +67,24 @@ def test_a_step_of_the_smoother_is_what_it_says(matrix, columns, kind) -> None:
     np.testing.assert_allclose(out, X + change, atol=1e-12)
 
 
+@pytest.mark.parametrize("columns", [1, 5])
+def test_a_first_step_needs_no_change_before_it(matrix, columns) -> None:
+    X, B = vectors(columns, 2)
+    inverse, data = np.ones((NODES, 3, 3)), rowwise(matrix, np.float64)
+    found = []
+    for D in (np.zeros_like(X), np.full_like(X, np.nan)):
+        out = np.empty_like(X)
+        kernels.chebyshev_step(matrix.indptr, matrix.indices, data, inverse, X, B, D, out, 0.0, 0.7)
+        found.append(out)
+    assert (found[0] == found[1]).all()
+
+
+@pytest.mark.parametrize("columns", [1, 6])
+def test_products_of_columns_are_what_they_say(columns) -> None:
+    A, B = vectors(columns, 2)
+    np.testing.assert_allclose(kernels.dots(A, B), (A * B).sum(axis=0), rtol=1e-12)
+
+
 @pytest.mark.parametrize("columns", [1, 3])
 def test_products_add_to_what_is_there(matrix, columns) -> None:
     X, Y = vectors(columns, 2)

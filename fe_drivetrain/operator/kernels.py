@@ -280,6 +280,8 @@ def chebyshev_step(
 ) -> None:
     """``D = momentum D + step diag^-1 (B - K X)``, then ``out = X + D``.
 
+    Without momentum D need not have numbers.
+
     Parameters
     ----------
     data : Floats
@@ -323,8 +325,9 @@ def _step_of_many(
             f, g, h = _node_residual(i, k, indptr, indices, data, True, x, b, columns)
             for r in range(3):
                 t = (3 * i + r) * columns + k
-                change = times(momentum, load(d, t))
-                change = plus(change, step * inverse[i, r, 0], f)
+                change = times(step * inverse[i, r, 0], f)
+                if momentum != 0.0:
+                    change = plus(change, momentum, load(d, t))
                 change = plus(change, step * inverse[i, r, 1], g)
                 change = plus(change, step * inverse[i, r, 2], h)
                 store(change, d, t)
@@ -354,8 +357,11 @@ def _step_of_one(
             for r in range(3):
                 row = 3 * i + r
                 change = inverse[i, r, 0] * f + inverse[i, r, 1] * g + inverse[i, r, 2] * h
-                d[row] = momentum * d[row] + step * change
-                out[row] = x[row] + d[row]
+                change *= step
+                if momentum != 0.0:
+                    change += momentum * d[row]
+                d[row] = change
+                out[row] = x[row] + change
 
 
 def add_product(A: sparse.csr_array, X: Floats, out: Floats) -> None:
@@ -422,6 +428,22 @@ def times_blocks(blocks: Floats, X: Floats, factor: float, out: Floats) -> None:
             for r in range(3):
                 value = blocks[i, r, 0] * u + blocks[i, r, 1] * v + blocks[i, r, 2] * w
                 out[3 * i + r, k] = factor * value
+
+
+def dots(A: Floats, B: Floats) -> Floats:
+    """Products of the columns of A and B (m,), each added in an order that no thread changes."""
+    sums = np.zeros((_PIECES, A.shape[1]))
+    _add_dots(A, B, sums)
+    return np.asarray(sums.sum(axis=0))
+
+
+@njit(cache=True, parallel=True, fastmath=True)
+def _add_dots(A: Floats, B: Floats, sums: Floats) -> None:
+    n, m = A.shape
+    for piece in prange(_PIECES):
+        for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+            for k in range(m):
+                sums[piece, k] += A[i, k] * B[i, k]
 
 
 @njit(cache=True, parallel=True, fastmath=True)

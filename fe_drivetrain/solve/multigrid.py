@@ -188,11 +188,11 @@ def smooth(level: Level, X: Floats | None, B: Floats, options: Options) -> Float
     high, low = level.largest, options.smoothed * level.largest
     centre, half = 0.5 * (high + low), 0.5 * (high - low)
     momentum, step, rho = 0.0, 1.0 / centre, half / centre
-    D = np.empty_like(B) if X is None else np.zeros_like(B)
+    D = np.empty_like(B)
     for number in range(level.degree):
         if X is None:
             kernels.times_blocks(level.inverse, B, step, D)
-            X = D.copy()
+            X = D.copy() if level.degree > 1 else D
         else:
             out = np.empty_like(X)
             kernels.chebyshev_step(*level.K, level.inverse, X, B, D, out, momentum, step)
@@ -423,14 +423,14 @@ def iterates(
     R = np.array(F, order="C")
     X = np.zeros_like(R)
     P = precondition(R)
-    rz = np.einsum("nm,nm->m", R, P)
+    rz = kernels.dots(R, P)
     start = rz
     KP, zero = np.empty_like(R), np.zeros_like(R)
     terms: list[Floats] = []
     alive = np.full(len(rz), True)
     while alive.any():
         kernels.residual(K.indptr, K.indices, K.data, P, zero, KP)
-        curvature = -np.einsum("nm,nm->m", P, KP)
+        curvature = -kernels.dots(P, KP)
         # Columns that are zero, or solved to the last digit, stand still.
         alive = np.abs(rz) > LAST_DIGIT * np.abs(start)
         if (alive & ((rz < 0.0) | ~(curvature > 0.0))).any():
@@ -441,6 +441,6 @@ def iterates(
         terms.append(alpha * rz)
         yield Iteration(X, len(terms), energy_error(np.array(terms)))
         Z = precondition(R)
-        new = np.einsum("nm,nm->m", R, Z)
+        new = kernels.dots(R, Z)
         kernels.redirect(P, Z, np.divide(new, rz, out=np.zeros_like(rz), where=alive))
         rz = new
