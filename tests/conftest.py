@@ -12,6 +12,7 @@ from typing import Any
 
 import filelock
 import hypothesis
+import numba
 import numpy as np
 import pytest
 from tiny_case import SCRIPT, Result, count
@@ -115,6 +116,16 @@ def apart_from_the_user(shared_folder: Path) -> Iterator[None]:
         patch.setenv(cache.CACHE_VARIABLE, str(shared_folder / "cache"))
         patch.setenv(threads.CORES_VARIABLE, "1")
         yield
+
+
+@pytest.fixture(autouse=True)
+def left_with_one_thread() -> Iterator[None]:
+    """Fail where a test leaves compiled loops more threads than it found.
+
+    They would wait for each other in all tests after it, which then take five times as long.
+    """
+    yield
+    assert numba.get_num_threads() == 1
 
 
 #: A folder of quick runs to take results from, where the same program has made them.

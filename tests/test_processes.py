@@ -19,7 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.interpreter import run_python
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import Progress
-from fe_drivetrain.common.threads import CORES_VARIABLE, cores
+from fe_drivetrain.common.threads import CORES_VARIABLE, cores, hold_threads
 from fe_drivetrain.suite.run import Run
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="looks at processes by their number")
@@ -142,6 +142,21 @@ def leave_a_child(report: Progress, folder: Path) -> None:
 
 
 # --- results -------------------------------------------------------------------------------------
+
+
+def test_idle_threads_of_compiled_loops_sleep_unless_the_user_says_otherwise(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delenv(CORES_VARIABLE)
+    monkeypatch.setenv("OPENBLAS_THREAD_TIMEOUT", "4")
+    monkeypatch.setenv("GOMP_SPINCOUNT", "")  # so that it is put back
+    monkeypatch.delenv("GOMP_SPINCOUNT")
+    hold_threads()
+    # of the 3e5 turns that GNU's OpenMP waits by default, milliseconds, next to nothing is left
+    assert int(os.environ["GOMP_SPINCOUNT"]) <= 3e3
+    monkeypatch.setenv("GOMP_SPINCOUNT", "300000")
+    hold_threads()
+    assert os.environ["GOMP_SPINCOUNT"] == "300000"
 
 
 def test_results_come_back_from_other_processes() -> None:

@@ -25,7 +25,6 @@ WAYS = {
 MOMENT = 1e6  # N m, which tilts the seat about y
 PRINTED = (1.25, 2.07)  # minutes of arc
 SIZES, QUICK_SIZES = (0.07, 0.05), (0.1,)  # m; larger ones fold over, which takes longer to repair
-METHOD = "superlu"  # a rigid face couples many nodes, which a direct solver takes easily
 STIFF = (1e13, 5e12)  # Pa: housings that are stiff against their bolts, of two moduli
 
 _SCENE = """
@@ -57,7 +56,7 @@ def held(folder: Path, name: str, way: str, size: float) -> Scene:
 
 def stiffness(scene: Scene) -> Floats:
     """(6, 6) of a housing whose seat keeps its shape, at the middle of the seat."""
-    return unit_stiffness(scene, "main_bearing", "rigid", METHOD, ring=False)
+    return unit_stiffness(scene, "main_bearing", "rigid", ring=False)
 
 
 def minutes(tilt: float) -> float:

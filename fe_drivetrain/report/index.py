@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
+from markupsafe import Markup
 
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.report.answer import answer_sentence, headline, value_with_band
@@ -65,6 +66,8 @@ class Row:
         The value that answers what was asked.
     points : sequence of Point
         Its quantity over the runs so far.
+    checks : sequence of (Verdict, Markup)
+        Every check, and its row of the page of checks from the first cell's content on.
     """
 
     name: str
@@ -74,6 +77,7 @@ class Row:
     worst: Verdict | None = None
     answer: Figure | Verdict | None = None
     points: Sequence[Point] = ()
+    checks: Sequence[tuple[Verdict, Markup]] = ()
 
     @property
     def group(self) -> str:
@@ -141,8 +145,8 @@ def write_index(
         statistics=bias_and_scatter(verdicts),
         has_atlas=bool(limits),
     )
-    checks = [(row, v) for row, results in with_results for v in results.verdicts]
-    checks.sort(key=lambda pair: (pair[1].passed, -share_of_tolerance(pair[1])))
+    checks = [check for row in rows for check in row.checks]
+    checks.sort(key=lambda check: (check[0].passed, -share_of_tolerance(check[0])))
     _write(folder / "checks.html", "checks.html", checks=checks)
     if limits:
         _write(
@@ -193,7 +197,8 @@ def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
             continue
         try:
             status = file.stat()
-            results = _read(file, status.st_mtime_ns, status.st_size, status.st_ino)
+            of_file = file, status.st_mtime_ns, status.st_size, status.st_ino
+            results, checks = _read(*of_file), _checks(name, *of_file)
         except (OSError, ValueError):  # of another version, say
             problem = "its results.json cannot be read: run it again"
             rows.append(Row(name, "failed", problem=problem))
@@ -202,7 +207,7 @@ def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
         state = "pass" if results.passed else "fail"
         answer = headline(results)
         points = points_over_runs(folder, results, answer) if answer else []
-        rows.append(Row(name, state, "", results, worst, answer, points))
+        rows.append(Row(name, state, "", results, worst, answer, points, checks))
     return rows
 
 
@@ -210,6 +215,17 @@ def _rows(folder: Path, problems: Mapping[str, Problem]) -> Sequence[Row]:
 def _read(file: Path, *_state: int) -> Results:
     """As `read_results`, read once: a run of many cases writes its index after each of them."""
     return read_results(file)
+
+
+@lru_cache(maxsize=1024)
+def _checks(name: str, file: Path, *state: int) -> Sequence[tuple[Verdict, Markup]]:
+    """As of `Row`, printed once, for the same reason: of some thousand checks few are new."""
+    results = _read(file, *state)
+    template, quick = _listings().get_template("check.html"), results.environment.quick
+    return [
+        (verdict, Markup(template.render(name=name, quick=quick, verdict=verdict)))
+        for verdict in results.verdicts
+    ]
 
 
 def _write(page: Path, template: str, **content: Any) -> None:

@@ -9,10 +9,10 @@ import json
 import pkgutil
 import re
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -121,6 +121,12 @@ def all_cases() -> dict[str, Case]:
     What a script declares is read from its source: importing all of them, and the solvers with
     them, would take many times as long as a list may.
     """
+    return dict(_found())
+
+
+@cache
+def _found() -> Mapping[str, Case]:
+    """As `all_cases`, read once: a run of many cases asks for them around each."""
     package = "fe_drivetrain.cases"  # found by its name: the suite does not build on the cases
     spec = importlib.util.find_spec(package)
     places = list(spec.submodule_search_locations or ()) if spec else []

@@ -106,7 +106,7 @@ def sketch(*bodies: Body | Shaft | list[Faces]) -> bytes:
         colours += [PALETTE[k % len(PALETTE)]] * sum(len(group.loops) for group in faces)
     flat = [loop for group in groups for loop in group.loops]
     lines = [sides for group in groups for sides in group.sides]
-    points = np.concatenate(flat)
+    points = np.concatenate([group.loops.reshape(-1, 3) for group in groups])
     low, high = _seen(points).min(axis=0), _seen(points).max(axis=0)
     room = np.array([WIDTH, _MOST]) - 2 * MARGIN
     scale = float((room / np.maximum(high - low, 1e-12 * float(np.abs(points).max()))).min())
@@ -114,19 +114,18 @@ def sketch(*bodies: Body | Shaft | list[Faces]) -> bytes:
     middle = 0.5 * (low + high)
     image = Image.new("RGB", (_FINER * WIDTH, _FINER * (height + STRIP)), "white")
     draw = ImageDraw.Draw(image)
-    normals = np.array([_normal(loop) for loop in flat])
-    depths = np.array([float((loop @ _EYE).mean()) for loop in flat])
-    towards = normals @ _EYE > 1e-9
+    normals = np.concatenate([_normals(group.loops) for group in groups])
+    depths = np.concatenate([(group.loops @ _EYE).mean(axis=1) for group in groups])
+    bright = normals @ _LIGHT
     half = 0.5 * np.array([WIDTH, height])
-    for k in np.argsort(depths):
-        if not towards[k]:
-            continue
+    order = np.argsort(depths)
+    for k in order[normals[order] @ _EYE > 1e-9]:
         at = _FINER * (half + scale * (_seen(flat[k]) - middle) * (1.0, -1.0))
-        fill = _shaded(colours[k], float(normals[k] @ _LIGHT))
-        edge = _shaded(colours[k], float(normals[k] @ _LIGHT) - 0.6)
-        draw.polygon([tuple(p) for p in at], fill=fill, outline=fill)
+        corners = [tuple(p) for p in at.tolist()]
+        fill, edge = (_shaded(colours[k], float(bright[k]) - dark) for dark in (0.0, 0.6))
+        draw.polygon(corners, fill=fill, outline=fill)
         for side in np.flatnonzero(lines[k]):
-            draw.line([*at[side], *at[(side + 1) % len(at)]], fill=edge, width=_FINER)
+            draw.line([corners[side], corners[(side + 1) % len(at)]], fill=edge, width=_FINER)
     _axes(draw, height + STRIP)
     _scale_bar(draw, scale, height + STRIP)
     small = image.resize((WIDTH, height + STRIP), Image.Resampling.LANCZOS)
@@ -262,12 +261,12 @@ def _seen(points: Floats) -> Floats:
     return np.stack([points @ _RIGHT, points @ _UP], axis=-1)
 
 
-def _normal(loop: Floats) -> Floats:
-    """Unit normal of a loop by Newell's sum; of a loop without area zero."""
-    area = np.cross(loop - loop[0], np.roll(loop, -1, axis=0) - loop[0]).sum(axis=0)
-    size = float(np.linalg.norm(area))
-    unit: Floats = area / size if size > 0.0 else area
-    return unit
+def _normals(loops: Floats) -> Floats:
+    """(n, 3) unit normals of loops by Newell's sums; zero of those without area."""
+    first = loops[:, :1]
+    area = np.cross(loops - first, np.roll(loops, -1, axis=1) - first).sum(axis=1)
+    size = np.linalg.norm(area, axis=1, keepdims=True)
+    return np.divide(area, size, out=area, where=size > 0.0)
 
 
 def _shaded(colour: str, towards_light: float) -> tuple[int, int, int]:
