@@ -14,16 +14,14 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_fit import lies_on
+from fe_drivetrain.foreign.step_heal import VOLUME_TOLERANCE, reason, where
 from fe_drivetrain.foreign.step_solid import (
-    VOLUME_TOLERANCE,
     distance,
     has_splines,
     picked,
-    reason,
     seat_cylinders,
-    where,
 )
-from fe_drivetrain.foreign.step_solids import became, outside
+from fe_drivetrain.foreign.step_solids import Place, all_placed, became, outside
 from fe_drivetrain.foreign.words import nearly
 
 LARGEST_MESH = 400_000
@@ -95,17 +93,17 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
             f"bearing overlaps it there, or the seat of radius {radius:.6g} mm is not round"
         )
     gmsh.model.removeEntities([e for e in gmsh.model.getEntities(3) if e[1] not in bodies])
-    surface = set(outside())
+    surface, now = set(outside()), all_placed()
     n = len(seat["tags"])
     at = len(solids) + len(within) + len(rings)
     cut_faces = [*seat["tags"], *base_tags]
     after = [
-        _left(was[tag], piece, surface, survey["size"])
+        _left(was[tag], piece, surface, survey["size"], now)
         for tag, piece in zip(cut_faces, pieces[at : at + len(cut_faces)], strict=True)
     ]
     on_seat, on_base = set().union(*after[:n]), set().union(*after[n:])
     on_ring = [
-        became(ring, piece, survey["size"]) & surface
+        became(ring, piece, survey["size"], now) & surface
         for ring, piece in zip(were, pieces[at - len(rings) : at], strict=True)
     ]
     faces: dict[str, list[int]] = {"seat": sorted(on_seat)}
@@ -184,13 +182,17 @@ def _pieces_at(
 
 
 def _left(
-    face: dict[str, Any], piece: list[tuple[int, int]], surface: set[int], size: float
+    face: dict[str, Any],
+    piece: list[tuple[int, int]],
+    surface: set[int],
+    size: float,
+    now: dict[int, Place],
 ) -> set[int]:
     """Tags of what is left of a face; areas of splines are too inexact to know a bore's by."""
     if "described" in face and "radius" in face:
         splines = {t for t in surface if gmsh.model.getType(2, t) != "Plane"}
         return {t for t in splines if lies_on(t, face, size)}
-    return became((face["area"], face["middle"]), piece, size) & surface
+    return became((face["area"], face["middle"]), piece, size, now) & surface
 
 
 def _has_heads(request: dict[str, Any]) -> bool:
