@@ -206,12 +206,14 @@ def name_faces(survey: dict[str, Any], request: dict[str, Any]) -> None:
     faces = {
         f"tie {k}": picked(survey, pick, "tied face") for k, pick in enumerate(request["tied"], 1)
     }
+    # several parts may lie on one face, each once
+    used = [(t, to) for tags, to in zip(faces.values(), request["to"], strict=True) for t in tags]
     if request["held"]:
         held = [t for pick in request["held"] for t in picked(survey, pick, "held face")]
         faces["held"] = list(dict.fromkeys(held))
-    tags = [t for found in faces.values() for t in found]
-    if len(set(tags)) < len(tags):
-        twice = next(t for t in tags if tags.count(t) > 1)
+        used += [(t, to) for t in faces["held"] for to in dict.fromkeys(request["to"])]
+    if len(set(used)) < len(used):
+        twice = next(t for t, to in used if used.count((t, to)) > 1)
         middle = next(f["middle"] for f in survey["faces"] if f["tag"] == twice)
         raise InputError(
             f"{name}: the face round {_xyz(middle)} mm is picked twice, to be tied or held: pick "

@@ -16,6 +16,7 @@ from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
 from fe_drivetrain.interfaces.constraints import Elimination
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.prepared import Prepared, prepared
+from fe_drivetrain.scene.shared_parts import refuse_coupled
 
 
 def reaction_influences(
@@ -111,6 +112,7 @@ def _moved_ground(
                 loads += at.motion.T @ (k @ motion)
         if stands_on in model.held:
             moved[f"{stands_on} reaction"] = motion[list(model.held[stands_on])]
+    refuse_coupled(model.scene.bearing_units, name)
     if not standing:
         base = model.mesh.points[model.mesh.face_nodes(f"{name}.housing.base")]
         moved[f"{name}.housing.base"] = rigid_motions(base, centre) @ chosen

@@ -286,6 +286,8 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
                 conditions += holds
                 points |= {point.name: point for point in pressed}
                 held |= {point.name: (0, 1, 2) for point in pressed}
+        elif base not in mesh.faces:
+            continue  # it stands on parts of another unit
         elif unit.bedplate is None:
             conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
         else:
@@ -352,13 +354,15 @@ def needed_faces(scene: Scene) -> list[str]:
     names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.seats)]
     if scene.nose is not None:
         names += ["nose.rear", *(f"nose.band.{bearing.name}" for bearing in scene.nose_bearings)]
+    guests = {name for _, *others in scene.coupled_units for name in others}
     for unit in scene.bearing_units:
         name = unit.bearing.name
         names += [f"shaft.seat.{name}"]
         if unit.condensed is not None:
             names += [f"{name}.outer"]
             continue
-        names += [f"{name}.housing.base"]
+        if name not in guests:
+            names += [f"{name}.housing.base"]
         if unit.interface != "bonded":
             names += [f"{name}.outer", f"{name}.housing.bore"]
     return names

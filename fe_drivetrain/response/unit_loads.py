@@ -10,6 +10,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
+from fe_drivetrain.foreign.further_parts import tie_faces
 from fe_drivetrain.interfaces.constraints import dofs
 from fe_drivetrain.plots.figures import load_bars
 from fe_drivetrain.response.model import LOADS, Model
@@ -204,11 +205,17 @@ def _reactions(
     """Reactions from the residual on constrained degrees of freedom; never from stresses."""
     mesh = model.mesh
     reactions: dict[str, Floats] = {}
+    guests = {name for _, *others in model.scene.coupled_units for name in others}
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         centre = model.points[f"{name}.seat"].position
         standing = model.standing(name)
-        if not standing:
+        if name in guests:  # less than its parts' own, which carries it
+            part, faces = f"{name}.housing", _stood_on(model, name)
+            forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
+            nodes = np.unique(np.concatenate([mesh.face_nodes(face) for face in faces]))
+            reactions[name] = -resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
+        elif not standing:
             base = mesh.face_nodes(f"{name}.housing.base")
             forces = multipliers[f"{name}.housing.base"].reshape(len(base), 3, -1)
             reactions[name] = -resultant(mesh.points[base], forces, centre)
@@ -228,10 +235,24 @@ def _reactions(
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             nodes = mesh.face_nodes(face)
             reactions[key] = resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
+    for owner, *others in model.scene.coupled_units:
+        for name in others:
+            arm = model.points[f"{name}.seat"].position - model.points[f"{owner}.seat"].position
+            reactions[owner] = reactions[owner] - wrench_transport(arm) @ reactions[name]
     for bearing in model.scene.nose_bearings:
         reactions[bearing.name] = _carried_at(model, f"{bearing.name}.joint", multipliers, U)
     reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)
     return reactions
+
+
+def _stood_on(model: Model, name: str) -> list[str]:
+    """Faces of a housing that parts of another unit are tied to."""
+    return [
+        other
+        for unit in model.scene.bearing_units
+        for _, other in tie_faces(unit)
+        if other.startswith(f"{name}.housing.tie ") and unit.bearing.name != name
+    ]
 
 
 def _carried_at(model: Model, point: str, multipliers: Mapping[str, Floats], U: Floats) -> Floats:
