@@ -206,7 +206,8 @@ def shaft_level(
         title = f"{TITLES[level]}, rigid housings"
     else:
         neglects.append("what shaft and housing do to the shape of the face between them")
-        if any(unit.bedplate is not None for unit in scene.bearing_units):
+        on_bedplate = any(unit.bedplate is not None for unit in scene.bearing_units)
+        if on_bedplate or scene.coupled_units:
             neglects.append("what a bedplate gives under the weight of its housing")
         title = f"{TITLES[level]}, housings as springs"
     standing = None if scene.nose is None else on_nose(scene, scene.nose, level, body)

@@ -349,6 +349,22 @@ def _stand(
         springs.append((point, k))
 
 
+def stood_on(scene: Scene, name: str) -> list[str]:
+    """Faces of a housing that parts of another unit are tied to, on which alone it stands.
+
+    Parameters
+    ----------
+    scene, name : Scene, str
+        The scene, and which bearing of it.
+    """
+    return [
+        other
+        for unit in scene.bearing_units
+        for _, other in tie_faces(unit)
+        if other.startswith(f"{name}.housing.tie ") and unit.bearing.name != name
+    ]
+
+
 def needed_faces(scene: Scene) -> list[str]:
     """Names of the faces of a mesh that the loads, supports and interfaces of a scene need."""
     names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.seats)]

@@ -10,10 +10,9 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.spatial import resultant, wrench_transport
-from fe_drivetrain.foreign.further_parts import tie_faces
 from fe_drivetrain.interfaces.constraints import dofs
 from fe_drivetrain.plots.figures import load_bars
-from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.response.model import LOADS, Model, stood_on
 from fe_drivetrain.response.prepared import prepared
 from fe_drivetrain.solve.solvers import Diagnostics
 
@@ -211,7 +210,7 @@ def _reactions(
         centre = model.points[f"{name}.seat"].position
         standing = model.standing(name)
         if name in guests:  # less than its parts' own, which carries it
-            part, faces = f"{name}.housing", _stood_on(model, name)
+            part, faces = f"{name}.housing", stood_on(model.scene, name)
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             nodes = np.unique(np.concatenate([mesh.face_nodes(face) for face in faces]))
             reactions[name] = -resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
@@ -243,16 +242,6 @@ def _reactions(
         reactions[bearing.name] = _carried_at(model, f"{bearing.name}.joint", multipliers, U)
     reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)
     return reactions
-
-
-def _stood_on(model: Model, name: str) -> list[str]:
-    """Faces of a housing that parts of another unit are tied to."""
-    return [
-        other
-        for unit in model.scene.bearing_units
-        for _, other in tie_faces(unit)
-        if other.startswith(f"{name}.housing.tie ") and unit.bearing.name != name
-    ]
 
 
 def _carried_at(model: Model, point: str, multipliers: Mapping[str, Floats], U: Floats) -> Floats:
