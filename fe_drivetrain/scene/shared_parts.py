@@ -56,7 +56,7 @@ def check_shared(units: Sequence[BearingUnit]) -> None:
     InputError
     """
     known = {unit.bearing.name: unit for unit in units}
-    on = {}
+    on: dict[str, str] = {}
     for unit in units:
         for part, other in _ties(unit):
             what = f"part {part!r} of bearing {unit.bearing.name!r} is tied to '{other}.housing'"
