@@ -313,7 +313,13 @@ class Tie(Part):
     """A face of a further part that is glued to what it lies on: the housing, or another part."""
 
     face: Pick
-    to: str = Field(default="housing", min_length=1, max_length=100)
+    to: str = Field(
+        default="housing",
+        min_length=1,
+        max_length=100,
+        description="'housing', the name of another part of the unit, or that of another bearing "
+        "unit's housing, as in 'rear.housing'",
+    )
 
 
 class FurtherPart(ForeignFile):

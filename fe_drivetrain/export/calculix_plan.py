@@ -18,6 +18,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.interfaces.constraints import Constraint, eliminate
 from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.scene.shared_parts import refuse_coupled
 
 ROUND_OFF = 1e-14  # coefficients below, relative to the largest of their row, are round-off
 
@@ -155,6 +156,8 @@ def _stretched(k: Floats) -> tuple[list[float], list[Floats]]:
 
 def fixed_bases(model: Model) -> list[str]:
     """The housing bases that stand on the ground."""
+    for group in model.scene.coupled_units:
+        refuse_coupled(model.scene.bearing_units, group[0])
     return [
         f"{unit.bearing.name}.housing.base"
         for unit in model.scene.bearing_units

@@ -10,7 +10,6 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.adviser import Quantity
-from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level
 from fe_drivetrain.fidelity.shafts import beam_shaft, condensed_shaft, meridian_shaft, ringed_shaft
 from fe_drivetrain.scene.scene import Scene
@@ -83,10 +82,7 @@ def effects(
         )
     if any(unit.ring_on_housing for unit in scene.bearing_units):
         report("with rigid bearing rings")
-        springs = {
-            unit.bearing.name: unit_stiffness(scene, unit.bearing.name, "rigid", ring=False)
-            for unit in scene.bearing_units
-        }
+        springs = housing_springs(scene, "rigid", level=3)[0]  # a solid shaft has the rings
         rigid = shaft_level(scene, level, springs, whole)
         add("flexibility of bearing rings", quantity.of(rigid, length))
     for detail, stiffness in _gearboxes(scene).items():

@@ -25,6 +25,7 @@ from fe_drivetrain.response.kept import kept_together
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
+from fe_drivetrain.scene.shared_parts import refuse_coupled
 from fe_drivetrain.solve.coupled_solid import (
     CoupledSolid,
     assembled_parts,
@@ -108,7 +109,7 @@ def unit_stiffness(
     """
     if (given := _given(scene, name)) is not None:
         return given
-    with_ring, coupling = _face_of(scene, name, ring, coupling)
+    with_ring, coupling = face_of(scene, name, ring, coupling)
 
     known = {} if solids is None else solids
 
@@ -145,7 +146,7 @@ def unit_stiffnesses(
     if (given := _given(scene, name)) is not None:
         return {"rigid": given, "averaged": given}
 
-    ways = [_face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
+    ways = [face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
 
     def solved() -> list[Floats]:
         unit = _unit_solid(scene, name, ways[0][0])
@@ -219,7 +220,7 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
     if (given := _given(scene, name)) is not None:
         return UnitBounds(given, given, 0.0)
 
-    ways = [_face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
+    ways = [face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
 
     def solved() -> list[Floats]:
         unit = _unit_solid(scene, name, ways[0][0])
@@ -235,13 +236,22 @@ def unit_bounds(scene: Scene, name: str, cache: Cache | None = None) -> UnitBoun
 def _given(scene: Scene, name: str) -> Floats | None:
     """A housing that is a stiffness alone, behind its joint; None of a solid one."""
     unit = scene.bearing_unit(name)
+    refuse_coupled(scene.bearing_units, name)
     if unit.condensed is None:
         return None
     return in_series(unit.condensed.matrix, joint_stiffness(unit))
 
 
-def _face_of(scene: Scene, name: str, ring: bool, coupling: Coupling) -> tuple[bool, Coupling]:
-    """Whether a unit is solved with its ring, and how its face is coupled: as the joint says."""
+def face_of(scene: Scene, name: str, ring: bool, coupling: Coupling) -> tuple[bool, Coupling]:
+    """Whether a unit is solved with its ring, and how its face is coupled: as the joint says.
+
+    Parameters
+    ----------
+    scene, name : Scene, str
+        The scene, and which bearing of it.
+    ring, coupling : bool, Coupling
+        What is asked for, see `unit_stiffness`.
+    """
     unit = scene.bearing_unit(name)
     with_ring = unit.ring_on_housing and ring
     if unit.rollers is not None and not with_ring:
@@ -263,7 +273,7 @@ def _kept(
     """What was solved of a scene's bearing unit before, or, where one of it is missing, is now."""
     rooms = {"fe_drivetrain.fidelity": {"bearing_units.py"}}
     # of the shaft the seat alone, so that other lengths, bores and overhangs find what is kept
-    depends = solved_content(scene) | {"shaft": _seat(scene, name)}
+    depends = solved_content(scene) | {"shaft": seat(scene, name)}
     found = kept_together(
         scene, contents, rooms, lambda: [{"0": a} for a in solve()], cache, depends
     )
@@ -293,8 +303,14 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     return SAFETY * float(shares.max())
 
 
-def _seat(scene: Scene, name: str) -> float:
-    """Diameter of the shaft under a bearing [m]: all of the shaft that its unit knows of."""
+def seat(scene: Scene, name: str) -> float:
+    """Diameter of the shaft under a bearing [m]: all of the shaft that its unit knows of.
+
+    Parameters
+    ----------
+    scene, name : Scene, str
+        The scene, and which bearing of it.
+    """
     bearing = scene.bearing_unit(name).bearing
     return scene.shaft.seat_diameter(bearing.x, bearing.width, name)
 
@@ -302,9 +318,9 @@ def _seat(scene: Scene, name: str) -> float:
 def _unit_solid(scene: Scene, name: str, with_ring: bool) -> UnitSolid:
     """A bearing unit's solid, with the ring where that gives."""
     unit = scene.bearing_unit(name)
-    bearing = unit.bearing.model_copy(update={"bore_diameter": _seat(scene, name)})
+    bearing = unit.bearing.model_copy(update={"bore_diameter": seat(scene, name)})
     alone = unit.model_copy(update={"bearing": bearing})
-    together = tied([alone], mesh_parts(None, [alone], scene.mesh), with_ring)
+    together = tied([alone], mesh_parts(None, [alone], scene.mesh), [name] if with_ring else [])
     parts = [*([name] if with_ring else []), *unit.housing_parts]
     materials = {part: scene.material_of(part) for part in parts}
     stiffness = assembled_parts(together.mesh, materials)
@@ -375,7 +391,7 @@ def scene_supports(scene: Scene, housings: Mapping[str, Floats]) -> dict[str, Fl
     scene : Scene
         The scene; what its gearbox holds rigidly has inf on the diagonal.
     housings : Mapping[str, Floats]
-        (6, 6) of each bearing unit by name, see `unit_stiffness`.
+        (6, 6) of each bearing unit by name, see `unit_stiffness`; rows of those that give together.
     """
     supports = {unit.bearing.name: housings[unit.bearing.name] for unit in scene.bearing_units}
     gearbox = as_numbers(scene.gearbox.stiffness)

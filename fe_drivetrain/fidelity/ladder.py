@@ -19,6 +19,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.fidelity.bearing_units import UnitSolid, scene_supports, unit_stiffness
+from fe_drivetrain.fidelity.coupled_units import coupled_stiffness
 from fe_drivetrain.fidelity.nose import on_nose
 from fe_drivetrain.fidelity.shafts import (
     beam_shaft,
@@ -180,6 +181,7 @@ def shaft_level(
         1 beam, 2 meridian, 3 solid.
     housings : Mapping[str, Floats] or None
         (6, 6) stiffness of each bearing unit by name, see `housing_springs`; rigid where not given.
+        Of k units on the same parts (6, 6 k), rows of one stiffness.
     body : Condensed or None
         The condensed shaft, where there is one already.
     """
@@ -204,12 +206,13 @@ def shaft_level(
         title = f"{TITLES[level]}, rigid housings"
     else:
         neglects.append("what shaft and housing do to the shape of the face between them")
-        if any(unit.bedplate is not None for unit in scene.bearing_units):
+        on_bedplate = any(unit.bedplate is not None for unit in scene.bearing_units)
+        if on_bedplate or scene.coupled_units:
             neglects.append("what a bedplate gives under the weight of its housing")
         title = f"{TITLES[level]}, housings as springs"
     standing = None if scene.nose is None else on_nose(scene, scene.nose, level, body)
     body = body if standing is None else standing.body
-    found = supported(body, scene_supports(scene, housings))
+    found = supported(body, scene_supports(scene, housings), scene.coupled_units)
     n = len(body.names)
     columns = _unit_loads(scene, body)
     reactions = {name: R @ columns for name, R in found.reactions.items()}
@@ -264,6 +267,8 @@ def housing_springs(
 ) -> tuple[dict[str, Floats], float]:
     """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
 
+    Of k units that stand on the same parts it is (6, 6 k), see `coupled_units.coupled_stiffness`.
+
     Parameters
     ----------
     scene, coupling : Scene, Coupling
@@ -276,12 +281,15 @@ def housing_springs(
         See `bearing_units.unit_stiffness`.
     """
     start = time.perf_counter()
-    found = {
-        unit.bearing.name: unit_stiffness(
-            scene, unit.bearing.name, coupling, ring=level < 3, cache=cache, solids=solids
-        )
-        for unit in scene.bearing_units
-    }
+    found: dict[str, Floats] = {}
+    for group in scene.coupled_units:
+        found |= coupled_stiffness(scene, group, coupling, ring=level < 3, cache=cache)
+    for unit in scene.bearing_units:
+        name = unit.bearing.name
+        if name not in found:
+            found[name] = unit_stiffness(
+                scene, name, coupling, ring=level < 3, cache=cache, solids=solids
+            )
     return found, time.perf_counter() - start
 
 

@@ -81,12 +81,15 @@ def forecast(model: Model) -> list[Forecast]:
     body = condensed_shaft(scene, 2)
     meridian = shaft_level(scene, 2, body=body)
     seconds = time.perf_counter() - start
+    guests = {name for _, *others in scene.coupled_units for name in others}
     units = []
     for unit in scene.bearing_units:
         name = unit.bearing.name
-        if unit.condensed is not None:
+        if unit.condensed is not None or name in guests:
             continue
         parts = [*([name] if unit.ring_on_housing else []), *unit.housing_parts]
+        for other in next((g[1:] for g in scene.coupled_units if g[0] == name), ()):
+            parts += scene.bearing_unit(other).housing_parts
         system = _of_parts(model, parts, model.mesh.face_nodes(f"{name}.housing.base"))
         units.append(_predicted(1, TITLES[1], system, _OF_A_POINT))
     if units:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -82,7 +82,8 @@ def mesh_parts(
     for unit in units:
         for part in unit.parts:
             mesh = beside(mesh, placed_part(part, unit.bearing, sizes, cache).mesh)
-        if unit.parts:
+    for unit in units:
+        if unit.parts or unit.stands_on == "parts":
             mesh = joined(mesh, unit)
     return mesh
 
@@ -118,7 +119,7 @@ class Tied(NamedTuple):
         return found
 
 
-def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: bool = True) -> Tied:
+def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: Collection[str] | None = None) -> Tied:
     """Tie bearings to housings from files, others share nodes with theirs; and all parts.
 
     Bonded ones are tied wholly. Sliding ones are tied along the normal of their sphere alone: the
@@ -131,15 +132,16 @@ def tied(units: Sequence[BearingUnit], mesh: Mesh, rings: bool = True) -> Tied:
         The bearing units.
     mesh : Mesh
         As `mesh_parts` made it.
-    rings : bool
-        Whether bearings are tied, too; else further parts alone.
+    rings : Collection[str] or None
+        Names of the bearings that are tied, too, beside further parts; all where not given.
     """
     ties: list[Constraint] = []
     sliding: dict[int, Floats] = {}
     for unit in units:
-        if not rings or unit.foreign is None or unit.interface not in ("bonded", "sliding"):
-            continue
         name = unit.bearing.name
+        apart = rings is not None and name not in rings
+        if apart or unit.foreign is None or unit.interface not in ("bonded", "sliding"):
+            continue
         slave, master = _finer_first(unit, mesh)
         if unit.interface == "sliding":
             sliding[len(ties)] = np.array([unit.bearing.x, 0.0, 0.0])

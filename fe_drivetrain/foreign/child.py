@@ -51,26 +51,21 @@ def _text(data: Any) -> np.ndarray[Any, Any]:
 
 def _look_at_step(request: dict[str, Any]) -> dict[str, Any]:
     """A survey, and a coarse surface for a picture."""
-    import gmsh
-
-    from fe_drivetrain.foreign import step_solid
+    from fe_drivetrain.foreign import step_heal, step_solid
     from fe_drivetrain.geometry.session import gmsh_session
 
     with gmsh_session():
         survey = step_solid.opened(request["file"], request["smallest_detail"])
         survey["seats"] = step_solid.seat_cylinders(survey)
         points, triangles, owner = np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros(0, int)
-        gmsh.option.setNumber("Mesh.MeshSizeMax", survey["size"] / 25)
-        gmsh.option.setNumber("Mesh.MeshSizeMin", survey["size"] / 500)
-        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 16)
         try:
-            gmsh.model.mesh.generate(2)
+            step_heal.surface_mesh()
             points, triangles, owner = _surface()
             if step_solid.has_splines(survey):
                 survey["measured"] = _measured()
         except Exception as error:
-            why = step_solid.reason(error)
-            survey["unmeshed"] = f"{why}{step_solid.where(why)}"
+            why = step_heal.reason(error)
+            survey["unmeshed"] = f"{why}{step_heal.where(why)}"
     return {"survey": _text(survey), "points": points, "triangles": triangles, "owner": owner}
 
 
@@ -92,13 +87,14 @@ def _measured() -> dict[str, float]:
     """Volume and area within the surface mesh that is there, its triangles curved [mm^3, mm^2]."""
     import gmsh
 
+    from fe_drivetrain.foreign.step_solids import outside
     from fe_drivetrain.geometry.session import numbered_nodes
     from fe_drivetrain.mesh.facets import facet_points
 
     gmsh.model.mesh.setOrder(2)
     points, number = numbered_nodes()
     volume = area = 0.0
-    for _, face in gmsh.model.getEntities(2):
+    for face in outside():
         nodes = gmsh.model.mesh.getElementsByType(9, face)[1].reshape(-1, 6)
         if not len(nodes):
             continue

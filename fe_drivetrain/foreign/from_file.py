@@ -203,6 +203,7 @@ def step_facts(survey: Mapping[str, Any], scale: float) -> dict[str, Any]:
         "solids": after["solids"],
         "faces removed": before["faces"] - after["faces"],
         "edges removed": before["edges"] - after["edges"],
+        "healing": survey["healing"],
     }
 
 
@@ -291,6 +292,7 @@ def mesh_facts(mesh: Mesh) -> dict[str, Any]:
         "solids": 1,
         "faces removed": 0,
         "edges removed": 0,
+        "healing": "",
     }
 
 

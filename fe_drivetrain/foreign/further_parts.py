@@ -91,6 +91,7 @@ def _of_step(part: FurtherPart, shift: Floats, sizes: MeshSizes) -> dict[str, ND
         "part": part.part,
         "smallest_detail": part.smallest_detail,
         "tied": [pick_data(tie.face) for tie in part.tied],
+        "to": [tie.to for tie in part.tied],
         "held": [pick_data(pick) for pick in part.held],
         "size": sizes.housing / part.scale,
         "per_turn": sizes.elements_per_turn,
@@ -105,8 +106,11 @@ def _of_mesh(part: FurtherPart, shift: Floats) -> dict[str, NDArray[Any]]:
     picked = [surface.picked(tie.face, "tied face") for tie in part.tied]
     held = surface.picked_all(part.held, "held face")
     faces = {f"body.tie {k}": surface.facets[found] for k, found in enumerate(picked, 1)}
-    both = np.concatenate([*picked, held])
-    if len(np.unique(both)) < len(both):
+    # several parts may lie on one face, each once
+    by_part = {to: [held] for to in (tie.to for tie in part.tied)}
+    for tie, found in zip(part.tied, picked, strict=True):
+        by_part[tie.to].append(found)
+    if any(len(np.unique(n := np.concatenate(all_))) < len(n) for all_ in by_part.values()):
         raise InputError(
             f"{surface.name}: a face of {part.what()} is picked twice, to be tied or held: pick "
             "each face once"
@@ -194,7 +198,10 @@ def tie_faces(unit: BearingUnit) -> list[tuple[str, str]]:
     """
     name = unit.bearing.name
     return [
-        (f"{name}.{part.name}.tie {k}", f"{name}.{tie.to}.tie {part.name} {k}")
+        (
+            f"{name}.{part.name}.tie {k}",
+            f"{tie.to if tie.to.endswith('.housing') else f'{name}.{tie.to}'}.tie {part.name} {k}",
+        )
         for part in unit.parts
         for k, tie in enumerate(part.tied, 1)
     ]
@@ -206,14 +213,15 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        With the housing and all parts of the unit.
+        With the housing and all parts of the unit, and housings of others that stand on these.
     unit : BearingUnit
         The unit.
 
     Returns
     -------
     Mesh
-        With the faces of `tie_faces`; "NAME.housing.base" is all that the ground holds.
+        With the faces of `tie_faces`; "NAME.housing.base" is all that the ground holds, and there
+        is none where that holds nothing.
 
     Raises
     ------
@@ -222,13 +230,15 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
     """
     name = unit.bearing.name
     faces = dict(mesh.faces)
-    sides = {part: boundary(mesh, part) for part in unit.housing_parts}
+    targets = {other.rpartition(".")[0] for _, other in tie_faces(unit)}
+    sides = {part: boundary(mesh, part) for part in sorted(targets)}
     for own, other in tie_faces(unit):
         part, target = own.rpartition(".")[0], other.rpartition(".")[0]
         faces[other] = touching(f"{part} tied to {target}", mesh.points, faces[own], sides[target])
     ground = [faces.pop(f"{name}.housing.base")] if f"{name}.housing.base" in faces else []
     held = [faces.pop(f"{name}.{part.name}.held") for part in unit.parts if part.held]
-    base = np.concatenate([*(ground if unit.stands_on == "ground" else []), *held])
+    none = np.zeros((0, 6), dtype=np.int64)
+    base = np.concatenate([none, *(ground if unit.stands_on == "ground" else []), *held])
     n = len(mesh.points)
     for own, other in tie_faces(unit):
         for face in (own, other):
@@ -238,7 +248,7 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
                     "that the ground holds, too: give stands_on: parts where parts alone carry "
                     f"the housing of {name!r}, or hold another face"
                 )
-    return replace(mesh, faces=faces | {f"{name}.housing.base": base})
+    return replace(mesh, faces=faces | ({f"{name}.housing.base": base} if len(base) else {}))
 
 
 def tie_of(name: str, points: Floats, one: Ints, two: Ints) -> Constraint:

@@ -14,16 +14,14 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_fit import lies_on
+from fe_drivetrain.foreign.step_heal import VOLUME_TOLERANCE, reason, where
 from fe_drivetrain.foreign.step_solid import (
-    VOLUME_TOLERANCE,
     distance,
     has_splines,
     picked,
-    reason,
     seat_cylinders,
-    where,
 )
-from fe_drivetrain.foreign.step_solids import became, outside
+from fe_drivetrain.foreign.step_solids import Place, all_placed, became, outside
 from fe_drivetrain.foreign.words import nearly
 
 LARGEST_MESH = 400_000
@@ -95,17 +93,17 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
             f"bearing overlaps it there, or the seat of radius {radius:.6g} mm is not round"
         )
     gmsh.model.removeEntities([e for e in gmsh.model.getEntities(3) if e[1] not in bodies])
-    surface = set(outside())
+    surface, now = set(outside()), all_placed()
     n = len(seat["tags"])
     at = len(solids) + len(within) + len(rings)
     cut_faces = [*seat["tags"], *base_tags]
     after = [
-        _left(was[tag], piece, surface, survey["size"])
+        _left(was[tag], piece, surface, survey["size"], now)
         for tag, piece in zip(cut_faces, pieces[at : at + len(cut_faces)], strict=True)
     ]
     on_seat, on_base = set().union(*after[:n]), set().union(*after[n:])
     on_ring = [
-        became(ring, piece, survey["size"]) & surface
+        became(ring, piece, survey["size"], now) & surface
         for ring, piece in zip(were, pieces[at - len(rings) : at], strict=True)
     ]
     faces: dict[str, list[int]] = {"seat": sorted(on_seat)}
@@ -184,13 +182,17 @@ def _pieces_at(
 
 
 def _left(
-    face: dict[str, Any], piece: list[tuple[int, int]], surface: set[int], size: float
+    face: dict[str, Any],
+    piece: list[tuple[int, int]],
+    surface: set[int],
+    size: float,
+    now: dict[int, Place],
 ) -> set[int]:
     """Tags of what is left of a face; areas of splines are too inexact to know a bore's by."""
     if "described" in face and "radius" in face:
         splines = {t for t in surface if gmsh.model.getType(2, t) != "Plane"}
         return {t for t in splines if lies_on(t, face, size)}
-    return became((face["area"], face["middle"]), piece, size) & surface
+    return became((face["area"], face["middle"]), piece, size, now) & surface
 
 
 def _has_heads(request: dict[str, Any]) -> bool:
@@ -204,12 +206,14 @@ def name_faces(survey: dict[str, Any], request: dict[str, Any]) -> None:
     faces = {
         f"tie {k}": picked(survey, pick, "tied face") for k, pick in enumerate(request["tied"], 1)
     }
+    # several parts may lie on one face, each once
+    used = [(t, to) for tags, to in zip(faces.values(), request["to"], strict=True) for t in tags]
     if request["held"]:
         held = [t for pick in request["held"] for t in picked(survey, pick, "held face")]
         faces["held"] = list(dict.fromkeys(held))
-    tags = [t for found in faces.values() for t in found]
-    if len(set(tags)) < len(tags):
-        twice = next(t for t in tags if tags.count(t) > 1)
+        used += [(t, to) for t in faces["held"] for to in dict.fromkeys(request["to"])]
+    if len(set(used)) < len(used):
+        twice = next(t for t, to in used if used.count((t, to)) > 1)
         middle = next(f["middle"] for f in survey["faces"] if f["tag"] == twice)
         raise InputError(
             f"{name}: the face round {_xyz(middle)} mm is picked twice, to be tied or held: pick "

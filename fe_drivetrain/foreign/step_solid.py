@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +16,9 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_fit import area_and_middle, recognised
+from fe_drivetrain.foreign.step_heal import counted, free_edges, heal, reason, sewn
 from fe_drivetrain.foreign.step_solids import MOST_SOLIDS, glue, keep, outside, solids
 from fe_drivetrain.foreign.words import nearly
-
-VOLUME_TOLERANCE = 1e-4
-"""Relative change of a volume by healing that is refused."""
 
 _MOST_FACES = 20_000
 _LEAST_VOLUME = 1e-9  # of the cube of its size
@@ -42,26 +39,25 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
 
     Several solids are glued: they share the faces in which they touch.
     """
-    name, occ = Path(path).name, gmsh.model.occ
+    name = Path(path).name
     for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):
         gmsh.option.setNumber(f"Geometry.OCC{option}", 0)
     _refuse_odd_numbers(path)
     gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
-    try:
-        occ.importShapes(path)
-    except Exception as error:
-        raise InputError(
-            f"{name} cannot be read as STEP ({reason(error)}): export it again, whole, as AP214 "
-            "or AP242"
-        ) from None
-    occ.synchronize()
-    before = _counted()
+    _read(path)
+    before, closed = counted(), ""
     if before["solids"] == 0 and before["faces"]:
-        raise InputError(
-            f"{name} has {before['faces']} faces that enclose no solid{_free_edges()}: close the "
-            "shell in the CAD program, and save it as a solid"
-        )
+        _refuse_many_faces(name, before["faces"])
+        faces = [t for _, t in gmsh.model.getEntities(2)]
+        if not (closed := sewn(lambda: _read(path))):
+            open_at = free_edges(faces)
+            raise InputError(
+                f"{name} has {before['faces']} faces that enclose no solid"
+                f"{f'; {open_at}' if open_at else ''}: close the shell in the CAD program, and "
+                "save it as a solid"
+            )
+        before = counted()
     if not 1 <= before["solids"] <= MOST_SOLIDS:
         raise InputError(
             f"{name} has {before['solids']} solids but must have 1 to {MOST_SOLIDS}: save the "
@@ -69,46 +65,26 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
         )
     if part is not None:
         keep(name, part)
-        before = _counted()
-    if before["faces"] > _MOST_FACES:
-        raise InputError(
-            f"{name} has {before['faces']} faces but must have at most {_MOST_FACES}: leave out "
-            "threads, lettering and other small details"
-        )
-    box = _box()
-    if abs(before["volume"]) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
+    _refuse_many_faces(name, len(gmsh.model.getEntities(2)))
+    box, volume = _box(), counted()["volume"]
+    if abs(volume) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
         x, y, z = ((a + b) / 2 for a, b in zip(box[:3], box[3:], strict=True))
         raise InputError(
             f"{name}: its solid round ({x:.4g}, {y:.4g}, {z:.4g}) mm encloses "
-            f"{before['volume']:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
+            f"{volume:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
             "cross; repair it in the CAD program"
         )
     colours = {t: _colour(t) for _, t in gmsh.model.getEntities(2)}
     labels = _labels(path)
-    small = smallest_detail > 0
-    # healed together, touching solids would be sewn into none
-    each = [[s] for s in gmsh.model.getEntities(3)] if before["solids"] > 1 else [[]]
-    try:
-        for one in each:
-            occ.healShapes(one, smallest_detail or 1e-8, True, small, small)
-    except Exception as error:
-        raise InputError(
-            f"{name} cannot be healed ({reason(error)}{where(reason(error))}): repair that "
-            "face in the CAD program, or leave it out"
-        ) from None
-    occ.synchronize()
-    after = _counted()
-    change = abs(after["volume"] - before["volume"]) / max(abs(before["volume"]), 1e-300)
-    if (
-        after["solids"] != before["solids"]
-        or not change <= VOLUME_TOLERANCE
-        or not after["volume"] > 0
-    ):
-        raise InputError(
-            f"{name} has {before['words']} of {before['volume']:.9g} mm^3 before and "
-            f"{after['solids']} of {after['volume']:.9g} mm^3 after healing, but must have as many "
-            f"of the same volume, to {VOLUME_TOLERANCE:g}: repair its faces in the CAD program"
-        )
+
+    def again() -> None:
+        _read(path)
+        if closed:
+            sewn(lambda: _read(path))
+        if part is not None:
+            keep(name, part)
+
+    before, after, words = heal(name, again, smallest_detail)
     kept = after["faces"] == before["faces"]
     if after["solids"] > 1:
         colours = glue(name, math.dist(_box()[:3], _box()[3:]), colours if kept else {})
@@ -128,11 +104,32 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
         "name": name,
         "before": before,
         "after": after,
+        "healing": "; ".join(filter(None, (closed, words))),
         "solids": solids(),
         "box": _box(),
         "faces": faces,
         "size": math.dist(_box()[:3], _box()[3:]),
     }
+
+
+def _read(path: str) -> None:
+    """Put what is in the file into the open model."""
+    try:
+        gmsh.model.occ.importShapes(path)
+    except Exception as error:
+        raise InputError(
+            f"{Path(path).name} cannot be read as STEP ({reason(error)}): export it again, whole, "
+            "as AP214 or AP242"
+        ) from None
+    gmsh.model.occ.synchronize()
+
+
+def _refuse_many_faces(name: str, faces: int) -> None:
+    if faces > _MOST_FACES:
+        raise InputError(
+            f"{name} has {faces} faces but must have at most {_MOST_FACES}: leave out "
+            "threads, lettering and other small details"
+        )
 
 
 def _refuse_odd_numbers(path: str) -> None:
@@ -150,39 +147,6 @@ def _refuse_odd_numbers(path: str) -> None:
                 f"{Path(path).name}: its entity #{number} is at ({' '.join(values.split())[:80]}), "
                 f"but must have numbers of at most {_FARTHEST:g}: export it again, whole"
             )
-
-
-def _free_edges() -> str:
-    """Where the faces of a shell end, in words."""
-    free = [
-        edge
-        for _, edge in gmsh.model.getEntities(1)
-        if len(gmsh.model.getAdjacencies(1, edge)[0]) == 1
-        and gmsh.model.getType(1, edge) != "Unknown"
-    ]
-    if not free:
-        return ""
-    x, y, z = gmsh.model.occ.getCenterOfMass(1, free[0])
-    at = f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
-    return f"; {len(free)} edges belong to one face alone, the first round {at}"
-
-
-def reason(error: Exception) -> str:
-    """What gmsh says of its failure, in one line."""
-    found = str(gmsh.logger.getLastError() or error or "no reason given")
-    return " ".join(found.split())[:200].rstrip(".")
-
-
-def _counted() -> dict[str, Any]:
-    there = gmsh.model.getEntities(3)
-    return {
-        "solids": len(there),
-        "words": f"{len(there)} solid{'s' if len(there) > 1 else ''}",
-        "faces": len(gmsh.model.getEntities(2)),
-        "edges": len(gmsh.model.getEntities(1)),
-        "volume": math.fsum(gmsh.model.occ.getMass(3, t) for _, t in there),
-        "area": math.fsum(area_and_middle(t)[0] for _, t in gmsh.model.getEntities(2)),
-    }
 
 
 def _box() -> list[float]:
@@ -398,19 +362,3 @@ def seat_cylinders(survey: dict[str, Any]) -> list[dict[str, Any]]:
         }
         for seat in sorted(found, key=lambda s: -s["radius"])
     ]
-
-
-def where(message: str) -> str:
-    """Places of surfaces that a message of gmsh names, and of those that it could not mesh."""
-    tags = [int(n) for n in re.findall(r"[Ss]urface (\d+)", message)]
-    with suppress(Exception):
-        tags += [tag for dim, tag in gmsh.model.mesh.getLastEntityError() if dim == 2]
-    places = []
-    for tag in dict.fromkeys(tags):
-        try:
-            x, y, z = gmsh.model.occ.getCenterOfMass(2, tag)
-            kind = gmsh.model.getType(2, tag).lower()
-        except Exception:
-            continue
-        places.append(f"face {tag}, a {kind}, round ({x:.4g}, {y:.4g}, {z:.4g}) mm")
-    return f"; {', '.join(places[:3])}" if places else ""

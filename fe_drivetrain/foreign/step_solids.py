@@ -83,7 +83,7 @@ def glue(file: str, size: float, looks: dict[int, str]) -> dict[int, str]:
     """
     occ, before = gmsh.model.occ, solids()
     faces = gmsh.model.getEntities(2)
-    whole = {tag: placed(tag) for _, tag in faces}
+    whole = all_placed()
     gmsh.option.setNumber("Geometry.ToleranceBoolean", _TOUCH * size)
     _, history = occ.fragment([(3, s["tag"]) for s in before], faces)
     gmsh.option.setNumber("Geometry.ToleranceBoolean", 0.0)
@@ -92,8 +92,9 @@ def glue(file: str, size: float, looks: dict[int, str]) -> dict[int, str]:
     _refuse_overlaps(file, before, pieces)
     _refuse_loose(file, before, [next(iter(piece)) for piece in pieces])
     found: dict[int, str] = {}
+    now = all_placed()
     for (_, old), piece in zip(faces, history[len(before) :], strict=True):
-        found |= dict.fromkeys(became(whole[old], piece, size), looks.get(old, ""))
+        found |= dict.fromkeys(became(whole[old], piece, size, now), looks.get(old, ""))
     return found
 
 
@@ -107,7 +108,14 @@ def placed(face: int) -> Place:
     return area, (x, y, z)
 
 
-def became(old: Place, piece: list[tuple[int, int]], size: float) -> set[int]:
+def all_placed() -> dict[int, Place]:
+    """Area and middle of each face by its tag; taken once, since splines are integrated."""
+    return {tag: placed(tag) for _, tag in gmsh.model.getEntities(2)}
+
+
+def became(
+    old: Place, piece: list[tuple[int, int]], size: float, now: dict[int, Place]
+) -> set[int]:
     """Tags of the faces that a face became where all was cut by one another.
 
     Parameters
@@ -119,11 +127,13 @@ def became(old: Place, piece: list[tuple[int, int]], size: float) -> set[int]:
         face has now; so faces count only where they have its area and its middle.
     size : float
         Of all solids together [mm].
+    now : dict of int to Place
+        All faces that there are, see `all_placed`.
     """
     tags = {t for d, t in piece if d == 2}
-    if tags and _same(old, [placed(t) for t in tags], size):
+    if tags and _same(old, [now[t] for t in tags], size):
         return tags
-    return {t for _, t in gmsh.model.getEntities(2) if _same(old, [placed(t)], size)}
+    return {t for t, place in now.items() if _same(old, [place], size)}
 
 
 def _same(old: Place, new: list[Place], size: float) -> bool:

@@ -109,6 +109,7 @@ def _of_step(path: Path) -> Survey:
         f"{path.name}: {after['words']}, {after['faces']} faces, {after['edges']} edges, "
         f"{size}, {area / 1e6:.4g} m^2",
         f"box: {_xyz(low)} to {_xyz(high)} mm",
+        data["healing"],
         f"before healing: {before['words']}, {before['faces']} faces, "
         f"{before['volume'] / 1e6:.6g} dm^3",
     ]

@@ -52,22 +52,25 @@ class Joint:
 
 
 def in_series(first: Floats, second: Floats) -> Floats:
-    """Two (6, 6) springs one behind the other; the second may be rigid or free in some motions.
+    """Two springs one behind the other; the second may be rigid or free in some motions.
 
     Parameters
     ----------
     first : Floats
-        Positive definite.
+        (6 k, 6 k) of k bearings, positive definite.
     second : Floats
-        As of `joint_stiffness`.
+        (6 k, 6 k), (6, 6) as of `joint_stiffness` for each of them.
     """
-    series = np.zeros((6, 6))
+    series = np.zeros(first.shape)
     rigid = np.isinf(second.diagonal())
     if rigid.any():
         carried = np.flatnonzero(second.diagonal())
         among = np.ix_(carried, carried)
         softness = np.linalg.inv(first)[among]
-        softness += np.diag(1.0 / second.diagonal()[carried])
+        finite = np.where(np.isinf(second), 0.0, second)[among]
+        given = np.flatnonzero(finite.diagonal())
+        within = np.ix_(given, given)
+        softness[within] += np.linalg.inv(finite[within])
         series[among] = np.linalg.inv(softness)
     else:
         series = first @ np.linalg.solve(first + second, second)

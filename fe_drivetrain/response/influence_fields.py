@@ -13,9 +13,9 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
-from fe_drivetrain.interfaces.constraints import Elimination
+from fe_drivetrain.interfaces.constraints import Elimination, dofs
 from fe_drivetrain.operator import kernels
-from fe_drivetrain.response.model import Model
+from fe_drivetrain.response.model import Model, stood_on
 from fe_drivetrain.response.prepared import Prepared, prepared
 
 
@@ -112,10 +112,28 @@ def _moved_ground(
                 loads += at.motion.T @ (k @ motion)
         if stands_on in model.held:
             moved[f"{stands_on} reaction"] = motion[list(model.held[stands_on])]
+    if faces := stood_on(model.scene, name):
+        return loads, _moved_feet(model, faces, centre) @ chosen
     if not standing:
         base = model.mesh.points[model.mesh.face_nodes(f"{name}.housing.base")]
         moved[f"{name}.housing.base"] = rigid_motions(base, centre) @ chosen
-    return loads, elimination.particular(moved) if moved else np.zeros_like(loads)
+    given = elimination.particular(moved) if moved else np.zeros_like(loads)
+    for owner, *others in model.scene.coupled_units:
+        if owner == name:  # its reaction is what the ground carries, less that of the others
+            for other in others:
+                given -= _moved_feet(model, stood_on(model.scene, other), centre) @ chosen
+    return loads, given
+
+
+def _moved_feet(model: Model, faces: Sequence[str], centre: Floats) -> Floats:
+    """(n_dofs, 6): the nodes of a housing's feet alone moved rigidly.
+
+    The work of this on internal forces less loads is what the housing stands on its feet with.
+    """
+    nodes = np.unique(np.concatenate([model.mesh.face_nodes(face) for face in faces]))
+    moved = np.zeros((model.n_dofs, 6))
+    moved[dofs(nodes).ravel()] = rigid_motions(model.mesh.points[nodes], centre)
+    return moved
 
 
 def _solved(ready: Prepared, loads: Floats, given: Floats) -> Floats:

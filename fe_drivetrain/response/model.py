@@ -286,6 +286,8 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
                 conditions += holds
                 points |= {point.name: point for point in pressed}
                 held |= {point.name: (0, 1, 2) for point in pressed}
+        elif base not in mesh.faces:
+            continue  # it stands on parts of another unit
         elif unit.bedplate is None:
             conditions.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
         else:
@@ -347,18 +349,36 @@ def _stand(
         springs.append((point, k))
 
 
+def stood_on(scene: Scene, name: str) -> list[str]:
+    """Faces of a housing that parts of another unit are tied to, on which alone it stands.
+
+    Parameters
+    ----------
+    scene, name : Scene, str
+        The scene, and which bearing of it.
+    """
+    return [
+        other
+        for unit in scene.bearing_units
+        for _, other in tie_faces(unit)
+        if other.startswith(f"{name}.housing.tie ") and unit.bearing.name != name
+    ]
+
+
 def needed_faces(scene: Scene) -> list[str]:
     """Names of the faces of a mesh that the loads, supports and interfaces of a scene need."""
     names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.seats)]
     if scene.nose is not None:
         names += ["nose.rear", *(f"nose.band.{bearing.name}" for bearing in scene.nose_bearings)]
+    guests = {name for _, *others in scene.coupled_units for name in others}
     for unit in scene.bearing_units:
         name = unit.bearing.name
         names += [f"shaft.seat.{name}"]
         if unit.condensed is not None:
             names += [f"{name}.outer"]
             continue
-        names += [f"{name}.housing.base"]
+        if name not in guests:
+            names += [f"{name}.housing.base"]
         if unit.interface != "bonded":
             names += [f"{name}.outer", f"{name}.housing.bore"]
     return names

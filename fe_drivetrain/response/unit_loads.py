@@ -13,7 +13,7 @@ from fe_drivetrain.common.spatial import resultant, wrench_transport
 from fe_drivetrain.interfaces.constraints import dofs
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.plots.figures import load_bars
-from fe_drivetrain.response.model import LOADS, Model
+from fe_drivetrain.response.model import LOADS, Model, stood_on
 from fe_drivetrain.response.prepared import prepared
 from fe_drivetrain.solve.solvers import Diagnostics
 
@@ -205,11 +205,17 @@ def _reactions(
     """Reactions from the residual on constrained degrees of freedom; never from stresses."""
     mesh = model.mesh
     reactions: dict[str, Floats] = {}
+    guests = {name for _, *others in model.scene.coupled_units for name in others}
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         centre = model.points[f"{name}.seat"].position
         standing = model.standing(name)
-        if not standing:
+        if name in guests:  # less than its parts' own, which carries it
+            part, faces = f"{name}.housing", stood_on(model.scene, name)
+            forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
+            nodes = np.unique(np.concatenate([mesh.face_nodes(face) for face in faces]))
+            reactions[name] = -resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
+        elif not standing:
             base = mesh.face_nodes(f"{name}.housing.base")
             forces = multipliers[f"{name}.housing.base"].reshape(len(base), 3, -1)
             reactions[name] = -resultant(mesh.points[base], forces, centre)
@@ -229,6 +235,10 @@ def _reactions(
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             nodes = mesh.face_nodes(face)
             reactions[key] = resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
+    for owner, *others in model.scene.coupled_units:
+        for name in others:
+            arm = model.points[f"{name}.seat"].position - model.points[f"{owner}.seat"].position
+            reactions[owner] = reactions[owner] - wrench_transport(arm) @ reactions[name]
     for bearing in model.scene.nose_bearings:
         reactions[bearing.name] = _carried_at(model, f"{bearing.name}.joint", multipliers, U)
     reactions["gearbox"] = _carried_at(model, "gearbox", multipliers, U)

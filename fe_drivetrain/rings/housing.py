@@ -28,6 +28,7 @@ from fe_drivetrain.response.kept import kept_arrays
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.shared_parts import refuse_coupled
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.solid import Assembly
 from fe_drivetrain.solve.solvers import solve
@@ -190,6 +191,7 @@ def housing_solid(scene: Scene, name: str, bearing: Bearing) -> HousingSolid:
             f"{name}.housing stands on bolts as bodies (hold {bolts.hold!r}), but for rollers on "
             "its bore it must be fixed: hold 'washers'"
         )
+    refuse_coupled(scene.bearing_units, name)
     if unit.parts:
         raise InputError(
             f"{name}.housing has further parts ({', '.join(p.name for p in unit.parts)}), but for "

@@ -232,6 +232,8 @@ def _check_parts(unit: "BearingUnit") -> None:
         )
     for part in unit.parts:
         for tie in part.tied:
+            if tie.to.endswith(".housing") and tie.to != f"{name}.housing":
+                continue  # of another unit, which the scene knows
             if tie.to not in ({"housing", *parts} - {part.name}):
                 known = ", ".join(["housing", *(p for p in parts if p != part.name)])
                 raise ValueError(
@@ -255,7 +257,7 @@ def _check_parts(unit: "BearingUnit") -> None:
             "housing, but all must hang together: tie it to the housing or to one of these"
         )
     held = [p.name for p in unit.parts if p.held]
-    if unit.stands_on == "parts" and not held:
+    if unit.stands_on == "parts" and parts and not held:
         raise ValueError(
             f"bearing {name!r} stands on parts, of which none has a held face: give one of them "
             "'held', or leave stands_on out"

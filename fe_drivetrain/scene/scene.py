@@ -24,6 +24,7 @@ from fe_drivetrain.scene.bearing_unit import SPHERICAL_JOINTS, BearingUnit, Keys
 from fe_drivetrain.scene.joint_springs import as_numbers
 from fe_drivetrain.scene.materials import Material, known_materials
 from fe_drivetrain.scene.nose import Nose, NoseBearing
+from fe_drivetrain.scene.shared_parts import check_shared, coupled_units
 from fe_drivetrain.scene.standing import check_standing
 
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
@@ -187,6 +188,7 @@ class Scene(Keys):
                 2 * max(map(self.nose.body.outer_radius, self.nose.body.stations)),
             )
             self.nose.check_fits(self.shaft)
+        check_shared(self.bearing_units)
         check_bands(self.shaft, self.seats, [unit.bearing for unit in self.bearing_units])
         gearbox = as_numbers(self.gearbox.stiffness)
         modulus = self.material_of("shaft").youngs_modulus
@@ -224,6 +226,11 @@ class Scene(Keys):
     def bands(self) -> dict[str, Band]:
         """Where on the shaft each load point's loads enter, by its name."""
         return {point.name: Band(*point.span) for point in self.load_points}
+
+    @property
+    def coupled_units(self) -> tuple[tuple[str, ...], ...]:
+        """Names of bearings whose housings stand on the same parts, the parts' own unit first."""
+        return coupled_units(self.bearing_units)
 
     @property
     def nose_bearings(self) -> tuple[NoseBearing, ...]:

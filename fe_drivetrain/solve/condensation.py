@@ -197,7 +197,10 @@ def keep_points(body: Condensed, at: Sequence[str]) -> Condensed:
 
 
 def on_supports(
-    points: Sequence[str], stiffness: Floats, supports: Mapping[str, Floats]
+    points: Sequence[str],
+    stiffness: Floats,
+    supports: Mapping[str, Floats],
+    together: Sequence[Sequence[str]] = (),
 ) -> tuple[Floats, Ints]:
     """Stiffness with that of the supports added, and which degrees of freedom they leave.
 
@@ -209,6 +212,9 @@ def on_supports(
         (6 n + m, 6 n + m): six degrees of freedom of each point first, then m of anything.
     supports : Mapping[str, Floats]
         (6, 6) by point; inf on the diagonal holds that motion, and nothing else is in its row.
+        Where k supports give together, (6, 6 k): the point's rows of their one stiffness.
+    together : Sequence[Sequence[str]]
+        Names of such points, in the order of their columns.
 
     Returns
     -------
@@ -217,7 +223,7 @@ def on_supports(
     Raises
     ------
     InputError
-        A support is at no point.
+        A support is at no point, or coupled to others that are not given.
     """
     K = np.array(stiffness)
     held = np.zeros(len(K), dtype=bool)
@@ -227,8 +233,19 @@ def on_supports(
                 f"support {name!r} is at none of the points {', '.join(points)}: keep its point"
             )
         rows = slice(6 * points.index(name), 6 * points.index(name) + 6)
-        held[rows] = np.isinf(np.diag(k))
-        K[rows, rows] += np.where(np.isinf(k), 0.0, k)
+        if k.shape == (6, 6):
+            held[rows] = np.isinf(np.diag(k))
+            K[rows, rows] += np.where(np.isinf(k), 0.0, k)
+            continue
+        group = next((g for g in together if name in g and 6 * len(g) == k.shape[1]), None)
+        if group is None:
+            raise InputError(
+                f"support {name!r} gives together with others, which this cannot take: use one of "
+                "levels 1 to 4 of the scene"
+            )
+        for other, block in zip(group, np.split(k, len(group), axis=1), strict=True):
+            first = 6 * points.index(other)
+            K[rows, first : first + 6] += block
     left = np.flatnonzero(~held)
     return K[np.ix_(left, left)], left
 
@@ -250,7 +267,9 @@ class Supported:
     reactions: Mapping[str, Floats]
 
 
-def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
+def supported(
+    body: Condensed, supports: Mapping[str, Floats], together: Sequence[Sequence[str]] = ()
+) -> Supported:
     """Put a condensed body on springs and rigid supports, and load it.
 
     Parameters
@@ -259,7 +278,9 @@ def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
         The free body.
     supports : Mapping[str, Floats]
         (6, 6) stiffness to ground of points by name; inf on the diagonal holds that motion rigidly,
-        and nothing else stands in its row then.
+        and nothing else stands in its row then. Those that give together as of `on_supports`.
+    together : Sequence[Sequence[str]]
+        See there.
 
     Raises
     ------
@@ -268,7 +289,7 @@ def supported(body: Condensed, supports: Mapping[str, Floats]) -> Supported:
     """
     n = len(body.names)
     F = np.hstack([np.eye(6 * n), body.gravity])
-    K, free = on_supports(body.names, body.stiffness, supports)
+    K, free = on_supports(body.names, body.stiffness, supports, together)
     # translations and rotations have other units: judged with a unit diagonal
     if least_eigenvalue(K) < _FREE:
         raise InputError(

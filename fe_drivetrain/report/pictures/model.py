@@ -173,6 +173,8 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
             foot = [unit.bearing.x, 0.0, -unit.bearing.raceway_diameter / 2]
             sheet.note(foot, "on a stiffness, to ground", (-140, -60), GROUND)
             continue
+        if f"{name}.housing.base" not in mesh.faces:
+            continue  # it stands on parts of another unit
         base = mesh.points[mesh.face_nodes(f"{name}.housing.base")]
         corner = base[np.argmin(base @ [1.0, 1.0, 0.0])]
         if unit.parts or unit.foreign is not None:

@@ -22,9 +22,9 @@ GROUND = "#5b4636"
 
 def add_fixed_base(plotter: Any, mesh: Mesh, unit: BearingUnit, thickness: float) -> None:
     """Show where a housing is held: a plate under its base, or washers on its foot."""
-    if unit.condensed is not None:
-        return
     name = f"{unit.bearing.name}.housing"
+    if unit.condensed is not None or f"{name}.base" not in mesh.faces:
+        return  # no solid, or one that stands on parts of another unit
     heads = [face for face in mesh.faces if face.startswith(f"{name}.head ")]
     for face in heads or [f"{name}.base"]:
         surface = curved_surface(mesh.faces[face], mesh.points)

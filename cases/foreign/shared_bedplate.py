@@ -1,0 +1,131 @@
+"""Two housings on one bedplate from STEP: coupled supports against separate ones and the solid."""
+
+from collections.abc import Mapping
+
+import gmsh
+import numpy as np
+
+from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
+from fe_drivetrain.fidelity import LevelModel, housing_springs, shaft_level, unit_stiffness
+from fe_drivetrain.geometry import gmsh_session, write_step
+from fe_drivetrain.report import NoPictureError, picture_of_deformation
+from fe_drivetrain.response import (
+    Model,
+    Response,
+    build_model,
+    mesh_scene,
+    unit_load_response,
+)
+from fe_drivetrain.scene import Scene, change_scene, parse_scene
+from fe_drivetrain.suite import Page, Record, Run
+
+SCENE = """
+title: two housings on one bedplate
+shaft: {front: -1.0, sections: [{length: 3.2, outer_diameter: 0.4}]}
+bearing_units:
+  - bearing: {name: front, kind: ring, raceway_diameter: 0.6}
+    interface: bonded
+    housing: {}
+  - bearing: {name: rear, x: 1.5, kind: ring, raceway_diameter: 0.6}
+    interface: bonded
+    housing: {}
+gearbox: {stiffness: [0, 0, 0, rigid, 0, 0]}
+mesh: {shaft: 0.3, bearing: 0.2, housing: 0.3, bearing_edge: 0.2, elements_per_turn: 8}
+"""
+UNITS, X = ("front", "rear"), (0.0, 1.5)
+TOP = {"point": [0, 0, -420], "normal": [0, 0, 1]}  # mm
+END = {"point": [-400, 0, -500], "normal": [-1, 0, 0]}  # the bedplate hangs on its front end
+LOADS = {"Fy": 1, "Fz": 2, "My": 4, "Mz": 5}
+
+
+def on_bedplate(scene: Scene, file: str) -> Scene:
+    """The scene with both housings on one part, held at its front end."""
+    ties = [{"face": TOP, "to": to} for to in ("housing", "rear.housing")]
+    part = {"name": "bedplate", "step": file, "material": "steel", "tied": ties, "held": [END]}
+    keys = {f"bearing_units.{name}.stands_on": "parts" for name in UNITS}
+    return change_scene(scene, keys | {"bearing_units.front.parts": [part]})
+
+
+def alone(coupled: dict[str, Floats]) -> dict[str, Floats]:
+    """Each unit as if the other did not load the bedplate: the inverse of its own compliance."""
+    C = np.linalg.inv(np.vstack([coupled[name] for name in UNITS]))
+    blocks = [slice(6 * k, 6 * k + 6) for k in range(len(UNITS))]
+    return {n: np.asarray(np.linalg.inv(C[b, b])) for n, b in zip(UNITS, blocks, strict=True)}
+
+
+@case(
+    "Two housings on one bedplate: supports that are coupled",
+    source="equilibrium; the assembly of solids; the bearing units on the ground",
+)
+def run(run: Run, page: Page) -> None:
+    """Share the hub loads between two bearings on a bedplate: coupled, apart, and as solids."""
+    file, size = str(run.folder / "bedplate.step"), 0.3 if run.quick else 0.15
+    with gmsh_session():
+        write_step(file, [gmsh.model.occ.addBox(-0.4, -0.8, -0.72, 2.3, 1.6, 0.3)])
+    ground = change_scene(parse_scene(SCENE), {"mesh.housing": size})
+    scene = on_bedplate(ground, file)
+    with run.step("assembly of solids"):
+        model = build_model(scene, mesh_scene(scene))
+        solid = unit_load_response(model)
+    found: dict[str, LevelModel] = {}
+    with run.step("bearing units, solved together and apart"):
+        stiff, soft = (housing_springs(scene, way)[0] for way in ("rigid", "averaged"))
+        found["coupled, faces in shape"] = shaft_level(scene, 2, stiff)
+        found["coupled, faces on average"] = shaft_level(scene, 2, soft)
+        found["each by itself"] = shaft_level(ground, 2, alone(stiff))
+        fixed = {name: unit_stiffness(ground, name, "rigid") for name in UNITS}
+        found["on the ground"] = shaft_level(ground, 2, fixed)
+
+    def share(of: Mapping[str, Floats], load: str) -> float:
+        row = LOADS[load] if load[0] == "F" else {"My": 2, "Mz": 1}[load]
+        return float(of["rear"][row, LOADS[load]])
+
+    for load in LOADS:
+        unit = "-" if load[0] == "F" else "1/m"
+        low, high = sorted(share(found[f"coupled, faces {w}"].reaction_matrices, load)
+                           for w in ("in shape", "on average"))  # fmt: skip
+        page.equals(
+            f"force on the rear bearing for {load} at the hub, coupled [{unit}]",
+            (low + high) / 2,
+            share(solid.reactions, load),
+            within=(high - low) / 2 / abs(share(solid.reactions, load)),
+            why="a face between ring and shaft keeps its shape or moves on average: the solid lies "
+            "between the two",
+            source="shaft, bearings, housings and bedplate as one assembly of solids",
+        )
+    page.vanishes(
+        "forces and moments of both feet, shaft and gearbox, less what is applied, relative",
+        solid.equilibrium_error,
+        within=1e-8,
+        why="of a solution in balance round-off is left",
+        source="equilibrium",
+    )
+    answers = {name: model_.reaction_matrices for name, model_ in found.items()}
+    answers["assembly of solids"] = dict(solid.reactions)
+    rows: list[Record] = [
+        {"supports": name} | {f"{load} at the hub": share(of, load) for load in LOADS}
+        for name, of in answers.items()
+    ]
+    page.section("Force on the rear bearing")
+    page.table("Of 1 N [-] and of 1 N m [1/m], along z for Fz and My, y for Fy and Mz", rows)
+    page.text("Tied faces are glued all over: no joint opens or slides.")
+    picture(run, page, model, solid)
+    solids, apart, base = (
+        share(answers[n], "My") for n in ("assembly of solids", "each by itself", "on the ground")
+    )
+    page.answer(
+        f"Of a pitching moment of 1 N m at the hub the rear bearing carries {abs(solids):.3g} N. "
+        f"Coupled supports say so within their band; supports that each know their own share of "
+        f"the bedplate alone say {abs(apart):.3g} N, and housings on the ground {abs(base):.3g} N."
+    )
+
+
+def picture(run: Run, page: Page, model: Model, response: Response) -> None:
+    """The housings on their bedplate under a force at the hub, exaggerated."""
+    down, file = -np.eye(len(model.loads))[model.loads.index("hub.Fz")], run.folder / "deformed.png"
+    try:
+        factor = picture_of_deformation(model, response, down, file, "1 N down")
+        page.image(f"1 N down at the hub, displacements times {factor:.3g}", "deformed.png")
+    except NoPictureError as error:
+        page.note(f"no picture: {error}")

@@ -1,0 +1,292 @@
+"""Healing of a STEP file's solids in the open gmsh model, in mm: only where needed, least first.
+
+Healing can lose a sound solid: sewing takes a torus, one face without an edge, for no shell. So a
+file is taken as it is where its shells are closed and gmsh meshes their faces; else the steps of
+healing are tried from least to most, each from the file as it was read.
+
+This runs in a process of its own, see `reading`; it imports little else than gmsh and numpy.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, NamedTuple
+
+import gmsh
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.step_fit import area_and_middle
+
+VOLUME_TOLERANCE = 1e-4
+"""Relative change of a volume by healing that is refused."""
+
+_SAME = 1e-6  # of a solid's size: edges and gaps that are nothing
+_COARSE, _FINE, _PER_TURN = 25, 500, 16  # of its size, and elements of a turn: to see if it meshes
+_FINER = 2.5
+
+
+class Step(NamedTuple):
+    """What one step of healing does.
+
+    Attributes
+    ----------
+    words : str
+        What was done, for users.
+    flags : tuple[bool, bool, bool, bool, bool]
+        Degenerated edges, small edges and small faces mended; faces sewn, solids made of shells.
+    """
+
+    words: str
+    flags: tuple[bool, bool, bool, bool, bool]
+
+
+_STEPS = (
+    Step("degenerated edges were mended", (True, False, False, False, False)),
+    Step("degenerated and small edges were mended", (True, True, False, False, False)),
+    Step("small edges and faces were mended", (True, True, True, False, False)),
+    Step("faces were sewn to solids", (True, False, False, True, True)),
+    Step("small edges and faces were mended, and faces sewn to solids", (True,) * 5),
+)
+_REMOVING = [step for step in _STEPS if step.flags[2]]  # where small details are to be removed
+
+
+class Healed(NamedTuple):
+    """What is in the model now, and what it took.
+
+    Attributes
+    ----------
+    before, after : dict[str, Any]
+        Of `counted`, as read and as taken.
+    words : str
+        What was done, in a sentence.
+    """
+
+    before: dict[str, Any]
+    after: dict[str, Any]
+    words: str
+
+
+def counted() -> dict[str, Any]:
+    """Number of solids, faces and edges, volume [mm^3] and area [mm^2]."""
+    there = gmsh.model.getEntities(3)
+    return {
+        "solids": len(there),
+        "words": f"{len(there)} solid{'s' if len(there) != 1 else ''}",
+        "faces": len(gmsh.model.getEntities(2)),
+        "edges": len(gmsh.model.getEntities(1)),
+        "volume": math.fsum(gmsh.model.occ.getMass(3, t) for _, t in there),
+        "area": math.fsum(area_and_middle(t)[0] for _, t in gmsh.model.getEntities(2)),
+    }
+
+
+def size_of_all() -> float:
+    """Diagonal of the box round all that is there [mm]."""
+    box = [float(x) for x in gmsh.model.getBoundingBox(-1, -1)]
+    return math.dist(box[:3], box[3:])
+
+
+def fault() -> str:
+    """What is wrong with the solids, in words; "" where they are sound.
+
+    They are where each encloses a volume, no edge of its shells ends in free air, and gmsh can
+    mesh their faces.
+    """
+    for _, tag in gmsh.model.getEntities(3):
+        if not gmsh.model.occ.getMass(3, tag) > 0:
+            return "a solid is inside out, or encloses nothing"
+        if words := free_edges([f for _, f in gmsh.model.getBoundary([(3, tag)], False, False)]):
+            return words
+    return _unmeshed()
+
+
+def free_edges(faces: list[int]) -> str:
+    """Where the shells of faces are open, in words; "" where they are closed.
+
+    Parameters
+    ----------
+    faces : list of int
+        Their tags; each edge must bound an even number of them, a seam the same face twice.
+    """
+    count = Counter(
+        edge
+        for face in faces
+        for _, edge in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False)
+        if gmsh.model.getType(1, edge) != "Unknown"  # the pole of a sphere
+    )
+    free = [edge for edge, times in count.items() if times % 2]
+    if not free:
+        return ""
+    x, y, z = gmsh.model.occ.getCenterOfMass(1, free[0])
+    at = f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
+    return f"{len(free)} edges belong to one face alone, the first round {at}"
+
+
+def surface_mesh(finer: float = 1.0) -> None:
+    """Mesh all faces coarsely, for a picture or to see whether gmsh can.
+
+    Parameters
+    ----------
+    finer : float
+        How many times finer.
+    """
+    size = size_of_all() / finer
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size / _COARSE)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", size / _FINE)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", _PER_TURN * finer)
+    gmsh.model.mesh.generate(2)
+
+
+def _unmeshed() -> str:
+    """Why gmsh cannot mesh the solids; chords of coarse elements may cross: a finer mesh, too."""
+    words = ""
+    # after an error that is raised, gmsh meshes nothing any more, and says nothing
+    raised = gmsh.option.getNumber("General.AbortOnError")
+    gmsh.option.setNumber("General.AbortOnError", 1)
+    try:
+        for finer in (1.0, _FINER):
+            words = _unmeshed_at(finer)
+            gmsh.model.mesh.clear()
+            if not words:
+                break
+    finally:
+        gmsh.option.setNumber("General.AbortOnError", raised)
+    return words
+
+
+def _unmeshed_at(finer: float) -> str:
+    surface_mesh(finer)
+    why = " ".join(gmsh.logger.getLastError().split())
+    if not why:
+        gmsh.model.mesh.generate(3)
+        why = " ".join(gmsh.logger.getLastError().split())
+        _, made, _ = gmsh.model.mesh.getElements(3)
+        why = why or ("" if made else "it makes no elements")
+    return f"gmsh cannot mesh it ({why}{where(why)})" if why else ""
+
+
+def reason(error: Exception) -> str:
+    """What gmsh says of its failure, in one line."""
+    found = str(gmsh.logger.getLastError() or error or "no reason given")
+    return " ".join(found.split())[:200].rstrip(".")
+
+
+def heal(name: str, read: Callable[[], None], smallest_detail: float) -> Healed:
+    """Leave sound solids in the model: as they are read, or with the least healing that they need.
+
+    Parameters
+    ----------
+    name : str
+        Of the file, for messages.
+    read : callable
+        Puts what is in the file into an empty model.
+    smallest_detail : float
+        Edges and small faces below it are removed; none are if 0 [mm].
+
+    Returns
+    -------
+    Healed
+
+    Raises
+    ------
+    InputError
+        No step leaves as many solids of the same volume with closed shells.
+    """
+    before, wrong = counted(), fault()
+    if not wrong and not smallest_detail > 0:
+        return Healed(before, before, "not healed: its shells are closed, and gmsh meshes them")
+    steps = _REMOVING if smallest_detail > 0 else _STEPS
+    why = f"{wrong}; " if wrong else ""
+    after, best = before, None
+    for step in steps:
+        after = _tried(read, step, smallest_detail)
+        if not _as_before(before, after):
+            continue
+        best = step
+        if not (left := fault()):
+            return Healed(before, after, f"healed: {why}{step.words}")
+    if best is None:
+        raise InputError(
+            f"{name} has {before['words']} of {before['volume']:.9g} mm^3 before and "
+            f"{after['solids']} of {after['volume']:.9g} mm^3 after healing"
+            f"{f' ({wrong})' if wrong else ''}, but must have as many "
+            f"of the same volume, to {VOLUME_TOLERANCE:g}: repair its faces in the CAD program"
+        )
+    after = _tried(read, best, smallest_detail)
+    if left := free_edges([t for _, t in gmsh.model.getEntities(2)]):
+        raise InputError(
+            f"{name}: {left}, and healing does not close them: close the shell in the CAD program"
+        )
+    if "intersect" in (left := fault()):
+        raise InputError(
+            f"{name}: {left}, as it is and healed: its faces cross, so repair it in the CAD program"
+        )
+    # other elements than these coarse ones may do: what is wrong is said where it is meshed
+    return Healed(before, after, f"healed, but not sound: {left}")
+
+
+def _tried(read: Callable[[], None], step: Step, smallest_detail: float) -> dict[str, Any]:
+    """What is there after one step, of the file as it was read."""
+    gmsh.clear()
+    read()
+    occ, there = gmsh.model.occ, gmsh.model.getEntities(3)
+    edges, faces = step.flags[1:3]
+    tolerance = smallest_detail or _SAME * size_of_all()
+    # healed together, touching solids would be sewn into none
+    each = [[one] for one in there] if len(there) > 1 else [[]]
+    try:
+        for one in each:
+            occ.healShapes(one, tolerance, step.flags[0], edges, faces, *step.flags[3:])
+        occ.synchronize()
+    except Exception as error:
+        if type(error) is not Exception:  # gmsh reports its own failures as bare ones
+            raise
+        gmsh.clear()
+    return counted()
+
+
+def _as_before(before: dict[str, Any], after: dict[str, Any]) -> bool:
+    """Whether there are as many solids of the same volume."""
+    change = abs(after["volume"] - before["volume"]) / max(abs(before["volume"]), 1e-300)
+    return bool(
+        after["solids"] == before["solids"] and change <= VOLUME_TOLERANCE and after["volume"] > 0
+    )
+
+
+def sewn(read: Callable[[], None]) -> str:
+    """Make solids of faces that enclose some but are not sewn together; what was done, or "".
+
+    The solids must have all of the faces' area, since there is no volume to compare with.
+
+    Parameters
+    ----------
+    read : callable
+        Puts what is in the file into an empty model.
+    """
+    before = counted()
+    after = _tried(read, _STEPS[3], 0.0)
+    same = abs(after["area"] / before["area"] - 1) <= VOLUME_TOLERANCE
+    if after["solids"] and same and not fault():
+        return f"healed: {before['faces']} loose faces were sewn to {after['words']}"
+    gmsh.clear()
+    read()
+    return ""
+
+
+def where(message: str) -> str:
+    """Places of surfaces that a message of gmsh names, and of those that it could not mesh."""
+    tags = [int(n) for n in re.findall(r"[Ss]urface (\d+)", message)]
+    with suppress(Exception):
+        tags += [tag for dim, tag in gmsh.model.mesh.getLastEntityError() if dim == 2]
+    places = []
+    for tag in dict.fromkeys(tags):
+        try:
+            x, y, z = gmsh.model.occ.getCenterOfMass(2, tag)
+            kind = gmsh.model.getType(2, tag).lower()
+        except Exception:
+            continue
+        places.append(f"face {tag}, a {kind}, round ({x:.4g}, {y:.4g}, {z:.4g}) mm")
+    return f"; {', '.join(places[:3])}" if places else ""

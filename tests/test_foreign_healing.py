@@ -1,0 +1,157 @@
+"""STEP files are healed where they need it, as little as will do, and sound ones not at all."""
+
+import re
+from importlib.metadata import files
+
+import gmsh
+import numpy as np
+import pytest
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign import step_heal
+from fe_drivetrain.foreign.step_solid import opened
+from fe_drivetrain.foreign.survey import surveyed
+from fe_drivetrain.geometry import gmsh_session
+from fe_drivetrain.geometry.step_files import write_step
+
+
+def survey_of(path, **how):
+    with gmsh_session():
+        return opened(str(path), **how)
+
+
+def test_sewing_loses_a_torus_and_so_it_is_taken_as_it_is(tmp_path):
+    path = tmp_path / "torus.step"
+    with gmsh_session():
+        write_step(path, [gmsh.model.occ.addTorus(0, 0, 0, 1.0, 0.2)])
+    with gmsh_session():
+        gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.healShapes()  # all that it does by itself
+        gmsh.model.occ.synchronize()
+        assert not gmsh.model.getEntities(3)
+    found = survey_of(path)
+    assert found["healing"].startswith("not healed")
+    assert found["after"] == found["before"]
+    assert found["after"]["volume"] == pytest.approx(2e9 * np.pi**2 * 0.04, rel=1e-9)
+    assert "not healed: its shells are closed" in surveyed(path).text
+
+
+def test_a_detail_is_removed_from_a_solid_that_sewing_would_lose(tmp_path):
+    path = tmp_path / "torus.step"
+    with gmsh_session():
+        write_step(path, [gmsh.model.occ.addTorus(0, 0, 0, 1.0, 0.2)])
+    found = survey_of(path, smallest_detail=0.1)
+    assert found["healing"] == "healed: small edges and faces were mended"
+    assert found["after"]["solids"] == 1
+
+
+def loose_faces(path, gap=0.0, left_out=0):
+    """Six squares of a cube of 1000 mm, each with edges of its own, written as a STEP file."""
+    with gmsh_session():
+        occ = gmsh.model.occ
+        for axis, side in [(a, s) for a in range(3) for s in (0, 1)][left_out:]:
+            corners = []
+            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                at = np.insert([float(u), float(v)], axis, side * (1 + gap))
+                corners.append(occ.addPoint(*(1000 * at)))
+            lines = [occ.addLine(a, b) for a, b in zip(corners, np.roll(corners, -1), strict=True)]
+            occ.addPlaneSurface([occ.addCurveLoop(lines)])
+        occ.synchronize()
+        gmsh.write(str(path))
+    return path
+
+
+def test_loose_faces_that_enclose_a_volume_are_sewn_to_a_solid(tmp_path):
+    found = survey_of(loose_faces(tmp_path / "loose.step", gap=1e-7))
+    assert found["healing"].startswith("healed: 6 loose faces were sewn to 1 solid")
+    assert found["after"]["volume"] == pytest.approx(1e9, rel=1e-6)
+    assert len(found["faces"]) == 6
+    assert all(face["kind"] == "Plane" for face in found["faces"])
+
+
+@pytest.mark.parametrize("how", [{"gap": 1e-3}, {"left_out": 1}])
+def test_loose_faces_with_a_gap_are_refused_with_the_place_of_an_edge(tmp_path, how):
+    with pytest.raises(InputError, match=r"belong to one face alone, the first round \(.*\) mm"):
+        survey_of(loose_faces(tmp_path / "open.step", **how))
+
+
+def test_a_solid_with_a_cavity_has_two_shells_and_keeps_them(tmp_path):
+    path = tmp_path / "hollow.step"
+    with gmsh_session():
+        occ = gmsh.model.occ
+        hollow, _ = occ.cut(
+            [(3, occ.addBox(0, 0, 0, 1, 1, 1))], [(3, occ.addSphere(0.5, 0.5, 0.5, 0.2))]
+        )
+        write_step(path, [hollow[0][1]])
+    found = survey_of(path)
+    assert found["after"]["volume"] == pytest.approx(1e9 * (1 - 4 / 3 * np.pi * 0.008), rel=1e-9)
+    assert found["healing"].startswith("not healed")
+    [ball] = [face for face in found["faces"] if face["kind"] == "Sphere"]
+    assert ball["hole"]
+
+
+def test_a_fault_is_healed_by_the_least_step_that_mends_it(tmp_path, monkeypatch):
+    path = tmp_path / "box.step"
+    with gmsh_session():
+        write_step(path, [gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)])
+    fault, calls = step_heal.fault, []
+
+    def twice():
+        calls.append(1)
+        return "an edge is odd" if len(calls) <= 2 else fault()
+
+    monkeypatch.setattr(step_heal, "fault", twice)
+    words = survey_of(path)["healing"]
+    assert words == "healed: an edge is odd; degenerated and small edges were mended"
+
+
+def test_repeated_instances_of_an_assembly_are_read_in_time_linear_in_their_faces(
+    tmp_path, monkeypatch
+):
+    """Faces after gluing are compared with a list made once, not integrated anew for each."""
+    from fe_drivetrain.foreign import step_solids
+
+    path, times = tmp_path / "rows.step", []
+    placed = step_solids.placed
+    monkeypatch.setattr(step_solids, "placed", lambda tag: times.append(tag) or placed(tag))
+    with gmsh_session():
+        occ = gmsh.model.occ
+        boxes = [occ.addBox(k, 0, 0, 1, 1, 1) for k in range(12)]
+        write_step(path, boxes)
+    found = survey_of(path)
+    assert found["after"]["solids"] == 12
+    assert len(times) <= 12 * 6 + found["after"]["faces"]
+    assert found["after"]["volume"] == pytest.approx(12e9, rel=1e-12)
+
+
+def test_the_volume_of_solids_with_splines_counts_common_faces_once(tmp_path):
+    """Two halves of a stretched, so spline-described, ball: their common face is inside."""
+    path = tmp_path / "halves.step"
+    with gmsh_session():
+        occ = gmsh.model.occ
+        halves = [
+            occ.addSphere(0, 0, 0, 1, angle1=a, angle2=b)
+            for a, b in ((0, np.pi / 2), (-np.pi / 2, 0))
+        ]
+        occ.dilate([(3, t) for t in halves], 0, 0, 0, 1.0, 1.0, 0.7)
+        write_step(path, halves)
+    text = surveyed(path).text
+    value, band = re.search(r"edges, ([\d.e+]+) \+- ([\d.e+-]+) dm\^3", text).groups()
+    exact = 4 / 3 * np.pi * 0.7 * 1e3
+    assert abs(float(value) - exact) < 5e-3 * exact
+    assert float(band) < 1e-2 * exact
+
+
+@pytest.mark.parametrize(
+    ("package", "name"),
+    [
+        pytest.param("netgen-mesher", "frame.step", marks=pytest.mark.needs("netgen")),
+        ("gmsh", "step_header_data.stp"),
+        ("gmsh", "as1-tu-203.stp"),
+    ],
+)
+def test_public_parts_that_packages_ship_are_read_as_they_are(package, name):
+    found = next(f for f in files(package) or [] if f.name == name)
+    survey = survey_of(found.locate())
+    assert survey["healing"].startswith("not healed")
+    assert survey["after"]["volume"] == survey["before"]["volume"] > 0
