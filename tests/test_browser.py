@@ -12,6 +12,7 @@ from urllib.parse import unquote, urlparse
 import numpy as np
 import pytest
 from PIL import Image as Pixels
+from test_own_drivetrain import QUICK, write_loads
 from test_report import limit, lines, results, verdict
 
 from fe_drivetrain.commands import main
@@ -28,7 +29,7 @@ from fe_drivetrain.response.unit_loads import Response
 pytestmark = pytest.mark.needs("chromium", "playwright", "axe_playwright_python")
 
 PAGES = ("index.html", "checks.html", "atlas.html", "group/one/report.html")
-PAGES += ("compare/report.html", "sweep/report.html")
+PAGES += ("compare/report.html", "sweep/report.html", "study/report.html")
 WIDE, NARROW = 1400, 390
 PAPER, TURNED = 687, 1016  # pixels between the margins of A4, upright and turned
 #: What statics decides, so that nothing is meshed.
@@ -98,6 +99,11 @@ def reports(
         with pytest.raises(SystemExit) as ended:
             main([*STATICS, *how, "--out", str(folder / name)])
         assert ended.value.code in (0, 1)
+    write_loads(folder.parent / "own.csv", 3)
+    loads = ["--loads", str(folder.parent / "own.csv"), "--out", str(folder / "study")]
+    with pytest.raises(SystemExit) as ended:
+        main(["study", "main_bearing_spherical", "--quick", *QUICK, *loads])
+    assert ended.value.code == 0
     write_index(folder, PROBLEMS)
     for name in ("group/one", "group/two", "next/three"):
         write_page(folder / name, folder)
