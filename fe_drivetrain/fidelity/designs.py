@@ -203,8 +203,8 @@ def compare_designs(
     if short:
         items = [(name, scene, _chosen(asked[name], short)) for name, scene in designs.items()]
         for name, better in zip(designs, mapped(_as_assembly, items, 1, report), strict=True):
-            for one, value in better.items():
-                found[name][one] = replace(value, cheaper=found[name][one].cheaper)
+            for short_of, value in better.items():
+                found[name][short_of] = replace(value, cheaper=found[name][short_of].cheaper)
     first = next(iter(asked))
     differences = [
         Difference(quantity, tuple(found[d][quantity.name] for d in designs))
