@@ -106,8 +106,8 @@
       const rows = columns > 1 ? Math.ceil(named.length / columns) * deepest : lines.flat().length;
       // three lines have their place in every chart
       more += entry * Math.max(0, rows - 3);
-      // otherwise it is cut off at half of the chart
-      if (rows > 3) layout.legend = { ...layout.legend, maxheight: entry * (rows + 2) };
+      // otherwise it is cut off at half of the chart; in one column it is highest
+      layout.legend = { ...layout.legend, maxheight: entry * (lines.flat().length + 2) };
     }
     return height + more;
   }
