@@ -12,11 +12,12 @@ from urllib.parse import unquote, urlparse
 import numpy as np
 import pytest
 from PIL import Image as Pixels
+from test_own_drivetrain import QUICK, write_loads
 from test_report import limit, lines, results, verdict
 
 from fe_drivetrain.commands import main
 from fe_drivetrain.report.bundle import plotly_file
-from fe_drivetrain.report.charts import chart, trace
+from fe_drivetrain.report.charts import bars, chart, trace
 from fe_drivetrain.report.history import record_run
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.page import write_page
@@ -28,9 +29,9 @@ from fe_drivetrain.response.unit_loads import Response
 pytestmark = pytest.mark.needs("chromium", "playwright", "axe_playwright_python")
 
 PAGES = ("index.html", "checks.html", "atlas.html", "group/one/report.html")
-PAGES += ("compare/report.html", "sweep/report.html")
+PAGES += ("compare/report.html", "sweep/report.html", "study/report.html")
 WIDE, NARROW = 1400, 390
-PAPER = 687  # pixels between the margins of A4
+PAPER, TURNED = 687, 1016  # pixels between the margins of A4, upright and turned
 #: What statics decides, so that nothing is meshed.
 STATICS = ["compare", "main_bearing_spherical", "--quantity", "main_bearing.Fz"]
 PROBLEMS = {
@@ -98,6 +99,11 @@ def reports(
         with pytest.raises(SystemExit) as ended:
             main([*STATICS, *how, "--out", str(folder / name)])
         assert ended.value.code in (0, 1)
+    write_loads(folder.parent / "own.csv", 3)
+    loads = ["--loads", str(folder.parent / "own.csv"), "--out", str(folder / "study")]
+    with pytest.raises(SystemExit) as ended:
+        main(["study", "main_bearing_spherical", "--quick", *QUICK, *loads])
+    assert ended.value.code == 0
     write_index(folder, PROBLEMS)
     for name in ("group/one", "group/two", "next/three"):
         write_page(folder / name, folder)
@@ -241,32 +247,65 @@ def test_paper_has_all_rows_and_nothing_to_press(browser: Any, reports: Path) ->
         assert opened.page.evaluate(background) == "rgb(255, 255, 255)"
 
 
-# a table of fifteen columns is printed smaller, with its page
-@pytest.mark.parametrize("name", [name for name in PAGES if name != "group/one/report.html"])
+@pytest.mark.parametrize("name", PAGES)
 def test_nothing_is_wider_than_paper(browser: Any, reports: Path, name: str) -> None:
+    """The printer need not shrink a page: tables of many columns stand on turned ones."""
     with Opened(browser, reports / name, PAPER) as opened:
         opened.page.emulate_media(media="print")
         opened.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-        assert opened.page.evaluate("document.documentElement.scrollWidth") <= PAPER
+        wide = opened.page.evaluate(WIDTHS)
+        assert wide["upright"] <= PAPER
+        assert wide["turned"] <= TURNED
+        sizes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", opened.page.pdf())
+        assert len(sizes) >= 1
+        assert any(float(across) > float(up) for across, up in sizes) == (wide["turned"] > 0)
+    assert wide["turned"] > 0 or name != "group/one/report.html"
 
 
+WIDTHS = """() => {
+  const broad = Array.from(document.querySelectorAll(".broad table"));
+  const right = of => Math.max(0, ...of.map(e => e.getBoundingClientRect().right));
+  const turned = right(broad);
+  for (const table of broad) table.style.display = "none";
+  return { turned, upright: document.documentElement.scrollWidth };
+}"""
+
+
+# corners of each text as it is turned: two are apart where a line along a side of one has room for
+# both; a text that is not shown has no size
 LABELS = """() => {
+  const corners = t => {
+    const { x, y, width, height } = t.getBBox(), m = t.getScreenCTM();
+    const dx = Math.min(1, width / 3), dy = Math.min(1.5, height / 3);
+    return [[x + dx, y + dy], [x + width - dx, y + dy], [x + width - dx, y + height - dy],
+            [x + dx, y + height - dy]].map(([u, v]) => new DOMPoint(u, v).matrixTransform(m));
+  };
+  const apart = (a, b) => [[a, 0], [a, 1], [b, 0], [b, 1]].some(([of, k]) => {
+    const side = [of[k + 1].x - of[k].x, of[k + 1].y - of[k].y];
+    const [p, q] = [a, b].map(o => o.map(c => c.x * side[0] + c.y * side[1]));
+    return Math.max(...p) <= Math.min(...q) || Math.max(...q) <= Math.min(...p);
+  });
   const found = [];
   for (const plot of document.querySelectorAll(".js-plotly-plot")) {
     const frame = plot.getBoundingClientRect();
     const texts = Array.from(plot.querySelectorAll("svg text")).filter(
-      t => t.textContent.trim() && !t.closest(".modebar"));
-    const boxes = texts.map(t => ({ text: t.textContent, at: t.getBoundingClientRect() }));
+      t => t.textContent.trim() && !t.closest(".modebar") && t.getBoundingClientRect().width > 0);
+    const boxes = texts.map(t => ({ text: t.textContent, at: t.getBoundingClientRect(),
+                                    of: corners(t) }));
     boxes.forEach((a, i) => {
-      if (a.at.left < frame.left - 1 || a.at.right > frame.right + 1) found.push("cut: " + a.text);
-      for (const b of boxes.slice(i + 1)) {
-        const wide = Math.min(a.at.right, b.at.right) - Math.max(a.at.left, b.at.left);
-        const high = Math.min(a.at.bottom, b.at.bottom) - Math.max(a.at.top, b.at.top);
-        if (wide > 2 && high > 3) found.push(a.text + " over " + b.text);
-      }
+      if (a.at.left < frame.left - 1 || a.at.right > frame.right + 1
+          || a.at.top < frame.top - 1 || a.at.bottom > frame.bottom + 1)
+        found.push("cut: " + a.text);
+      for (const b of boxes.slice(i + 1))
+        if (!apart(a.of, b.of)) found.push(a.text + " over " + b.text);
     });
     const bar = plot.querySelector(".legend .scrollbar");
     if (bar && bar.getBoundingClientRect().width > 0) found.push("names to be scrolled");
+    for (const axis of ["x", "y"]) {
+      const ticks = Array.from(plot.querySelectorAll(`g.${axis}tick text`));
+      const seen = ticks.filter(t => t.getBoundingClientRect().width > 0);
+      if (ticks.length > 1 && seen.length < 2) found.push("no scale of " + axis);
+    }
   }
   return found;
 }"""
@@ -282,6 +321,16 @@ def test_names_of_a_chart_are_whole_and_apart(
     curves = [trace(name, x, x**k) for k, name in enumerate(names)]
     few = [trace("one", np.geomspace(1.0, 1e9, 9), x), trace("other", 2.0 * x, x)]
     items = [chart("Many", curves, title, "y [-]", "xy"), chart("Few", few, title, "y [m]", "x")]
+    places = {f"a place whose name is {word} of a screen": 1.0 for word in ("half", "most", "all")}
+    items.append(bars("Beside", {"one": places, "other": places}, title, 1e-3))
+    for low, high in ((2e3, 1.1e4), (2e3, 1e5), (-1.1e4, 0.9e4), (3.1e7, 3.7e7)):
+        line = [trace("one", np.linspace(low, high, 5), np.arange(5.0))]
+        items.append(chart("Numbers", line, "x [N]", "y [m], " * 12, "x" * (low > 0)))
+        items.append(chart("Plain", line, "x [N]", "y [m]"))
+    named = [trace("one", [0.0, 1.0], [0.0, -1.0])]
+    items.append(chart("Named", named, "a title as wide as the chart is, about", ""))
+    axis = {"tickvals": [0, -1], "ticktext": list(places)[:2], "automargin": True}
+    items[-1].figure["layout"]["yaxis"] = axis
     content = results("plain", sections=[Section(title="Charts", items=items)])
     (tmp_path / "results.json").write_text(content.model_dump_json(), "utf-8")
     write_page(tmp_path)

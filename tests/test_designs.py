@@ -7,8 +7,10 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain.commands.app import main
+from fe_drivetrain.commands.design_page import why_solid
 from fe_drivetrain.commands.designs import parse_values
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.fidelity import designs as designs_module
 from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import Difference, Value, compare_designs, scene_changes
 from fe_drivetrain.scene.reading import change_scene
@@ -56,6 +58,31 @@ def test_bands_are_those_of_both_values(found: dict[str, Difference]) -> None:
 def test_known_changes_come_first(found: dict[str, Difference]) -> None:
     order = [(not one.is_known, -one.ranks.max()) for one in found.values()]
     assert order == sorted(order)
+
+
+def test_a_page_says_why_a_quantity_needs_solids(
+    found: dict[str, Difference], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where level 2 is not enough, by its own two parts; the better value stands in for solids."""
+
+    def better(report: object, name: str, scene: object, quantities: Any) -> dict[str, Value]:
+        return {one.name: Value(np.ones(1), 1e-3, 4) for one in quantities}
+
+    monkeypatch.setattr(designs_module, "_as_assembly", better)
+    solid = coarse_scene("spherical")
+    designs = {"solid": solid, "bored": change_scene(solid, {BORE: 0.25})}
+    (one,) = compare_designs(designs, [Quantity("hub.stiffness.ry")], 1e-3)
+    before = found["hub.stiffness.ry"].values
+    bands = [value.band for value in before[:2]]
+    assert [sum(value.cheaper or ()) for value in one.values] == pytest.approx(bands)
+    assert max(bands) > 1e-3 / 2
+    worst = int(np.argmax(bands))
+    text = why_solid(one, list(designs), 1e-3)
+    said = f"level 2 may be wrong by {100 * bands[worst]:.2g} % in {list(designs)[worst]}"
+    assert f"hub.stiffness.ry needs level 4, since {said}, and 0.05 % is allowed" in text
+    housing, shaft = before[worst].cheaper or (0.0, 0.0)
+    assert ("beam and meridian" in text) == (shaft >= housing)
+    assert found["gearbox.Mx"].values[0].cheaper is None
 
 
 def test_a_change_from_zero_is_all_of_the_larger() -> None:

@@ -22,6 +22,8 @@ from fe_drivetrain.suite.run import Run
 _NAMED, _CURVES = 3, 6
 #: Changes that are this share of the larger value: a percentage of the smaller one says nothing.
 _FROM_ZERO = 0.9
+#: The level of the assembly of solids.
+_ASSEMBLY = 4
 #: Round-off of the other value.
 _NOTHING = 1e-6
 
@@ -93,6 +95,13 @@ def compared(
     else:
         _show_sweep(page, found, varied)
     page.table("Every quantity, the largest change first", _rows(found, names))
+    solid = [one for one in found if one.values[0].level == _ASSEMBLY]
+    if solid:
+        page.text(why_solid(solid[0], names, tolerance))
+        page.table(
+            "What level 2 may be wrong by, of the quantities that need level 4",
+            [_short_row(one, names) for one in solid],
+        )
     page.text(
         "A change is relative to the value of the first design. Its band is what both values may "
         "be wrong by together; a change inside its band may be none. Without a load, a reaction is "
@@ -135,6 +144,52 @@ def _sentence(one: Difference, names: Sequence[str]) -> str:
         f"{one.quantity.name} of {names[k + 1]} against {names[0]}: {text} (level {level}, "
         f"{TITLES[level]})."
     )
+
+
+def why_solid(one: Difference, names: Sequence[str], tolerance: float) -> str:
+    """Why a quantity comes from the assembly of solids, by the design that needs it most.
+
+    Parameters
+    ----------
+    one : Difference
+        At level 4.
+    names : sequence of str
+        Of the designs.
+    tolerance : float
+        Of a change, half for each of its two values.
+    """
+    name, housing, shaft = _at_level_two(one, names)
+    cause = (
+        "it is not known how much of their shape the seats of the housings keep, and the bounds of "
+        f"that differ by {2 * housing:.2g} %"
+        if housing > shaft
+        else f"beam and meridian of the shaft differ by {shaft:.2g} %"
+    )
+    return (
+        f"{one.quantity.name} needs level 4, since level 2 may be wrong by {housing + shaft:.2g} % "
+        f"in {name}, and {50 * tolerance:.2g} % is allowed, half of the tolerance for each of two "
+        f"designs. Most of that: {cause}."
+    )
+
+
+def _at_level_two(one: Difference, names: Sequence[str]) -> tuple[str, float, float]:
+    """The design of the largest band, and its two parts [%]."""
+    parts = [value.cheaper or (0.0, 0.0) for value in one.values]
+    worst = max(range(len(parts)), key=lambda k: sum(parts[k]))
+    housing, shaft = parts[worst]
+    return names[worst], 100 * housing, 100 * shaft
+
+
+def _short_row(one: Difference, names: Sequence[str]) -> Record:
+    name, housing, shaft = _at_level_two(one, names)
+    return {
+        "quantity": one.quantity.name,
+        "± at level 2 [%]": housing + shaft,
+        "of it shape of the seats [%]": housing,
+        "of it beam for the shaft [%]": shaft,
+        "largest in": name,
+        "± at level 4 [%]": 100 * max(value.band for value in one.values),
+    }
 
 
 def _number(value: float, other: float) -> str:

@@ -350,7 +350,12 @@ def band_on_springs(values: Floats, bound: Floats, cheaper: Floats) -> float:
     float
         Half of what the bounds differ by, and the change from the level before.
     """
-    return _difference(bound, values) / 2 + _difference(cheaper, values)
+    return sum(parts_of_band(values, bound, cheaper))
+
+
+def parts_of_band(values: Floats, bound: Floats, cheaper: Floats) -> tuple[float, float]:
+    """Both parts of `band_on_springs`: of the housings, and of the shaft."""
+    return _difference(bound, values) / 2, _difference(cheaper, values)
 
 
 def banded_assembly(

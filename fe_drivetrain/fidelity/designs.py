@@ -7,7 +7,7 @@ of every design has a band, and a level is enough where the bands of both are wi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.reading import value_changes
-from fe_drivetrain.fidelity.adviser import Quantity, band_on_springs, banded_assembly
+from fe_drivetrain.fidelity.adviser import Quantity, banded_assembly, parts_of_band
 from fe_drivetrain.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.fidelity.quantities import NOISE
 from fe_drivetrain.fidelity.shafts import condensed_shaft
@@ -38,11 +38,15 @@ class Value:
         Largest error of their norm, relative; NaN where it is not known.
     level : int
         At which they were found.
+    cheaper : tuple[float, float] or None
+        The two parts of the band at level 2: half of what the bounds of the housings differ by, and
+        the change from beam to meridian; None of what statics decides.
     """
 
     values: Floats
     band: float
     level: int
+    cheaper: tuple[float, float] | None = None
 
     @property
     def size(self) -> float:
@@ -199,7 +203,8 @@ def compare_designs(
     if short:
         items = [(name, scene, _chosen(asked[name], short)) for name, scene in designs.items()]
         for name, better in zip(designs, mapped(_as_assembly, items, 1, report), strict=True):
-            found[name] |= better
+            for short_of, value in better.items():
+                found[name][short_of] = replace(value, cheaper=found[name][short_of].cheaper)
     first = next(iter(asked))
     differences = [
         Difference(quantity, tuple(found[d][quantity.name] for d in designs))
@@ -283,6 +288,6 @@ def _on_springs(
         if not values.any():
             found[one.name] = Value(values, 0.0, 2)
             continue
-        band = band_on_springs(values, one.of(bound, length), one.of(beam, length))
-        found[one.name] = Value(values, band, 2)
+        parts = parts_of_band(values, one.of(bound, length), one.of(beam, length))
+        found[one.name] = Value(values, sum(parts), 2, parts)
     return found

@@ -42,74 +42,165 @@
     charts.push({ place, text: data.textContent, height: place.clientHeight });
   }
 
-  // about as wide as letters are [px], high as lines are, and wide as what stands round them is
-  const letter = { legend: 7, title: 8 };
+  // heights of a line, and of a name beside its symbol [px]
   const line = 19;
+  const entry = 21;
+  // what stands beside the text of a name, and beside the plot [px]
   const around = { entry: 44, plot: 110 };
+  const sizes = { tick: 14, legend: 14, title: 17 };
+  const pen = document.createElement("canvas").getContext("2d");
 
-  function plainText(text) {
-    return text.replace(/<[^>]*>/g, "");
+  // pixels; without a canvas, about as wide as letters are
+  function breadth(text, size) {
+    const plain = text.replace(/<[^>]*>/g, "");
+    if (!pen) return 0.55 * size * plain.length;
+    pen.font = `${size}px system-ui, "Segoe UI", Arial, sans-serif`;
+    return pen.measureText(plain).width;
   }
 
-  function wrapped(text, most) {
+  function wrapped(text, room, size) {
     const lines = [""];
-    for (const word of text.split(" ")) {
+    for (const word of text.replaceAll("<br>", " ").split(" ")) {
       const longer = lines.at(-1) ? `${lines.at(-1)} ${word}` : word;
-      if (lines.at(-1) && plainText(longer).length > most) lines.push(word);
+      if (lines.at(-1) && breadth(longer, size) > room) lines.push(word);
       else lines[lines.length - 1] = longer;
     }
     return lines.join("<br>");
   }
 
+  function linesOf(text) {
+    return text.split("<br>").length;
+  }
+
+  // names beside the plot take less than half of it: they go on in further lines
+  function fitNames(data, layout, width) {
+    const { tickvals, ticktext } = layout.yaxis || {};
+    const names = ticktext || [...new Set(data.flatMap((one) => (Array.isArray(one.y) ? one.y : [])))];
+    const room = 0.4 * width;
+    if (!names.some((name) => typeof name === "string" && isNaN(name))) return 0;
+    if (!names.some((name) => breadth(String(name), sizes.tick) > room)) return 0;
+    const short = names.map((name) => wrapped(String(name), room, sizes.tick));
+    layout.yaxis = { ...layout.yaxis, tickmode: "array", tickvals: tickvals || names, ticktext: short };
+    if (!ticktext) layout.yaxis.type = "category";
+    return line * names.length * Math.max(...short.map(linesOf));
+  }
+
   // names and titles that are wider than the chart go on in a further line, for which it grows
   function fit(data, layout, width, height) {
     const room = width - around.plot;
-    let more = 0;
+    let more = Math.max(0, fitNames(data, layout, width) - (height - around.plot));
+    const titles = [0];
     for (const [key, of] of Object.entries(layout)) {
       if (!/^xaxis/.test(key) || !of.title?.text) continue;
-      of.title.text = wrapped(of.title.text, room / letter.title);
-      more = Math.max(more, line * (of.title.text.split("<br>").length - 1));
+      of.title.text = wrapped(of.title.text, room, sizes.title);
+      titles.push(line * (linesOf(of.title.text) - 1));
     }
+    more += Math.max(...titles);
     const named = data.filter((one) => one.name && one.showlegend !== false);
     if (layout.showlegend !== false && named.length > 1) {
-      for (const one of named) one.name = wrapped(String(one.name), (width - 20 - around.entry) / letter.legend);
+      for (const one of named) one.name = wrapped(String(one.name), width - 30 - around.entry, sizes.legend);
       const lines = named.map((one) => one.name.split("<br>"));
-      const longest = Math.max(...lines.flat().map((text) => plainText(text).length));
-      const columns = Math.max(1, Math.floor(room / (longest * letter.legend + around.entry)));
+      const longest = Math.max(...lines.flat().map((text) => breadth(text, sizes.legend)));
+      const columns = Math.max(1, Math.floor(room / (longest + around.entry)));
       const deepest = Math.max(...lines.map((of) => of.length));
       const rows = columns > 1 ? Math.ceil(named.length / columns) * deepest : lines.flat().length;
       // three lines have their place in every chart
-      more += line * Math.max(0, rows - 3);
-      // otherwise it is cut off at half of the chart
-      if (rows > 3) layout.legend = { ...layout.legend, maxheight: line * (rows + 2) };
+      more += entry * Math.max(0, rows - 3);
+      // otherwise it is cut off at half of the chart; in one column it is highest
+      layout.legend = { ...layout.legend, maxheight: entry * (lines.flat().length + 2) };
     }
     return height + more;
   }
 
-  // half as many decades have labels where there is little room, and parts of them 1, 2 and 5
-  function spare(axis, data) {
-    const values = data.flatMap((one) => one.x || []).filter((x) => x > 0);
-    if (typeof axis.dtick === "number") axis.dtick *= 2;
-    else if (Math.max(...values) / Math.min(...values) < 3) axis.tickangle = -90;
-    else if (axis.tickvals) {
-      const kept = axis.tickvals.map((x) => [1, 2, 5].includes(Number(x.toExponential()[0])));
-      axis.ticktext = axis.ticktext.map((text, k) => (kept[k] ? text : ""));
-    } else axis.dtick = "D2";
+  // what Plotly has drawn is measured: a title is centred on the plot, which names beside it may
+  // have pushed far to one side
+  function shortenTitles(place, layout) {
+    const frame = place.getBoundingClientRect();
+    let more = 0;
+    for (const [key, of] of Object.entries(layout)) {
+      const drawn = /^[xy]axis/.test(key) && place.querySelector(`.g-${key.replace("axis", "")}title text`);
+      if (!drawn || !of.title?.text) continue;
+      const at = drawn.getBoundingClientRect();
+      const across = key.startsWith("x");
+      const [low, high] = across ? [at.left - frame.left, frame.right - at.right] : [at.top - frame.top, frame.bottom - at.bottom];
+      if (Math.min(low, high) >= 0) continue;
+      const room = (across ? at.width : at.height) + 2 * Math.min(low, high) - 4;
+      const text = wrapped(of.title.text, room, sizes.title);
+      if (text === of.title.text) continue;
+      if (across) more = Math.max(more, line * (linesOf(text) - linesOf(of.title.text)));
+      of.title.text = text;
+      more = Math.max(more, 1);
+    }
+    return more;
+  }
+
+  // parallel labels meet where neither along nor across their lines there is room between them
+  function meet(one, other) {
+    const angle = one.angle * Math.PI / 180;
+    const apart = [other.x - one.x, other.y - one.y];
+    const along = Math.abs(apart[0] * Math.cos(angle) + apart[1] * Math.sin(angle));
+    const across = Math.abs(apart[1] * Math.cos(angle) - apart[0] * Math.sin(angle));
+    return along < (one.width + other.width) / 2 + 4 && across < 0.8 * Math.min(one.height, other.height);
+  }
+
+  // of labels that would overprint only each second, third, ... is shown, of a logarithmic axis
+  // first those of 1, 2 and 5, then of 1; names are all shown
+  function thin(place) {
+    for (const [key, axis] of Object.entries(place._fullLayout)) {
+      if (!/^[xy]axis/.test(key) || axis.type === "category" || axis.type === "multicategory") continue;
+      const texts = Array.from(place.querySelectorAll(`g.${axis._id}tick text`));
+      for (const text of texts) text.style.display = "";
+      const labels = texts.map((text) => {
+        const box = text.getBBox();
+        const at = text.getBoundingClientRect();
+        const [, angle] = /rotate\(([-\d.]+)/.exec(text.getAttribute("transform") || "") || [0, 0];
+        return { text, angle: Number(angle), width: box.width, height: box.height,
+          x: (at.left + at.right) / 2, y: (at.top + at.bottom) / 2, leading: leading(text) };
+      }).filter((label) => label.width > 0);
+      labels.sort((a, b) => (key.startsWith("x") ? a.x - b.x : a.y - b.y));
+      const ways = axis.type === "log" ? [[1, 2, 5], [1, 5], [1]].map((kept) => (label) => kept.includes(label.leading)) : [];
+      for (let step = 2; step < labels.length; step++) {
+        ways.push((label, k) => k % step === 0);
+      }
+      let shown = labels;
+      const clash = () => shown.some((label, k) => k > 0 && meet(shown[k - 1], label));
+      while (clash() && ways.length) {
+        const kept = labels.filter(ways.shift());
+        if (kept.length > 1) shown = kept;
+      }
+      for (const label of labels) if (!shown.includes(label)) label.text.style.display = "none";
+    }
+  }
+
+  // the first digit of a label, where it is the only one that is not zero; 1 of a power of ten
+  function leading(text) {
+    const number = text.__data__ && text.__data__.x;
+    if (typeof number !== "number") return null;
+    const digits = (10 ** number).toExponential(3).split("e")[0];
+    return Number(digits) >= 9.9995 ? 1 : Number(digits);
   }
 
   function draw(paper) {
     for (const { place, text, height } of charts) {
       const plain = JSON.parse(text);
       const { data, layout } = dark.matches && !paper ? onDark(plain) : plain;
-      const { xaxis } = layout;
       const width = paper ? 680 : place.clientWidth;
-      if (width < 500 && xaxis && xaxis.type === "log") {
-        spare(xaxis, data);
+      const tall = fit(data, layout, width, height);
+      for (const [key, axis] of Object.entries(layout)) {
+        // fewer are easier to read than turned ones
+        if (/^xaxis/.test(key) && axis.type === "log") axis.tickangle ??= 0;
       }
-      place.style.height = `${fit(data, layout, width, height)}px`;
+      place.style.height = `${tall}px`;
       // without this a chart keeps the width of the screen on paper
       if (paper) Object.assign(layout, { width, autosize: false });
-      Plotly.react(place, data, layout, config);
+      Plotly.react(place, data, layout, config).then(() => {
+        if (!place.thinned) place.on("plotly_afterplot", () => thin(place));
+        place.thinned = true;
+        const more = shortenTitles(place, layout);
+        if (!more) return thin(place);
+        place.style.height = `${tall + more}px`;
+        return Plotly.react(place, data, structuredClone(layout), config);
+      });
     }
   }
 
