@@ -78,13 +78,17 @@ def thread_limits(threads: int) -> dict[str, str]:
 def hold_threads() -> None:
     """Where the user limits the cores, limit what this process imports from now on to as many.
 
-    Idle threads sleep at once in any case. Those of OpenBLAS would spin for tens of milliseconds
-    after each call, and take the cores from compiled loops. Those of compiled loops would spin at
-    the end of each until the last has come, which waits for a core where others work on the
-    machine, too: a study then took three times as long.
+    Idle threads soon sleep in any case. Those of OpenBLAS would spin for tens of milliseconds after
+    each call, and take the cores from compiled loops. Those of compiled loops would spin as long at
+    the end of each for the last to come, which waits for a core where others work on the machine,
+    too: a study then took three times as long. They spin for about a millisecond, which is longer
+    than from one loop of a solver to the next: where they slept at once, small systems would take a
+    third longer.
     """
     os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")  # 2^4 cycles
-    os.environ.setdefault("GOMP_SPINCOUNT", "1000")  # of GNU's OpenMP, which numba's threads are of
+    os.environ.setdefault(
+        "GOMP_SPINCOUNT", "20000"
+    )  # of GNU's OpenMP, which numba's threads are of
     if os.environ.get(CORES_VARIABLE):
         limits = thread_limits(cores())
         if "numba" in sys.modules:  # which fails at another number once its threads run

@@ -184,7 +184,7 @@ def _alone(facets: Ints) -> Ints:
     key = (low * n + (total - low - high)) * n + high
     order = np.argsort(key)
     same = np.diff(key[order]) == 0
-    return order[~(np.append(same, False) | np.append(False, same))]
+    return np.asarray(order[~(np.append(same, False) | np.append(False, same))])
 
 
 def width(K: sparse.bsr_array) -> float:

@@ -266,7 +266,7 @@ def _normals(loops: Floats) -> Floats:
     first = loops[:, :1]
     area = np.cross(loops - first, np.roll(loops, -1, axis=1) - first).sum(axis=1)
     size = np.linalg.norm(area, axis=1, keepdims=True)
-    return np.divide(area, size, out=area, where=size > 0.0)
+    return np.asarray(np.divide(area, size, out=area, where=size > 0.0))
 
 
 def _shaded(colour: str, towards_light: float) -> tuple[int, int, int]:
