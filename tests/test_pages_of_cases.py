@@ -34,7 +34,7 @@ RAW = {
 }
 
 #: Groups whose questions are about a body, and the cases in them that are about numbers alone.
-OF_BODIES = ("verification", "stability", "bearing", "gear", "foreign")
+OF_BODIES = ("verification", "stability", "bearing", "gear", "foreign", "export")
 WITHOUT_BODY = {
     "verification/grid_convergence_index",
     "bearing/ratings",

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.samples import frequencies, samples
+from fe_drivetrain.cases.export.samples import frequencies, samples, show
 from fe_drivetrain.common import scaled_to_unit_diagonal
 from fe_drivetrain.export import (
     ROUNDING,
@@ -75,6 +75,7 @@ def run(run: Run, page: Page) -> None:
         "prints.",
         "The exported mass gives the natural frequencies of the matrices, too.",
     )
+    show(run, page)
     page.section("Displacements")
     page.text(
         "CalculiX 2.20 takes no matrix as an element. A symmetric matrix is a sum of squares of "

@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
+from fe_drivetrain.cases.export.samples import show
 from fe_drivetrain.common import Floats
 from fe_drivetrain.export import (
     CraigBampton,
@@ -79,6 +80,7 @@ def run(run: Run, page: Page) -> None:
         "Its natural frequencies are those of the condensed matrices to "
         f"{max(column(rows, 'frequencies')):.1e}.",
     )
+    show(run, page, scene)
     page.section("Natural frequencies on the scene's supports")
     modes = [f"mode {k} [Hz]" for k in range(1, 5)]
     page.table("The lowest, by Exudyn", rows, ["scene", "shaft", *modes])

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.samples import matrices, samples
+from fe_drivetrain.cases.export.samples import matrices, samples, show
 from fe_drivetrain.common import MissingToolError, largest_difference
 from fe_drivetrain.suite import Page, Record, Run, column
 from fe_drivetrain.validation.matrix_readers import READERS
@@ -60,5 +60,6 @@ def run(run: Run, page: Page) -> None:
         f"{max(column(rows, DIFFERENCE)):.1e} of a unit diagonal, each by a library that knows "
         "nothing of this project."
     )
+    show(run, page)
     page.section("Files")
     page.table("Largest difference between what was written and what is read", rows)

@@ -7,7 +7,7 @@ import numpy as np
 
 from fe_drivetrain import export
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.samples import frequencies, matrices, samples
+from fe_drivetrain.cases.export.samples import frequencies, matrices, samples, show
 from fe_drivetrain.common import largest_difference
 from fe_drivetrain.export import pynastran
 from fe_drivetrain.suite import Page, Run, Target, column, grouped
@@ -80,6 +80,7 @@ def run(run: Run, page: Page) -> None:
         f"a unit diagonal, and OUTPUT4 with {worst_of['op4']:.1e}.",
         "A symmetric DMIG holds one triangle; the whole matrix comes back from it.",
     )
+    show(run, page)
     page.section("Files")
     page.table("Largest difference between what was written and what pyNastran reads", rows)
     page.text(

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.export.samples import FACTOR, frequencies
+from fe_drivetrain.cases.export.samples import FACTOR, frequencies, show
 from fe_drivetrain.common import largest_difference
 from fe_drivetrain.export import (
     Superelement,
@@ -70,6 +70,7 @@ def run(run: Run, page: Page) -> None:
         "SubDyn's spring element and ExtPtfm's superelement come back from openfast_io with every "
         "digit that was written."
     )
+    show(run, page, scene)
 
 
 def exact(page: Page, quantity: str, difference: float) -> None:

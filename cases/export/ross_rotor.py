@@ -15,6 +15,7 @@ from fe_drivetrain.beam import (
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.export.rotor_scenes import ORDER, QUICK_SCENES, SCENES, scene_and_units
+from fe_drivetrain.cases.export.samples import show
 from fe_drivetrain.common import Floats, largest_difference
 from fe_drivetrain.export import craig_bampton_shaft, free_frequencies, natural_frequencies
 from fe_drivetrain.export.programs import ross_rotor
@@ -50,10 +51,11 @@ def run(run: Run, page: Page) -> None:
     page.answer(
         f"ROSS {version} gives the deflections of level 1 to {moved:.1e} and its reactions to "
         f"{reacted:.1e}, with the full 6x6 stiffness of every bearing unit.",
-        f"On those supports its lowest {COUNT} natural frequencies are {min(difference):+.1f} to "
-        f"{max(difference):+.1f} % from those of the shaft as a solid of revolution with twelve "
-        "modes of Craig and Bampton.",
+        f"On those supports its lowest {COUNT} natural frequencies are up to "
+        f"{max(map(abs, difference)):.1f} % from those of the shaft as a solid of revolution with "
+        "twelve modes of Craig and Bampton.",
     )
+    show(run, page, library_scene(name))
     page.table(
         "ROSS's beam against level 2 (meridian, Craig-Bampton); both on the same bearing units and "
         "gearbox",

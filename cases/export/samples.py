@@ -5,8 +5,9 @@ from scipy.linalg import eigh
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.export import Superelement, superelement_of
-from fe_drivetrain.scene import library_scene
-from fe_drivetrain.suite import Run
+from fe_drivetrain.report import shaft_with_rings
+from fe_drivetrain.scene import Scene, library_scene
+from fe_drivetrain.suite import Page, Run
 
 SCENE = "two_bearings"
 
@@ -27,6 +28,13 @@ def samples(run: Run) -> dict[str, Superelement]:
         label = "bearing with housing"
         found[label] = run.timed(label, superelement_of, scene, bearing)
     return found
+
+
+def show(run: Run, page: Page, scene: Scene | None = None) -> None:
+    """A picture of what is written: the shaft of a scene, here of `samples`, with its bearings."""
+    scene = scene or library_scene(SCENE)
+    title = "The shaft that is written, and the rings of the bearings on it"
+    page.image(title, run.sketch(*shaft_with_rings(scene)))
 
 
 def matrices(element: Superelement) -> dict[str, Floats]:

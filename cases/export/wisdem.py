@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.export.samples import show
 from fe_drivetrain.common import MissingToolError
 from fe_drivetrain.export import Torsion, shaft_superelement, torsional_damping, torsional_stiffness
 from fe_drivetrain.export.formats import windio
@@ -112,6 +113,7 @@ def run(run: Run, page: Page) -> None:
         f"its own {own.spring:.4g} N m/rad, and the damper with it.",
         "For a uniform shaft its own stiffness is that of the finite-element shaft.",
     )
+    show(run, page, scene)
     page.section("Torsion of the drivetrain")
     page.text(
         "WISDEM's damper is its damping ratio times that of critical with the generator held; ours "
