@@ -1,6 +1,6 @@
 """This project beside the tools that would otherwise be used: time, memory, accuracy."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -8,6 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_method import method, of_motions
 from fe_drivetrain.cases.performance.peer_settings import OURS, plan_of, settings_of
 from fe_drivetrain.common import Progress, interpreters
+from fe_drivetrain.compare import growth_exponent
 from fe_drivetrain.peers import (
     BENCHMARKS,
     EQUAL,
@@ -159,6 +160,13 @@ def of_mesh(rows: Sequence[Row], unknowns: int) -> list[Row]:
     return [row for row in rows if row.unknowns == unknowns]
 
 
+def own(rows: Iterable[Row]) -> Row | None:
+    """This project's row of a mesh: what auto chose, or else the fastest that was asked for."""
+    ours = [row for row in rows if row.variant.tool == OURS]
+    done = sorted((r for r in ours if r.seconds is not None), key=lambda r: r.seconds or 0.0)
+    return next(iter([*(r for r in ours if r.variant.key == "auto"), *done, *ours]), None)
+
+
 def check(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> None:
     """The same answer from every direct solver, and the exact one where it is known."""
     for n in meshes_of(rows):
@@ -166,7 +174,7 @@ def check(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> None:
         direct = [r for r in here if r.variant.kind == "direct" and r.variant.rule == "common"]
         errors = [r.error for r in direct if r.error is not None]
         peers = any(r.variant.tool != OURS for r in here)
-        if len(errors) > 1 and peers and rounds.of_tool(here, OURS, "auto"):
+        if len(errors) > 1 and peers and own(here):
             page.vanishes(
                 f"{benchmark.title}, {n:,} unknowns: largest difference of a direct solver's "
                 "stiffness from their median",
@@ -175,7 +183,8 @@ def check(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> None:
                 why="the same equations: six digits are asked for, round-off is less",
                 source="the other tools, same mesh, same quadrature",
             )
-    done = [r for r in rows if r.variant.tool == OURS and r.variant.key == "auto" and r.found]
+    ours = [own(of_mesh(rows, n)) for n in meshes_of(rows)]
+    done = [r for r in ours if r is not None and r.found]
     if benchmark.exact is None or not done:
         return
     finest = max(done, key=lambda r: r.unknowns)
@@ -206,7 +215,7 @@ def shares(rows: Sequence[Row], plan: Plan) -> list[Record]:
     found: list[Record] = []
     for n in meshes_of(rows):
         here = of_mesh(rows, n)
-        ours = rounds.of_tool(here, OURS, "auto")
+        ours = own(here)
         if n < COMPARED_FROM or ours is None or all(r.variant.tool == OURS for r in here):
             continue
         peer, lean = rounds.fastest_peer(here), rounds.leanest_direct_peer(here)
@@ -230,17 +239,34 @@ def shares(rows: Sequence[Row], plan: Plan) -> list[Record]:
 
 
 def in_a_sentence(benchmark: Benchmark, rows: Sequence[Row]) -> str:
-    """What this project and the fastest other took on every mesh."""
-    parts = []
+    """What this project and the fastest other took on every mesh, and how that grows."""
+    parts, alone = [], all(row.variant.tool == OURS for row in rows)
     for n in meshes_of(rows):
         here = of_mesh(rows, n)
-        ours, peer = rounds.of_tool(here, OURS, "auto"), rounds.fastest_peer(here)
+        ours, peer = own(here), rounds.fastest_peer(here)
         mine = "no answer" if ours is None or ours.seconds is None else f"{ours.seconds:.2g} s"
-        other = "no other in time"
+        other = "" if alone else ", no other in time"
         if peer is not None and peer.seconds is not None:
-            other = f"the fastest other {peer.seconds:.2g} s ({peer.variant.name})"
-        parts.append(f"{n:,} unknowns {mine}, {other}")
-    return f"{benchmark.title}, this project: {'; '.join(parts)}."
+            other = f", the fastest other {peer.seconds:.2g} s ({peer.variant.name})"
+        parts.append(f"{n:,} unknowns {mine}{other}")
+    return f"{benchmark.title}, this project: {'; '.join(parts)}.{growth(rows)}"
+
+
+def growth(rows: Sequence[Row]) -> str:
+    """Exponents of this project's time and memory, from `COMPARED_FROM` on, and the most of it."""
+    done = [
+        (row.unknowns, row.seconds, row.bytes)
+        for row in (own(of_mesh(rows, n)) for n in meshes_of(rows) if n >= COMPARED_FROM)
+        if row is not None and row.seconds and row.bytes
+    ]
+    if len(done) < 2:
+        return ""
+    n, seconds, held = zip(*done, strict=True)
+    return (
+        f" From {min(n):,} to {max(n):,} unknowns time grows with the power "
+        f"{growth_exponent(n, seconds):.2f} of their number and memory with "
+        f"{growth_exponent(n, held):.2f}, up to {max(held) / 2**30:.2g} GiB."
+    )
 
 
 def by_mesh(
@@ -257,7 +283,7 @@ def by_mesh(
 
 def show_time(page: Page, benchmark: Benchmark, rows: Sequence[Row], plan: Plan) -> None:
     """How many times this project's time each tool takes, where it reaches the same error."""
-    ours = {n: rounds.of_tool(of_mesh(rows, n), OURS, "auto") for n in meshes_of(rows)}
+    ours = {n: own(of_mesh(rows, n)) for n in meshes_of(rows)}
 
     def ratio(row: Row, unknowns: int) -> Cell:
         mine = ours[unknowns]

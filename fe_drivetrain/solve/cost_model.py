@@ -58,7 +58,7 @@ class Multigrid(NamedTuple):
     bytes: float
 
 
-MULTIGRID = Multigrid(0.022, 0.0, 2.9e-9, 4.6e-10, 10.6)
+MULTIGRID = Multigrid(0.0, 0.0, 1.33e-9, 3.31e-10, 10.2)
 
 
 class Schwarz(NamedTuple):
