@@ -41,7 +41,7 @@ def test_a_detail_is_removed_from_a_solid_that_sewing_would_lose(tmp_path):
     with gmsh_session():
         write_step(path, [gmsh.model.occ.addTorus(0, 0, 0, 1.0, 0.2)])
     found = survey_of(path, smallest_detail=0.1)
-    assert found["healing"] == "healed: small edges and faces were mended"
+    assert found["healing"] == "healed: small edges and faces were repaired"
     assert found["after"]["solids"] == 1
 
 
@@ -102,13 +102,13 @@ def test_a_fault_is_healed_by_the_least_step_that_mends_it(tmp_path, monkeypatch
 
     monkeypatch.setattr(step_heal, "fault", twice)
     words = survey_of(path)["healing"]
-    assert words == "healed: an edge is odd; degenerated and small edges were mended"
+    assert words == "healed: an edge is odd; degenerated and small edges were repaired"
 
 
 def test_repeated_instances_of_an_assembly_are_read_in_time_linear_in_their_faces(
     tmp_path, monkeypatch
 ):
-    """Faces after gluing are compared with a list made once, not integrated anew for each."""
+    """Faces after gluing are compared with a list made once, not integrated again for each."""
     from fe_drivetrain.foreign import step_solids
 
     path, times = tmp_path / "rows.step", []

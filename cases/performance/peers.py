@@ -1,5 +1,6 @@
 """This project beside the tools that would otherwise be used: time, memory, accuracy."""
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -163,8 +164,8 @@ def of_mesh(rows: Sequence[Row], unknowns: int) -> list[Row]:
 def own(rows: Iterable[Row]) -> Row | None:
     """This project's row of a mesh: what auto chose, or else the fastest that was asked for."""
     ours = [row for row in rows if row.variant.tool == OURS]
-    done = sorted((r for r in ours if r.seconds is not None), key=lambda r: r.seconds or 0.0)
-    return next(iter([*(r for r in ours if r.variant.key == "auto"), *done, *ours]), None)
+    auto = [row for row in ours if row.variant.key == "auto"]
+    return min(auto or ours, key=lambda row: row.seconds or math.inf, default=None)
 
 
 def check(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> None:

@@ -315,13 +315,65 @@ def seat(scene: Scene, name: str) -> float:
     return scene.shaft.seat_diameter(bearing.x, bearing.width, name)
 
 
+def without_shaft(scene: Scene, rings: Mapping[str, bool]) -> tuple[Tied, list[str]]:
+    """Bearing units without the shaft: their mesh and ties, and the parts in it that give.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    rings : Mapping[str, bool]
+        Whether the ring gives, by the name of each bearing.
+    """
+    units, parts = [], []
+    for name, with_ring in rings.items():
+        unit = scene.bearing_unit(name)
+        bearing = unit.bearing.model_copy(update={"bore_diameter": seat(scene, name)})
+        units.append(unit.model_copy(update={"bearing": bearing}))
+        parts += [*([name] if with_ring else []), *unit.housing_parts]
+    giving = [name for name, with_ring in rings.items() if with_ring]
+    return tied(units, mesh_parts(None, units, scene.mesh), giving), parts
+
+
+def attached(scene: Scene, name: str, with_ring: bool, coupling: Coupling) -> Attachment:
+    """How the shaft takes hold of a bearing unit: by a face, from the bearing's centre.
+
+    Parameters
+    ----------
+    scene, name : Scene, str
+        The scene, and which bearing of it.
+    with_ring, coupling : bool, Coupling
+        As of `face_of`.
+    """
+    unit = scene.bearing_unit(name)
+    if with_ring:
+        face = f"{name}.bore"
+    elif unit.rollers is not None:
+        face = f"{name}.outer"
+    else:
+        face = f"{name}.housing.bore"
+    return Attachment(name, face, np.array([unit.bearing.x, 0.0, 0.0]), coupling)
+
+
+def parts_left_out(solid: CoupledSolid, at: Sequence[Attachment]) -> constraints.Constraint:
+    """Hold the nodes that no part has and no attachment takes hold of.
+
+    Parameters
+    ----------
+    solid : CoupledSolid
+        Of some parts of its mesh.
+    at : Sequence[Attachment]
+        Its attachments.
+    """
+    taken = [solid.mesh.face_nodes(one.face) for one in at]
+    nodes = np.arange(len(solid.mesh.points))
+    left_out = np.setdiff1d(nodes, np.concatenate([solid.cells.ravel(), *taken]))
+    return constraints.fixed("parts left out", left_out, solid.n_dofs)
+
+
 def _unit_solid(scene: Scene, name: str, with_ring: bool) -> UnitSolid:
     """A bearing unit's solid, with the ring where that gives."""
-    unit = scene.bearing_unit(name)
-    bearing = unit.bearing.model_copy(update={"bore_diameter": seat(scene, name)})
-    alone = unit.model_copy(update={"bearing": bearing})
-    together = tied([alone], mesh_parts(None, [alone], scene.mesh), [name] if with_ring else [])
-    parts = [*([name] if with_ring else []), *unit.housing_parts]
+    together, parts = without_shaft(scene, {name: with_ring})
     materials = {part: scene.material_of(part) for part in parts}
     stiffness = assembled_parts(together.mesh, materials)
     return UnitSolid(scene, name, with_ring, together, parts, stiffness)
@@ -331,24 +383,12 @@ def _solved_unit(of: UnitSolid, coupling: Coupling, method: str) -> _SolvedUnit:
     """A bearing and its housing without the shaft, see `unit_stiffness`."""
     scene, name, with_ring, together, parts, assembled = of
     unit, mesh = scene.bearing_unit(name), together.mesh
-    if with_ring:
-        face = f"{name}.bore"
-    elif unit.rollers is not None:
-        face = f"{name}.outer"
-    else:
-        face = f"{name}.housing.bore"
-
-    centre = np.array([unit.bearing.x, 0.0, 0.0])
     materials = {part: scene.material_of(part) for part in parts}
-    at = [Attachment(name, face, centre, coupling)]
-    solid = coupled_solid(mesh, materials, at, assembled)
+    at = attached(scene, name, with_ring, coupling)
+    solid = coupled_solid(mesh, materials, [at], assembled)
     n_dofs = solid.n_dofs
     base = f"{name}.housing.base"
-    left_out = np.setdiff1d(
-        np.arange(len(mesh.points)),
-        np.concatenate([solid.cells.ravel(), mesh.face_nodes(face)]),
-    )
-    held = [constraints.fixed("parts left out", left_out, n_dofs)]
+    held = [parts_left_out(solid, [at])]
     springs = bolt_springs(unit, mesh, n_dofs)
     if not springs:
         held.append(constraints.fixed(base, mesh.face_nodes(base), n_dofs))
@@ -366,7 +406,7 @@ def _solved_unit(of: UnitSolid, coupling: Coupling, method: str) -> _SolvedUnit:
         stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
     if unit.bedplate is not None:
         # the base moves as a rigid body, so this is exact
-        lever = wrench_transport(centre - base_centre(unit, mesh)).T
+        lever = wrench_transport(at.position - base_centre(unit, mesh)).T
         softness = lever @ np.diag(1.0 / as_numbers(unit.bedplate)) @ lever.T
         stiffness = np.linalg.solve(np.eye(6) + stiffness @ softness, stiffness)
     stiffness = 0.5 * (stiffness + stiffness.T)

@@ -12,13 +12,17 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
-from fe_drivetrain.fidelity.bearing_units import face_of, seat
-from fe_drivetrain.foreign.assembly import mesh_parts, tied
+from fe_drivetrain.fidelity.bearing_units import (
+    attached,
+    face_of,
+    parts_left_out,
+    seat,
+    without_shaft,
+)
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series
 from fe_drivetrain.response.cached import solved_content
 from fe_drivetrain.response.kept import kept_together
-from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.solve.coupled_solid import coupled_solid, point_motions_of
@@ -63,30 +67,15 @@ def coupled_stiffness(
 
 def _solved(scene: Scene, ways: dict[str, tuple[bool, Coupling]], method: str) -> Floats:
     """(6 k, 6 k) stiffness of k units at their centres."""
-    units, attachments, parts = [], [], []
-    for name, (with_ring, coupling) in ways.items():
-        unit = scene.bearing_unit(name)
-        bore = {"bore_diameter": seat(scene, name)}
-        units.append(unit.model_copy(update={"bearing": unit.bearing.model_copy(update=bore)}))
-        face = f"{name}.bore" if with_ring else f"{name}.housing.bore"
-        centre = np.array([unit.bearing.x, 0.0, 0.0])
-        attachments.append(Attachment(name, face, centre, coupling))
-        parts += [*([name] if with_ring else []), *unit.housing_parts]
-    rings = [name for name, (with_ring, _) in ways.items() if with_ring]
-    together = tied(units, mesh_parts(None, units, scene.mesh), rings)
-    mesh = together.mesh
-    solid = coupled_solid(mesh, {part: scene.material_of(part) for part in parts}, attachments)
-    faces = [mesh.face_nodes(attachment.face) for attachment in attachments]
-    left_out = np.setdiff1d(
-        np.arange(len(mesh.points)), np.concatenate([solid.cells.ravel(), *faces])
-    )
+    together, parts = without_shaft(scene, {name: ring for name, (ring, _) in ways.items()})
+    mesh, at = together.mesh, [attached(scene, name, *way) for name, way in ways.items()]
+    solid = coupled_solid(mesh, {part: scene.material_of(part) for part in parts}, at)
     bases = [base for name in ways if (base := f"{name}.housing.base") in mesh.faces]
     held = [constraints.fixed(base, mesh.face_nodes(base), solid.n_dofs) for base in bases]
-    held += [constraints.fixed("parts left out", left_out, solid.n_dofs)]
-    held += together.conditions(solid.n_dofs)
+    held += [parts_left_out(solid, at), *together.conditions(solid.n_dofs)]
     stiffness = np.linalg.inv(point_motions_of(solid, held, (), method)[1])
     joints = np.zeros(stiffness.shape)
-    for k, unit in enumerate(units):
+    for k, name in enumerate(ways):
         rows = slice(6 * k, 6 * k + 6)
-        joints[rows, rows] = joint_stiffness(unit)
+        joints[rows, rows] = joint_stiffness(scene.bearing_unit(name))
     return in_series(0.5 * (stiffness + stiffness.T), joints)

@@ -81,11 +81,10 @@ def forecast(model: Model) -> list[Forecast]:
     body = condensed_shaft(scene, 2)
     meridian = shaft_level(scene, 2, body=body)
     seconds = time.perf_counter() - start
-    guests = {name for _, *others in scene.coupled_units for name in others}
     units = []
     for unit in scene.bearing_units:
         name = unit.bearing.name
-        if unit.condensed is not None or name in guests:
+        if unit.condensed is not None or name in scene.guests:
             continue
         parts = [*([name] if unit.ring_on_housing else []), *unit.housing_parts]
         for other in next((g[1:] for g in scene.coupled_units if g[0] == name), ()):

@@ -37,7 +37,7 @@ class Step(NamedTuple):
     words : str
         What was done, for users.
     flags : tuple[bool, bool, bool, bool, bool]
-        Degenerated edges, small edges and small faces mended; faces sewn, solids made of shells.
+        Degenerated edges, small edges and small faces repaired; faces sewn, solids made of shells.
     """
 
     words: str
@@ -45,11 +45,11 @@ class Step(NamedTuple):
 
 
 _STEPS = (
-    Step("degenerated edges were mended", (True, False, False, False, False)),
-    Step("degenerated and small edges were mended", (True, True, False, False, False)),
-    Step("small edges and faces were mended", (True, True, True, False, False)),
+    Step("degenerated edges were repaired", (True, False, False, False, False)),
+    Step("degenerated and small edges were repaired", (True, True, False, False, False)),
+    Step("small edges and faces were repaired", (True, True, True, False, False)),
     Step("faces were sewn to solids", (True, False, False, True, True)),
-    Step("small edges and faces were mended, and faces sewn to solids", (True,) * 5),
+    Step("small edges and faces were repaired, and faces sewn to solids", (True,) * 5),
 )
 _REMOVING = [step for step in _STEPS if step.flags[2]]  # where small details are to be removed
 
@@ -59,13 +59,12 @@ class Healed(NamedTuple):
 
     Attributes
     ----------
-    before, after : dict[str, Any]
-        Of `counted`, as read and as taken.
+    after : dict[str, Any]
+        Of `counted`.
     words : str
         What was done, in a sentence.
     """
 
-    before: dict[str, Any]
     after: dict[str, Any]
     words: str
 
@@ -174,13 +173,17 @@ def reason(error: Exception) -> str:
     return " ".join(found.split())[:200].rstrip(".")
 
 
-def heal(name: str, read: Callable[[], None], smallest_detail: float) -> Healed:
+def heal(
+    name: str, before: dict[str, Any], read: Callable[[], None], smallest_detail: float
+) -> Healed:
     """Leave sound solids in the model: as they are read, or with the least healing that they need.
 
     Parameters
     ----------
     name : str
         Of the file, for messages.
+    before : dict[str, Any]
+        Of `counted`, of what is in the model now.
     read : callable
         Puts what is in the file into an empty model.
     smallest_detail : float
@@ -195,9 +198,9 @@ def heal(name: str, read: Callable[[], None], smallest_detail: float) -> Healed:
     InputError
         No step leaves as many solids of the same volume with closed shells.
     """
-    before, wrong = counted(), fault()
+    wrong = fault()
     if not wrong and not smallest_detail > 0:
-        return Healed(before, before, "not healed: its shells are closed, and gmsh meshes them")
+        return Healed(before, "not healed: its shells are closed, and gmsh meshes them")
     steps = _REMOVING if smallest_detail > 0 else _STEPS
     why = f"{wrong}; " if wrong else ""
     after, best = before, None
@@ -207,7 +210,7 @@ def heal(name: str, read: Callable[[], None], smallest_detail: float) -> Healed:
             continue
         best = step
         if not (left := fault()):
-            return Healed(before, after, f"healed: {why}{step.words}")
+            return Healed(after, f"healed: {why}{step.words}")
     if best is None:
         raise InputError(
             f"{name} has {before['words']} of {before['volume']:.9g} mm^3 before and "
@@ -225,7 +228,7 @@ def heal(name: str, read: Callable[[], None], smallest_detail: float) -> Healed:
             f"{name}: {left}, as it is and healed: its faces cross, so repair it in the CAD program"
         )
     # other elements than these coarse ones may do: what is wrong is said where it is meshed
-    return Healed(before, after, f"healed, but not sound: {left}")
+    return Healed(after, f"healed, but not sound: {left}")
 
 
 def _tried(read: Callable[[], None], step: Step, smallest_detail: float) -> dict[str, Any]:

@@ -46,32 +46,30 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
     gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
     _read(path)
-    before, closed = counted(), ""
-    if before["solids"] == 0 and before["faces"]:
-        _refuse_many_faces(name, before["faces"])
-        faces = [t for _, t in gmsh.model.getEntities(2)]
+    faces, closed = [t for _, t in gmsh.model.getEntities(2)], ""
+    if faces and not gmsh.model.getEntities(3):
+        _refuse_many_faces(name, len(faces))
         if not (closed := sewn(lambda: _read(path))):
             open_at = free_edges(faces)
             raise InputError(
-                f"{name} has {before['faces']} faces that enclose no solid"
+                f"{name} has {len(faces)} faces that enclose no solid"
                 f"{f'; {open_at}' if open_at else ''}: close the shell in the CAD program, and "
                 "save it as a solid"
             )
-        before = counted()
-    if not 1 <= before["solids"] <= MOST_SOLIDS:
+    if not 1 <= (n := len(gmsh.model.getEntities(3))) <= MOST_SOLIDS:
         raise InputError(
-            f"{name} has {before['solids']} solids but must have 1 to {MOST_SOLIDS}: save the "
+            f"{name} has {n} solids but must have 1 to {MOST_SOLIDS}: save the "
             "parts that carry, as solids, in a file of their own"
         )
     if part is not None:
         keep(name, part)
     _refuse_many_faces(name, len(gmsh.model.getEntities(2)))
-    box, volume = _box(), counted()["volume"]
-    if abs(volume) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
+    box, before = _box(), counted()
+    if abs(before["volume"]) < _LEAST_VOLUME * math.dist(box[:3], box[3:]) ** 3:
         x, y, z = ((a + b) / 2 for a, b in zip(box[:3], box[3:], strict=True))
         raise InputError(
             f"{name}: its solid round ({x:.4g}, {y:.4g}, {z:.4g}) mm encloses "
-            f"{volume:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
+            f"{before['volume']:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
             "cross; repair it in the CAD program"
         )
     colours = {t: _colour(t) for _, t in gmsh.model.getEntities(2)}
@@ -84,7 +82,7 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
         if part is not None:
             keep(name, part)
 
-    before, after, words = heal(name, again, smallest_detail)
+    after, words = heal(name, before, again, smallest_detail)
     kept = after["faces"] == before["faces"]
     if after["solids"] > 1:
         colours = glue(name, math.dist(_box()[:3], _box()[3:]), colours if kept else {})

@@ -144,10 +144,15 @@ def in_lanes(X: Floats) -> Floats:
     return wide
 
 
+def pattern_of(A: sparse.bsr_array | sparse.csr_array) -> tuple[Index, Index]:
+    """``indptr`` and ``indices`` of a matrix, in the integers that loops are compiled for."""
+    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
+    return A.indptr.astype(np.int32, copy=False), A.indices.astype(np.int32, copy=False)
+
+
 def product(K: sparse.bsr_array, X: Floats) -> Floats:
     """``K X`` (n, m), on all cores: SciPy's product takes one."""
-    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
-    indptr, indices = (i.astype(np.int32, copy=False) for i in (K.indptr, K.indices))
+    indptr, indices = pattern_of(K)
     X = np.ascontiguousarray(X, dtype=np.float64)
     out = np.empty_like(X)
     residual(indptr, indices, K.data, X, np.zeros_like(X), out)

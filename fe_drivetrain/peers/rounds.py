@@ -244,8 +244,3 @@ def leanest_direct_peer(rows: Iterable[Row], ours: str = "this_project") -> Row 
     """The row of another tool's direct solver with the least memory."""
     fit = [r for r in rows if r.variant.tool != ours and r.variant.kind == "direct" and r.found]
     return min(fit, key=lambda r: r.bytes or 0, default=None)
-
-
-def of_tool(rows: Iterable[Row], tool: str, key: str) -> Row | None:
-    """The row of one variant."""
-    return next((r for r in rows if r.variant == Variant(tool, key)), None)

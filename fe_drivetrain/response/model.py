@@ -370,14 +370,13 @@ def needed_faces(scene: Scene) -> list[str]:
     names = ["shaft.front", "shaft.rear", *(f"shaft.band.{name}" for name in scene.seats)]
     if scene.nose is not None:
         names += ["nose.rear", *(f"nose.band.{bearing.name}" for bearing in scene.nose_bearings)]
-    guests = {name for _, *others in scene.coupled_units for name in others}
     for unit in scene.bearing_units:
         name = unit.bearing.name
         names += [f"shaft.seat.{name}"]
         if unit.condensed is not None:
             names += [f"{name}.outer"]
             continue
-        if name not in guests:
+        if name not in scene.guests:
             names += [f"{name}.housing.base"]
         if unit.interface != "bonded":
             names += [f"{name}.outer", f"{name}.housing.bore"]

@@ -205,12 +205,11 @@ def _reactions(
     """Reactions from the residual on constrained degrees of freedom; never from stresses."""
     mesh = model.mesh
     reactions: dict[str, Floats] = {}
-    guests = {name for _, *others in model.scene.coupled_units for name in others}
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         centre = model.points[f"{name}.seat"].position
         standing = model.standing(name)
-        if name in guests:  # less than its parts' own, which carries it
+        if name in model.scene.guests:  # less than its parts' own, which carries it
             part, faces = f"{name}.housing", stood_on(model.scene, name)
             forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
             nodes = np.unique(np.concatenate([mesh.face_nodes(face) for face in faces]))

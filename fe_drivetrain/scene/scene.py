@@ -233,6 +233,11 @@ class Scene(Keys):
         return coupled_units(self.bearing_units)
 
     @property
+    def guests(self) -> frozenset[str]:
+        """Names of bearings whose housings stand on parts of another unit alone."""
+        return frozenset(name for _, *others in self.coupled_units for name in others)
+
+    @property
     def nose_bearings(self) -> tuple[NoseBearing, ...]:
         """The bearings between shaft and nose; none where there is no nose."""
         return () if self.nose is None else self.nose.bearings

@@ -180,7 +180,7 @@ def _alone(facets: Ints) -> Ints:
     # column by column: NumPy takes ten times as long along so short an axis
     low, high, total = (ufunc.reduce(list(facets.T)) for ufunc in (np.minimum, np.maximum, np.add))
     n = int(high.max()) + 1
-    # one number of all: beyond two million nodes it may overflow, and two in 2^64 be alike
+    # one number of all: beyond two million nodes it may overflow, and two in 2^64 be the same
     key = (low * n + (total - low - high)) * n + high
     order = np.argsort(key)
     same = np.diff(key[order]) == 0

@@ -269,7 +269,7 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
 def _in_rows(P: sparse.sparray) -> sparse.csr_array:
     """The matrix in rows, with 32-bit indices as `kernels` is compiled for."""
     P = P.tocsr()
-    indices, indptr = (i.astype(np.int32, copy=False) for i in (P.indices, P.indptr))
+    indptr, indices = kernels.pattern_of(P)
     return sparse.csr_array((P.data, indices, indptr), shape=P.shape)
 
 

@@ -148,7 +148,7 @@ def _joints(
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-    bodies = reduced_stiffness(_added(K, -sums.springs), sums.elimination)
+    bodies = reduced_stiffness(_added(K.copy(), -sums.springs), sums.elimination)
     on_ground = _added(bodies, ground.tocsr())
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 
@@ -177,7 +177,7 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
 def _diagonal_places(K: sparse.bsr_array) -> Ints:
     """Where the diagonal blocks stand; -1 where there are none."""
     nodes = np.arange(len(K.indptr) - 1)
-    return np.asarray(kernels.places(K.indptr, K.indices, nodes, nodes), dtype=np.int64)
+    return np.asarray(kernels.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
 
 
 def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
@@ -186,7 +186,7 @@ def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.b
     diagonal = _diagonal_places(K)
     mean = float(np.einsum("nii->", K.data[diagonal[diagonal >= 0]])) / len(free)
     passed = passed_on(K, T, free)
-    indices, indptr = _short(K)
+    indptr, indices = kernels.pattern_of(K)
     data = np.empty_like(K.data)
     kernels.kept_blocks(indptr, indices, K.data, free.astype(float).reshape(-1, 3), data)
     kept = sparse.bsr_array((data, indices, indptr), shape=K.shape)
@@ -203,31 +203,23 @@ def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.b
     return in_blocks(kept + passed.tocsr().tobsr((3, 3)))
 
 
-def _short(K: sparse.bsr_array) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Columns and rows of a matrix in the integers that `kernels` is compiled for."""
-    # springs leave 64-bit indices in a sum, with which every loop would be compiled once more
-    return K.indices.astype(np.int32, copy=False), K.indptr.astype(np.int32, copy=False)
-
-
 def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
-    """The sum of K and a few entries."""
+    """K with a few entries added: to itself where it has places for them."""
     blocks = few.tobsr((3, 3))
     rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
     columns = blocks.indices.astype(np.int64)
-    indices, indptr = _short(K)
-    places = kernels.places(indptr, indices, rows, columns)
+    places = kernels.places(*kernels.pattern_of(K), rows, columns)
     if (places < 0).any():
         return in_blocks(K + blocks)
-    data = K.data.copy()
-    data[places] += blocks.data
-    return sparse.bsr_array((data, indices, indptr), shape=K.shape)
+    K.data[places] += blocks.data
+    return K
 
 
 def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
     """The matrix in 3x3 blocks, sorted, with 32-bit indices as `kernels` is compiled for."""
     blocks = K.tobsr((3, 3))
     blocks.sort_indices()
-    indices, indptr = _short(blocks)
+    indptr, indices = kernels.pattern_of(blocks)
     return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
 
 
