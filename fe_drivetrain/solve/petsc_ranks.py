@@ -295,8 +295,11 @@ def main(folder: Path) -> None:
     mpi = PETSc.COMM_WORLD.tompi4py()
 
     def line() -> str:
-        found: str = mpi.bcast(sys.stdin.readline() if mpi.rank == 0 else None)
-        return found.strip()
+        found = sys.stdin.readline() if mpi.rank == 0 else ""
+        read = mpi.Ibarrier()
+        while not read.Test():
+            time.sleep(0.002)  # a broadcast would keep a core busy until there is something to do
+        return str(mpi.bcast(found)).strip()
 
     say(ranks=mpi.size)
     if not line():
