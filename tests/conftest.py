@@ -134,16 +134,27 @@ QUICK_VARIABLE = "FE_DRIVETRAIN_QUICK_RUNS"
 
 @dataclass(frozen=True)
 class QuickRun:
-    """Results of quick cases, each run once for all tests."""
+    """Results of quick cases, each run once for all tests.
+
+    Attributes
+    ----------
+    folder : Path
+        Where they are put.
+    made : Path
+        The cache that they take meshes and solutions from, see `kept_folder`.
+    """
 
     folder: Path
+    made: Path
 
     def __call__(self, name: str) -> Results:
         """Results of a case; the test is skipped where a program is missing that it needs."""
         case = case_module.all_cases()[name]
         with filelock.FileLock(self.folder / f"{name.replace('/', '-')}.lock"):
             if not finished_cases([case], self.folder, quick=True):
-                self._run(case)
+                with pytest.MonkeyPatch.context() as patch:
+                    patch.setenv(cache.CACHE_VARIABLE, str(self.made))
+                    self._run(case)
         return read_results(result_folder(self.folder, case) / "results.json")
 
     def _run(self, case: Case) -> None:
@@ -230,11 +241,30 @@ def one_process_a_file(request: pytest.FixtureRequest, shared_folder: Path) -> N
 
 
 @pytest.fixture(scope="session")
-def quick_run(shared_folder: Path) -> QuickRun:
+def kept_folder(request: pytest.FixtureRequest, shared_folder: Path) -> Path:
+    """A cache that stays for the next run of the tests; ``pytest --cache-clear`` empties it.
+
+    Its keys hold the sources of all that makes what is in it. What a test patches they do not, so
+    only what is not patched may be kept here.
+    """
+    kept = request.config.cache
+    return kept.mkdir("fe-drivetrain") if kept else shared_folder / "cache"
+
+
+@pytest.fixture(scope="module")
+def kept_between_runs(kept_folder: Path) -> Iterator[None]:
+    """Keep meshes and solutions of a file whose tests patch nothing for the next run of them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(cache.CACHE_VARIABLE, str(kept_folder))
+        yield
+
+
+@pytest.fixture(scope="session")
+def quick_run(kept_folder: Path, shared_folder: Path) -> QuickRun:
     """Results of the cases that the mark ``quick`` of a test names."""
     folder = Path(os.environ.get(QUICK_VARIABLE) or shared_folder / "quick")
     folder.mkdir(exist_ok=True)
-    return QuickRun(folder)
+    return QuickRun(folder, kept_folder)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -15,6 +15,8 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import followed
 from fe_drivetrain.validation.random_shafts import random_scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 
 @pytest.mark.parametrize("seed", [1, 2, 5])
 def test_the_meridians_band_holds_what_higher_orders_on_finer_meshes_say(seed: int) -> None:

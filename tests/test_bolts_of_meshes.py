@@ -17,6 +17,8 @@ from fe_drivetrain.mesh.files import write
 from fe_drivetrain.mesh.mesh import boundary
 from fe_drivetrain.scene.reading import parse_scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 BEARING = Bearing(kind="ring")
 SCENE = """
 title: bolts

@@ -13,6 +13,8 @@ from fe_drivetrain.scene.materials import Material
 from fe_drivetrain.scene.reading import parse_scene
 from fe_drivetrain.scene.scene import Gearbox, Hub, Scene, Spread
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 ROOT = Path(__file__).parents[1]
 SCENE_DOC = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
 MODELS = (

@@ -11,6 +11,8 @@ from test_docs_pages import BLOCK, DOCS, PAGES, ROOT
 
 from fe_drivetrain.commands.app import app
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 HERE = Path(__file__).parent
 #: Pages whose blocks of Python run below, in order, in one empty folder.
 REFERENCE = {"bearing", "clusters", "dynamics", "gears", "life", "procedure", "transients"}

@@ -23,6 +23,8 @@ sys.path.insert(0, str(DOCS))
 
 from result_pages import limits_page  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("**/*.md"))]
 PAGES = [page for page in PAGES if "generated" not in page.parts]
 

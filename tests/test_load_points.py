@@ -25,6 +25,8 @@ from fe_drivetrain.response.model import Model, build_model, mesh_scene, scene_l
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.scene import Scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 SPAN, AT, OUTER, BORE = 2.0, 0.8, 0.4, 0.1
 WEIGHT = 7000.0
 

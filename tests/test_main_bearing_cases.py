@@ -19,6 +19,8 @@ from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import all_cases, find_cases
 from fe_drivetrain.suite.suite import run_cases
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 ROOT = Path(__file__).parents[1]
 CASES = (
     "bonded",

@@ -29,6 +29,8 @@ from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.nose import Nose
 from fe_drivetrain.scene.scene import Scene, coarser_scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 FRONT, SPAN, ROOT = 1.0, 1.2, 3.0
 SHAFT, NOSE = (3.0, 2.6), (2.2, 1.8)
 ALL = ["rigid"] * 6

@@ -12,6 +12,8 @@ from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.export.formats.summary import read_summary
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 
 def run(*words: str) -> None:
     with pytest.raises(SystemExit) as end:

@@ -17,6 +17,8 @@ sys.path.insert(0, str(DOCS))
 
 import stills  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 
 def run(name: str) -> dict[str, Any]:
     """The names of a notebook after its last cell; Jupyter runs it when the site is built."""

@@ -44,6 +44,8 @@ from fe_drivetrain.scene.arrangements import (
 from fe_drivetrain.scene.reading import change_scene, is_component, library_scene, parse_scene
 from fe_drivetrain.scene.scene import Scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text("utf-8")
 SCHEMA = json.loads(scene_schema())

@@ -20,6 +20,8 @@ from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.suite import run_cases
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 #: Cases that take a scene of the user's; what each needs its bearing to be.
 NEEDS = {
     "bonded": "bonded",

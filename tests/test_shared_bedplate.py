@@ -22,6 +22,8 @@ from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene, parse_scene
 from fe_drivetrain.solve.coupled_solid import coupled_solid, point_motions_of
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 SCENE = """
 title: two housings on one bedplate
 shaft: {{front: -1.0, sections: [{{length: 3.2, outer_diameter: 0.4}}]}}

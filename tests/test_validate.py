@@ -36,6 +36,8 @@ from fe_drivetrain.report.environment import environment
 from fe_drivetrain.report.results import Results, Table, judge, read_results
 from fe_drivetrain.scene.reading import change_scene, library_scene, scene_text
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 ROOT = Path(__file__).parents[1]
 EVIDENCE = (
     "procedure/gaps",
