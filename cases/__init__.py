@@ -6,7 +6,7 @@ declaration says of a case is read without importing it, so it is made of litera
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Literal, TypeVar
 
@@ -18,7 +18,7 @@ def case(
     *,
     source: str,
     alone: bool | Literal["full"] = False,
-    settings: tuple[str, ...] = (),
+    settings: Mapping[str, str] | tuple[str, ...] = (),
     changes: str = "",
 ) -> Callable[[_Function], _Function]:
     """Declare the function that runs the case of its file.
@@ -32,8 +32,10 @@ def case(
     alone : bool or "full"
         It measures time or memory: nothing may run beside it, and nothing it uses comes from the
         cache. "full" where no check of its quick form depends on time: that may run beside others.
-    settings : tuple of str
-        Keys of ``--set`` that are the case's own. The command refuses keys that no case takes.
+    settings : mapping or tuple of str
+        Keys of ``--set`` that are the case's own. The command refuses keys that no case takes. Of
+        each what it is where nobody sets it, as typed, and in brackets what else it may be, as in
+        ``"5 (quick 1; from 1)"``; a word in capitals where it has no value then.
     changes : str
         What other keys change: "scene", or a kind of component, as in "planet_carrier".
 
@@ -53,7 +55,7 @@ def case(
 
 
 def cases(
-    table: str, *, settings: tuple[str, ...] = (), changes: str = ""
+    table: str, *, settings: Mapping[str, str] | tuple[str, ...] = (), changes: str = ""
 ) -> Callable[[_Function], _Function]:
     """Declare the function that runs each case of a table.
 
@@ -62,7 +64,7 @@ def cases(
     table : str
         Name of a YAML file beside the script: by name of the case its title, its source, and what
         else the function takes of it.
-    settings, changes : tuple of str, str
+    settings, changes : mapping or tuple of str, str
         As of `case`, for each of them.
 
     Notes

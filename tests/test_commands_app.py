@@ -59,3 +59,8 @@ def test_a_script_of_a_case_has_the_same_options(
     helped = invoke("--help", main=lambda: main_of_case(case))[1]
     assert "A tiny case" in helped
     assert "--set changes: k" in helped
+    # brackets are no style of text
+    case = Case("group/tiny", "Depth [mm]", "Lee [3]", count, settings={"p": "[a, b] (or one)"})
+    helped = invoke("--help", main=lambda: main_of_case(case))[1]
+    for words in ("Depth [mm]", "Lee [3]", "--set changes: p=[a, b] (or one)"):
+        assert words in helped

@@ -23,7 +23,6 @@ ELSEWHERE = {"../README": "test_docs.py", "gear_rating": "test_docs.py", "loads"
 NEEDS = {
     "import submitit": "a cluster's queue",
     'read_bts("wind.bts")': "a wind of TurbSim",
-    "assembly = roller_assembly(scene": "minutes; `test_roller_assembly.py` has it on small parts",
 }
 
 

@@ -1,13 +1,19 @@
 """Settings of a run: each reaches the cases that take it, and none is ignored."""
 
+import ast
+import importlib
+import re
 from pathlib import Path
 
 import pytest
 
 from fe_drivetrain.cases.performance import peer_settings
+from fe_drivetrain.commands.settings import parse_settings
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.solve.solvers import METHODS
 from fe_drivetrain.suite.case import Case, all_cases
 from fe_drivetrain.suite.result_folders import run_case
+from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.settings import settings_by_case
 from fe_drivetrain.suite.suite import run_cases
 
@@ -76,12 +82,114 @@ def test_cases_that_read_settings_declare_them():
         if file.is_file() and "run.settings" in file.read_text("utf-8"):
             assert case.settings or case.changes, name
     found = all_cases()
-    assert found["performance/peers"].settings == tuple(peer_settings.DEFAULTS)
+    assert tuple(found["performance/peers"].settings) == tuple(peer_settings.DEFAULTS)
     takers = [name for name, case in found.items() if case.changes == "scene"]
     assert {name.partition("/")[0] for name in takers} == {"main_bearing", "fidelity"}
     for name in takers:
         if name.startswith("main_bearing/"):
             assert "solver" in found[name].settings
+
+
+#: A default, or a word in capitals; the one of a quick run; a range.
+WORDS = re.compile(
+    r"(?:(?P<none>FILES?|CORES)|(?P<full>\S+|\[[^]]*\]))"
+    r"(?: \((?:quick (?P<quick>\[[^]]*\]|[^;)]+))?"
+    r"(?:(?:; )?from (?P<low>[\d.]+)(?: to (?P<high>[\d.]+))?)?(?P<more>[^;)]*)\))?"
+)
+
+
+def typed(text):
+    return parse_settings([f"k={text}"])["k"]
+
+
+def said(words):
+    """Default, quick default, and range, as a declaration has it."""
+    found = WORDS.fullmatch(words)
+    assert found, words
+    if found["none"]:
+        return None, None, found["low"] and float(found["low"]), None
+    full = typed(found["full"])
+    quick = typed(found["quick"]) if found["quick"] else full
+    return full, quick, *(typed(found[k]) if found[k] else None for k in ("low", "high"))
+
+
+def read_in(file, tree):
+    """Key, full and quick default, and least value of each setting that a module reads."""
+    module = importlib.import_module(f"fe_drivetrain.cases.{file.parent.name}.{file.stem}")
+    for call in ast.walk(tree):
+        if not isinstance(call, ast.Call) or len(call.args) < 2:
+            continue
+        function = ast.unparse(call.func)
+        if function not in ("run.count", "run.settings.get"):
+            continue
+
+        def value(node, quick):
+            names = vars(module) | {"run": Run({}, quick, Path())}
+            return eval(ast.unparse(node), names)
+
+        least = [value(key.value, False) for key in call.keywords if key.arg == "least"]
+        low = (least or [1])[0] if function == "run.count" else None
+        yield (
+            ast.literal_eval(call.args[0]),
+            *(value(call.args[1], quick) for quick in (False, True)),
+            low,
+        )
+
+
+def test_defaults_that_are_shown_are_those_that_are_used():
+    import fe_drivetrain.cases as package
+
+    (folder,) = map(Path, package.__path__)
+    found = all_cases()
+    compared = set()
+    for file in sorted(folder.glob("*/*.py")):
+        text = file.read_text("utf-8")
+        if "run.count(" not in text and "run.settings.get(" not in text:
+            continue
+        own = f"{file.parent.name}/{file.stem}"
+        for key, full, quick, low in read_in(file, ast.parse(text)):
+            near = [own] if own in found and key in found[own].settings else list(found)
+            near = [n for n in near if n.startswith(file.parent.name) and key in found[n].settings]
+            for name in near:
+                words = found[name].settings[key]
+                compared.add((name, key))
+                if words.startswith("CORES"):
+                    full = quick = None
+                if words.startswith("FILE"):
+                    continue
+                shown = said(words)
+                assert shown[:2] == (full, quick), (name, key)
+                assert low is None or shown[2:] == (low, None), (name, key)
+    for name, case in found.items():
+        for key in case.settings:
+            words = case.settings[key]
+            if name == "performance/peers":
+                full = peer_settings.DEFAULTS[key]
+                quick = peer_settings.QUICK.get(key, full)
+                assert said(words) == (
+                    full,
+                    quick,
+                    *peer_settings.RANGES.get(key, (None, None))[:2],
+                ), key
+            else:
+                assert words.startswith("FILE") or (name, key) in compared, (name, key)
+            if key == "solver":
+                assert re.findall(r"[a-z-]+", words.replace("(or", "")) == list(METHODS)
+    coverage = importlib.import_module("fe_drivetrain.cases.verification.band_coverage")
+    assert [len(seeds) for seeds in coverage.chosen(Run({}, True, Path()))] == [2, 1]
+
+
+@pytest.mark.parametrize("value", ["abc", True, 0, -1, 1.5, float("inf"), float("nan"), [3], None])
+def test_a_number_of_things_is_a_whole_one(value):
+    with pytest.raises(InputError, match=r"^k = .* must be a whole number from 1 on, as in k=5$"):
+        Run({"k": value}, False, Path()).count("k", 5)
+
+
+def test_a_number_of_things_may_be_written_with_an_exponent():
+    assert Run(parse_settings(["k=1e9"]), False, Path()).count("k", 5) == 10**9
+    assert Run({}, False, Path()).count("k", 5) == 5
+    with pytest.raises(InputError, match="from 4 on"):
+        Run({"k": 3}, False, Path()).count("k", 5, least=4)
 
 
 @pytest.mark.parametrize(

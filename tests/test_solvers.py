@@ -1,6 +1,9 @@
 """Every solver behind one interface, on systems whose answer is known."""
 
 import importlib.util
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -192,6 +195,72 @@ def test_missing_solver_says_how_to_install(cube, monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"pip install 'fe-drivetrain\[pardiso\]'"):
         factorise(system, "pardiso")
+
+
+FAULTY = {
+    "pardiso": ("pypardiso", "no library mkl_rt"),
+    "cholmod": ("sksparse", "libcholmod.so.3: cannot open shared object file"),
+}
+
+
+@pytest.fixture
+def put_in_place(tmp_path, monkeypatch):
+    """A function that puts a package of some lines in the place of an optional solver's."""
+    put = []
+
+    def put_lines(name, lines):
+        put.append(name)
+        for module in [m for m in sys.modules if m.partition(".")[0] == name]:
+            monkeypatch.delitem(sys.modules, module)
+        direct_solvers._fault.cache_clear()
+        (tmp_path / name).mkdir()
+        for file in ("__init__.py", "cholmod.py"):
+            (tmp_path / name / file).write_text(lines, "utf-8")
+        monkeypatch.syspath_prepend(tmp_path)
+        monkeypatch.setattr(os, "environ", os.environ.copy())  # loading sets some of it
+
+    yield put_lines
+    for module in [m for m in sys.modules if m.partition(".")[0] in put]:
+        del sys.modules[module]
+    direct_solvers._fault.cache_clear()
+
+
+@pytest.mark.parametrize("method", FAULTY)
+def test_a_solver_that_cannot_be_loaded_is_not_installed(cube, rng, tmp_path, put_in_place, method):
+    name, words = FAULTY[method]
+    tries = tmp_path / "tries"
+    count = f"open({str(tries)!r}, 'a').write('x')\n"
+    put_in_place(name, f"{count}raise OSError({words!r} '. Use another one.')\n")
+    system, elimination = cube
+    assert importlib.util.find_spec(name) is not None
+    assert not direct_solvers.is_installed(method)
+    assert method not in [cost.method for cost in cost_model.predict(system, 3)]
+    x, F = known(system, elimination, rng)
+    for asked in ("auto", "schwarz"):  # the second has a factor of its coarse level
+        found = solve(system, F, asked)
+        assert method not in found.diagnostics.method + found.diagnostics.reason
+        np.testing.assert_allclose(found.x, x, atol=1e-6 * np.abs(x).max())
+    with pytest.raises(InputError, match=rf"'{method}' cannot be loaded \({words}\): \S+ .* or"):
+        factorise(system, method)
+    assert tries.read_text() == "x"  # tried once
+
+
+def test_a_package_without_what_is_used_of_it_is_not_installed(put_in_place):
+    """As of another major version: it loads all the same."""
+    put_in_place("sksparse", "")
+    assert not direct_solvers.is_installed("cholmod")
+    with pytest.raises(InputError, match="cannot import name 'Cholmod"):
+        direct_solvers.require("cholmod")
+
+
+def test_no_solver_is_loaded_before_it_is_asked_for():
+    """Programs begin without the libraries of the optional ones."""
+    code = "import sys, fe_drivetrain.solve.solvers; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, check=True, text=True
+    )
+    assert "scipy" in loaded.stdout.split()
+    assert not {"pypardiso", "sksparse"} & set(loaded.stdout.split())
 
 
 def test_unknown_solver_is_refused(cube):

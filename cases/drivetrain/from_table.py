@@ -33,7 +33,7 @@ MAKERS = {"two masses": two_masses, "a mass for each stage": stage_masses, GEARS
 @case(
     "Torsional frequencies of any drivetrain from its table",
     source="Al-Hamadani 2018, Eq 4.8-4.38; the default is drivetrain D of Table 4.2",
-    settings=("table",),
+    settings={"table": "FILE (otherwise drivetrain D)"},
 )
 def run(run: Run, page: Page) -> None:
     """Frequencies, shapes, shares of energy and damping at three levels of detail."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.commands import Options, digest
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats
 from fe_drivetrain.histories import (
     even_levels,
     rainflow_cycles,
@@ -33,12 +33,16 @@ FILE = 120_000  # samples of a history that goes through the whole of 'loads'
 @case(
     "Speed of statistics, counting, spectra and loops, in samples per second",
     source="measured on this machine; rainflow 3, rfcnt 0.6, pylife 2 where they are installed",
-    settings=("samples",),
+    settings={"samples": "20000000 (quick 1000000; from 524288)"},
     alone=True,
 )
 def run(run: Run, page: Page) -> None:
     """Stream a long history; time each step on coloured noise with 3P, at several lengths."""
-    stream(run, page, 1_000_000 if run.quick else STREAMED)
+    stream(
+        run,
+        page,
+        run.count("samples", 1_000_000 if run.quick else STREAMED, least=PIECE // 2),
+    )
     sizes = SIZES[: 1 if run.quick else 3]
     rows: list[Record] = []
     for size in sizes:
@@ -146,9 +150,6 @@ def peers(load: Floats) -> dict[str, Callable[[], Any]]:
 
 def stream(run: Run, page: Page, samples: int) -> None:
     """Count a history that would not fit into memory; what that takes."""
-    samples = int(float(run.settings.get("samples", samples)))
-    if samples < PIECE // 2:
-        raise InputError(f"samples = {samples}: give {PIECE // 2} or more, as in samples=1e9")
     low, high = np.inf, -np.inf
 
     def pieces() -> Iterator[Floats]:

@@ -51,7 +51,7 @@ MISSING = (
 @case(
     "A surrogate of hub loads beside OpenFAST, by statistics, cycles, multiples and loops",
     source="OpenFAST 5.0.0 with ROSCO 2.10.6, NREL 5 MW and NREL 2.8 MW at 11 and 17 m/s, class B",
-    settings=("loads",),
+    settings={"loads": "FILES (otherwise figures that are stored)"},
 )
 def run(run: Run, page: Page) -> None:
     """Make histories of several seeds for each real one, and name what differs beyond them."""

@@ -84,7 +84,10 @@ OF_THESIS = "in the thesis, whose gearbox has three translational springs only, 
 @case(
     "Bonded main bearing: shares of bearing and gearbox, and what the beam leaves out",
     source="Stirling 2023, PhD thesis, sections 3.2 and 3.3 (DTRB), Table 3.1, Eq 3.18-3.19",
-    settings=("scene", "solver"),
+    settings={
+        "scene": "FILE (otherwise of the library)",
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

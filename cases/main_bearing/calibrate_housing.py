@@ -290,7 +290,9 @@ def method_section(page: Page, families: list[Family], bands_of: dict[str, list[
 @case(
     "Which housing dimensions would give a K_R of 145 and 392 MN m/rad",
     source="Stirling 2023, PhD thesis, section 3.3.1",
-    settings=("solver",),
+    settings={
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

@@ -38,7 +38,10 @@ def quantities(solved: Solved, tilt: Tilt) -> dict[str, float]:
 @case(
     "Mesh convergence of reactions, stiffness and deflection",
     source="Stirling 2023, PhD thesis, section 3.2: 'a convergence study was again undertaken'",
-    settings=("scene", "solver"),
+    settings={
+        "scene": "FILE (otherwise of the library)",
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

@@ -166,7 +166,13 @@ def over_loads(run: Run, page: Page, scene: Scene) -> None:
 @case(
     "Main-bearing study: beam models against FE over hub-load histories",
     source="Stirling 2023, PhD thesis, chapter 3 (Figures 3.6 to 3.15, Table 3.1, Eq 3.1-3.19)",
-    settings=("scene", "loads", "skip", "self_weight", "solver"),
+    settings={
+        "scene": "FILE (otherwise of the library)",
+        "loads": "FILES (otherwise made for the study)",
+        "skip": "0 (seconds of loads, from 0)",
+        "self_weight": "true (or false)",
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

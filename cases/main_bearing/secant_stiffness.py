@@ -133,7 +133,12 @@ def secant_traces(key: str, unit: Reacted) -> list[Any]:
 @case(
     "K_R as a secant over load cases, and the coupling that makes it scatter",
     source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20",
-    settings=("scene", "loads", "skip", "solver"),
+    settings={
+        "scene": "FILE (otherwise of the library)",
+        "loads": "FILES (otherwise made for the study)",
+        "skip": "0 (seconds of loads, from 0)",
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

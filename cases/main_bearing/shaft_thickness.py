@@ -67,7 +67,10 @@ def change_of_beam(loads: Floats, whole: Scene, scene: Scene, tilt: Tilt) -> flo
 @case(
     "Shaft wall of 100, 75 and 50 %: effect on the main-bearing reactions",
     source="Stirling 2023, PhD thesis, section 3.2, Figure 3.4",
-    settings=("scene", "solver"),
+    settings={
+        "scene": "FILE (otherwise of the library)",
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

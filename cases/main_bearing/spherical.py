@@ -125,7 +125,10 @@ def axis_deflection(solved: Solved, load: int, n_slices: int) -> tuple[Floats, F
 @case(
     "Spherical main bearing: reactions, deflection and the joint's three forms",
     source="Stirling 2023, PhD thesis, sections 3.1 and 3.2 (DSRB), Table 3.1, Eq 3.1",
-    settings=("scene", "solver"),
+    settings={
+        "scene": "FILE (otherwise of the library)",
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

@@ -84,7 +84,10 @@ def by_load(free: Solved, series: bands.Series) -> list[Record]:
 @case(
     "Torsional stiffness K_R of bearing and housing, by three estimators",
     source="Stirling 2023, PhD thesis, section 3.3.1, Eq 3.20, Figures 3.13 and 3.14",
-    settings=("scene", "solver"),
+    settings={
+        "scene": "FILE (otherwise of the library)",
+        "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
+    },
     changes="scene",
 )
 def run(run: Run, page: Page) -> None:

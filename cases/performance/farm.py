@@ -10,7 +10,6 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import (
     ExactSum,
     Floats,
-    InputError,
     MissingToolError,
     cores,
     exact_sum,
@@ -47,19 +46,17 @@ def sizes(samples: int) -> list[int]:
 @case(
     "A wind farm's years: cycles, damage and load duration counted in pieces",
     source="ASTM E1049-85 (2017), 5.4.4, over each whole history in one stream",
-    settings=("samples",),
+    settings={"samples": "1000000000 (quick 8000000; from 4)"},
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Count made histories both ways; nothing may differ."""
-    samples = int(float(run.settings.get("samples", QUICK if run.quick else SAMPLES)))
+    samples = run.count("samples", QUICK if run.quick else SAMPLES, least=TURBINES)
     if find_spec("resource") is None:
         raise MissingToolError(
             "this system does not say what memory its processes have taken: run it on Linux"
         )
     each = samples // TURBINES
-    if each < 1:
-        raise InputError(f"samples = {samples}: give {TURBINES} or more, as in samples=1e9")
     piece(np.arange(4.0), COUNTING)  # compiled code is loaded
     with pool(cores()) as found_workers:
         workers = found_workers.count

@@ -12,7 +12,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.studies import TETRAHEDRA, meridian_stiffness
-from fe_drivetrain.common import Floats, InputError, held_to_one_thread
+from fe_drivetrain.common import Floats, held_to_one_thread
 from fe_drivetrain.geometry import Housing, build, gmsh_session
 from fe_drivetrain.mesh import Mesh, inverted_cells, read_gmsh, relax_flat_cells, scaled_jacobians
 from fe_drivetrain.report import trace
@@ -285,15 +285,13 @@ def structured(run: Run, page: Page, quick: bool, repeats: int) -> None:
 @case(
     "Mesh generation beside the solve",
     source="wall time of gmsh's stages, and of the solver on the same mesh",
-    settings=("repeats",),
+    settings={"repeats": "5 (quick 1; from 1)"},
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Time meshing over sizes, by gmsh's options, by part, and swept."""
     factors = QUICK_FACTORS if run.quick else FACTORS
-    repeats = int(run.settings.get("repeats", 1 if run.quick else REPEATS))
-    if repeats < 1:
-        raise InputError(f"repeats = {repeats}: give 1 or more")
+    repeats = run.count("repeats", 1 if run.quick else REPEATS)
     scene = scene_of(run, factors[0] if run.quick else 1.0)
     with run.step("over sizes"):
         beside_solver(run, page, factors, repeats)

@@ -51,17 +51,19 @@ SYMBOLS = ("circle", "square", "diamond", "x")
     "Speed and memory beside other finite-element tools, at equal error",
     source="Measured here: the same meshes, boundary conditions and answers for every tool",
     alone="full",
-    settings=(
-        "tools",
-        "problems",
-        "sizes",
-        "repetitions",
-        "budget",
-        "time_limit",
-        "memory_limit",
-        "threads",
-        "right_hand_sides",
-    ),
+    settings={
+        "tools": "[this_project, scikit_fem.superlu, scikit_fem.pyamg, calculix, ngsolve, "
+        "sfepy.pardiso, felupe.pardiso, felupe.pardiso_own, dolfinx] "
+        "(quick [this_project.auto, scikit_fem.superlu])",
+        "problems": "[shaft, assembly] (quick [shaft])",
+        "sizes": "[10000, 50000, 110000, 300000, 1000000] (quick [10000])",
+        "repetitions": "5 (quick 1; from 1 to 100)",
+        "budget": "6 (from 0 to 3600)",
+        "time_limit": "30 (from 1 to 86400)",
+        "memory_limit": "12 (from 0.5 to 4096)",
+        "threads": "2 (from 1 to 256)",
+        "right_hand_sides": "1 (from 1 to 10)",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Run every tool on every mesh in turns, and compare what they took at equal error."""

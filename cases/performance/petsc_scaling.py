@@ -107,15 +107,15 @@ def row_of(system: ElementSystem, facts: petsc.Facts, iterations: int) -> Record
 @case(
     "Solids in parts: PETSc's GAMG on MPI processes",
     source="this project's own solver, in one process; PETSc (Balay et al. 1997)",
-    settings=("unknowns", "processes"),
+    settings={"unknowns": "200000 (quick 3000; from 1000)", "processes": "CORES (from 1)"},
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """The same bar on more processes, and bars that grow with them."""
     if petsc.interpreter() is None:
         raise MissingToolError(f"no Python here has petsc4py: {petsc.INSTALL}")
-    size = float(run.settings.get("unknowns", QUICK if run.quick else UNKNOWNS))
-    most = int(run.settings.get("processes", cores()))
+    size = float(run.count("unknowns", QUICK if run.quick else UNKNOWNS, least=1000))
+    most = run.count("processes", cores())
     counts = [2**k for k in range(most.bit_length()) if 2**k <= most]
     repeats = 1 if run.quick else REPEATS
     strong: list[Record] = []

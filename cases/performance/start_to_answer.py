@@ -105,7 +105,7 @@ def measured(run: Run, wait: Wait, repeats: int) -> list[Took]:
 @case(
     "Start to answer: what a user waits for, imports and compiling included",
     source="wall time of commands in processes of their own",
-    settings=("repeats",),
+    settings={"repeats": "5 (quick 2; from 1)"},
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
@@ -116,9 +116,7 @@ def run(run: Run, page: Page) -> None:
         raise MissingToolError(
             "this system does not say what time its processes take: run it on Linux"
         ) from None
-    repeats = int(run.settings.get("repeats", QUICK_REPEATS if run.quick else REPEATS))
-    if repeats < 1:
-        raise InputError(f"repeats = {repeats}: give 1 or more")
+    repeats = run.count("repeats", QUICK_REPEATS if run.quick else REPEATS)
     waits = QUICK if run.quick else WAITS
     found = {wait: measured(run, wait, repeats) for wait in waits}
     rows = [row_of(wait, took) for wait, took in found.items()]

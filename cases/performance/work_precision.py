@@ -30,7 +30,7 @@ MEMORY_LIMIT = 12.0
     "Error against time: element, mesh, solver and tolerance",
     source="Exact: GJ/L; meridian in harmonics; Williams 1952 for the order at corners",
     alone="full",
-    settings=("parts",),
+    settings={"parts": "[shaft, housing, growth] (or some of these)"},
 )
 def run(run: Run, page: Page) -> None:
     """Measure every choice, and say which to take."""

@@ -64,8 +64,8 @@ def chosen(run: Run) -> tuple[Sequence[int], Sequence[int]]:
     """Seeds of the shafts, and of those that are solved as solids, too, evenly spread."""
     if run.quick and not run.settings.keys() & {"shafts", "solids"}:
         return QUICK, QUICK_SOLIDS
-    shafts = int(run.settings.get("shafts", SHAFTS))
-    solids = min(int(run.settings.get("solids", SOLIDS)), shafts)
+    shafts = run.count("shafts", len(QUICK) if run.quick else SHAFTS)
+    solids = min(run.count("solids", len(QUICK_SOLIDS) if run.quick else SOLIDS), shafts)
     return range(shafts), [k * shafts // solids for k in range(solids)]
 
 
@@ -123,7 +123,7 @@ def kept(run: Run, seed: int, with_solid: bool) -> list[Record]:
     source="meridians of higher order, finer and graded further; Babuska and Suri 1987, RAIRO "
     "Math. Model. Numer. Anal. 21, 199-238; Zienkiewicz and Zhu 1987, Int. J. Numer. Meth. Eng. "
     "24, 337-357",
-    settings=("shafts", "solids"),
+    settings={"shafts": "200 (quick 2; from 1)", "solids": "25 (quick 1; from 1)"},
 )
 def run(run: Run, page: Page) -> None:
     """Random shafts at level 2, and some of them at level 3, each with its band."""

@@ -133,11 +133,11 @@ def judged(run: Run, seed: int, scene: Scene) -> list[Record]:
     "Coverage: how often the bands of an assembly hold",
     source="the same scenes in much finer meshes; Becker and Rannacher 2001, Acta Numerica 10, "
     "1-102; Eca and Hoekstra 2014, J. Comput. Phys. 262, 104-130",
-    settings=("scenes",),
+    settings={"scenes": "60 (quick 1; from 1)"},
 )
 def run(run: Run, page: Page) -> None:
     """Random scenes on every interface, each figure with its band, against the reference."""
-    count = int(run.settings.get("scenes", QUICK if run.quick else SCENES))
+    count = run.count("scenes", QUICK if run.quick else SCENES)
     rows: list[Record] = []
     for number, (seed, scene) in enumerate(drawn(run, count), 1):
         run.report(f"scenes ({number} of {count})")

@@ -112,12 +112,16 @@ def main_of_case(case: Case) -> None:
         The case to run. Its function takes a `fe_drivetrain.suite.Run` and fills a
         `fe_drivetrain.suite.Page`.
     """
+    from rich.markup import escape
+
     from fe_drivetrain.suite.settings import settings_in_words
 
     script = typer.Typer(**_LOOK)
     taken = settings_in_words(case) or "nothing"
 
-    @script.command(help=f"{case.title}\n\nSource: {case.source}\n\n--set changes: {taken}")
+    words = f"{case.title}\n\nSource: {case.source}\n\n--set changes: {taken}"
+
+    @script.command(help=escape(words))  # "[m]" is no style of text
     def run_script(out: OutFolder = None, set_: CaseSettings = None, quick: Quick = False) -> None:
         typed = replace(case, command=shlex.join(["python", *sys.argv]))
         raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))

@@ -7,9 +7,14 @@ memory. The orderings are those that measured best for elasticity on three-dimen
 
 import importlib.util
 import os
+import sys
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -23,6 +28,13 @@ from fe_drivetrain.common.errors import SINGULAR, InputError
 
 #: The package that each solver needs beside the project's own, fastest solver first.
 PACKAGES = {"pardiso": "pypardiso", "cholmod": "sksparse", "superlu": "scipy"}
+
+#: What a package that is there may lack.
+_LIBRARIES = {
+    "pardiso": "pip install mkl, or set PYPARDISO_MKL_RT to the path of mkl_rt",
+    "cholmod": "apt-get install libsuitesparse-dev, then pip install --force-reinstall "
+    "--no-binary scikit-sparse 'fe-drivetrain[cholmod]'",
+}
 
 
 @dataclass(frozen=True)
@@ -42,8 +54,57 @@ class Factor:
 
 
 def is_installed(method: str) -> bool:
-    """Whether a method is a direct solver that can be used here."""
-    return method in PACKAGES and importlib.util.find_spec(PACKAGES[method]) is not None
+    """Whether a method is a direct solver that can be used here: it is there, and it loads."""
+    return method in PACKAGES and _is_there(method) and not _fault(method)
+
+
+def require(method: str) -> None:
+    """Refuse a direct solver that cannot be used here.
+
+    Parameters
+    ----------
+    method : str
+        One of `PACKAGES`.
+
+    Raises
+    ------
+    InputError
+        Its package is not installed, or a library that it needs cannot be loaded.
+    """
+    others = "or choose 'multigrid' or 'superlu'"
+    if not _is_there(method):
+        raise InputError(
+            f"solver {method!r} is not installed: pip install 'fe-drivetrain[{method}]', {others}"
+        )
+    if fault := _fault(method):
+        raise InputError(
+            f"solver {method!r} cannot be loaded ({fault}): {_LIBRARIES[method]}, {others}"
+        )
+
+
+def _is_there(method: str) -> bool:
+    return importlib.util.find_spec(PACKAGES[method]) is not None
+
+
+@cache
+def _fault(method: str) -> str:
+    """What keeps a package that is there from being loaded, which is tried once; else empty."""
+    try:
+        {"pardiso": _load_pardiso, "cholmod": _cholmod_functions}.get(method, tuple)()
+    except Exception as error:  # another project's package and its libraries: it may be any
+        first, _, _ = str(error).partition("\n")[0].partition(". ")
+        return first.rstrip(".") or type(error).__name__
+    return ""
+
+
+def _load_pardiso() -> None:
+    # read when it is loaded: its idle threads would spin for 200 ms, beside our loops
+    os.environ.setdefault("KMP_BLOCKTIME", "1")
+    # Unless it is told the place, it looks through all files of the environment, at each solver.
+    place = "PYPARDISO_MKL_RT"
+    for library in sorted(Path(sys.prefix).glob("lib/libmkl_rt.*"))[:1]:
+        os.environ.setdefault(place, str(library))
+    os.environ.setdefault(place, import_module("pypardiso").ps.libmkl._name)
 
 
 def factorise(K: sparse.bsr_array, method: str) -> Factor:
@@ -59,8 +120,9 @@ def factorise(K: sparse.bsr_array, method: str) -> Factor:
     Raises
     ------
     InputError
-        The matrix is singular, or there is not enough memory.
+        The solver cannot be used here, the matrix is singular, or there is not enough memory.
     """
+    require(method)
     try:
         return {"superlu": _superlu, "pardiso": _pardiso, "cholmod": _cholmod}[method](K)
     except MemoryError as error:
@@ -84,16 +146,12 @@ def _superlu(K: sparse.bsr_array) -> Factor:
 
 
 def _pardiso(K: sparse.bsr_array) -> Factor:
-    # read when it is loaded: its idle threads would spin for 200 ms, beside our loops
-    os.environ.setdefault("KMP_BLOCKTIME", "1")
     from pypardiso import PyPardisoSolver
     from pypardiso.pardiso_wrapper import PyPardisoError
 
     upper = sparse.csr_matrix(sparse.triu(K.tocsr(), format="csr"))
     upper.sort_indices()
     solver = PyPardisoSolver(mtype=2)  # real, symmetric, positive definite
-    # Each new one looks for MKL through the file system, unless its place is given.
-    os.environ.setdefault("PYPARDISO_MKL_RT", solver.libmkl._name)
 
     def apply(F: Floats) -> Floats:
         try:
@@ -112,15 +170,20 @@ def _pardiso(K: sparse.bsr_array) -> Factor:
     return Factor(apply, 1024 * int(held))
 
 
-def _cholmod(K: sparse.bsr_array) -> Factor:
+def _cholmod_functions() -> tuple[Callable[..., Any], type[Exception]]:
     from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
 
+    return cholesky, CholmodNotPositiveDefiniteError
+
+
+def _cholmod(K: sparse.bsr_array) -> Factor:
+    cholesky, not_definite = _cholmod_functions()
     A = sparse.csc_matrix(K)
     try:
         # Its supernodes are small: OpenBLAS with two threads took up to thirty times as long.
         with threadpool_limits(1):
             factor = cholesky(A, ordering_method="metis", mode="supernodal")
-    except CholmodNotPositiveDefiniteError as error:
+    except not_definite as error:
         raise InputError(SINGULAR) from error
     # To ask it for L would copy it, which at a million unknowns is what no longer fits.
     return Factor(factor, 8 * entries_of_factor(A.indptr, A.indices, np.asarray(factor.P())))

@@ -216,11 +216,6 @@ def factorise(
         chosen, *others = predict(system, n_rhs)
         method = chosen.method
         reason = f"{chosen}; {', '.join(map(str, others))}" if others else f"{chosen}"
-    if method in direct_solvers.PACKAGES and not direct_solvers.is_installed(method):
-        raise InputError(
-            f"solver {method!r} is not installed: pip install 'fe-drivetrain[{method}]', "
-            "or choose 'multigrid' or 'superlu'"
-        )
     start = time.perf_counter()
     if method in petsc.METHODS:
         ranks = petsc.Ranks(system, method)

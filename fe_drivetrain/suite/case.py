@@ -50,8 +50,9 @@ class Case:
     alone : bool or "full"
         It measures time or memory: nothing may run beside it, and nothing it uses comes from the
         cache. "full" where no check of its quick form depends on time: that may run beside others.
-    settings : tuple of str
-        Keys of ``--set`` that are the case's own.
+    settings : mapping or tuple of str
+        Keys of ``--set`` that are the case's own, and of each what it is where nobody sets it, in
+        the words that ``--help`` shows after it.
     changes : str
         What its other keys change: "scene", or a kind of component, as in "planet_carrier"; empty
         where it takes no others.
@@ -64,7 +65,7 @@ class Case:
     source: str
     run: Callable[[Run, Page], None]
     alone: bool | Literal["full"] = False
-    settings: tuple[str, ...] = ()
+    settings: Mapping[str, str] | tuple[str, ...] = ()
     changes: str = ""
     command: str = ""
 

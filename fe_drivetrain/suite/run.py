@@ -14,6 +14,7 @@ from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
 import numpy as np
 
 from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import arithmetic, program_hash
 from fe_drivetrain.common.progress import Progress, silent
@@ -106,6 +107,35 @@ class Run:
             cache.keep("figures", full, before)
         found: _T = json.loads(str(before["figures"]))
         return found
+
+    def count(self, key: str, default: int, least: int = 1) -> int:
+        """A setting that is a whole number.
+
+        Parameters
+        ----------
+        key : str
+            Its name.
+        default : int
+            What it is where the user does not say.
+        least : int
+            The smallest that makes sense.
+
+        Returns
+        -------
+        int
+
+        Raises
+        ------
+        InputError
+            It is no whole number, or less than that.
+        """
+        value = self.settings.get(key, default)
+        number = not isinstance(value, bool) and isinstance(value, int | float)
+        if not number or not least <= value < np.inf or value != int(value):
+            raise InputError(
+                f"{key} = {value!r} must be a whole number from {least} on, as in {key}={default}"
+            )
+        return int(value)
 
     def sketch(self, *bodies: Body | Shaft | list[Faces], file: str = "model.png") -> str:
         """Write a small picture of bodies, as meshed, shafts or surfaces; its name for a page."""

@@ -60,8 +60,12 @@ def changeable(case: Case) -> Sequence[str]:
 
 
 def settings_in_words(case: Case) -> str:
-    """What ``--set`` takes for a case; empty where it takes nothing."""
-    ways = [", ".join(case.settings)] if case.settings else []
+    """What ``--set`` takes for a case, with what each setting is otherwise; empty for nothing."""
+    given = case.settings
+    if isinstance(given, Mapping):
+        ways = [f"{key}={otherwise}" for key, otherwise in given.items()]
+    else:
+        ways = [", ".join(given)] if given else []
     if case.changes:
         ways.append(f"any value of its {case.changes.replace('_', ' ')} by its dotted key")
     return "; ".join(ways)
