@@ -40,7 +40,11 @@ from fe_drivetrain.suite.result_folders import new_folder, run_case
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.suite import run_cases
 
-pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are forked")
+pytestmark = [
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="children are forked"),
+    # since Python 3.12; they are idle threads of BLAS and pytest-xdist, which no child needs
+    pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning"),
+]
 
 OLD, NEW, MISSING = "old", "new", "missing"
 UNHARMED = 50

@@ -130,7 +130,8 @@ def _condensed(
     solid = coupled_solid(mesh, {part: scene.material_of(part)}, [seat])
     patches = foot_patches(mesh, name, size, solid.n_dofs)
     springs = bolt_springs(unit, mesh, solid.n_dofs)
-    turn = sparse.block_diag([*patches.directions, *[np.eye(6)] * len(springs)], format="csr")
+    directions = [*patches.directions, *[np.eye(6)] * len(springs)]
+    turn = sparse.block_diag([sparse.csr_array(d) for d in directions], format="csr")
     motions = [*(p.motion[:3] for p in patches.points), *(p.motion for p, _ in springs)]
     rows = turn @ sparse.vstack(motions, format="csr")
     held = constraints.held(f"{name} seat", solid.points[0], range(6))

@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import block_diag
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.interfaces.constraints import Elimination, ReferencePoint
@@ -228,7 +229,7 @@ class Cut:
                 [sparse.csr_array((0, len(dofs))), *(point.motion for point, _ in springs)],
                 format="csr",
             )
-            stiffness = sparse.block_diag([np.zeros((0, 0)), *(k for _, k in springs)]).toarray()
+            stiffness = block_diag(np.zeros((0, 0)), *(k for _, k in springs))
             trace = float(((motions @ motions.T).toarray() * stiffness).sum())
             reduced = (motions @ elimination.T).tocsc()[:, dofs].tocsr()
             found.append((reduced, stiffness, trace))
