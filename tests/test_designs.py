@@ -7,7 +7,7 @@ import pytest
 from conftest import coarse_scene
 
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.design_page import why_solid
+from fe_drivetrain.commands.design_page import what_level_two_lacks, why_solid
 from fe_drivetrain.commands.designs import parse_values
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity import designs as designs_module
@@ -91,6 +91,15 @@ def test_a_change_from_zero_is_all_of_the_larger() -> None:
     assert np.isinf(one.changes).all()
     assert one.ranks == pytest.approx([1.0])
     assert one.rank_bands == pytest.approx([0.1])
+
+
+def test_a_band_is_not_that_of_a_value_which_is_round_off() -> None:
+    nothing = Value(np.array([2e-11]), 3.8, 4, (0.01, 0.01))
+    load = Value(np.array([5e3]), 0.002, 4, (0.02, 0.03))
+    one = Difference(Quantity("main_bearing.My"), (nothing, load))
+    assert what_level_two_lacks(one, ["a", "b"])["± at level 4 [%]"] == pytest.approx(0.2)
+    both = Difference(Quantity("main_bearing.My"), (load, Value(load.values, 0.004, 4, (0, 0))))
+    assert what_level_two_lacks(both, ["a", "b"])["± at level 4 [%]"] == pytest.approx(0.4)
 
 
 def test_signs_are_those_of_a_growing_value() -> None:

@@ -41,8 +41,6 @@ from fe_drivetrain.uncertainty.resolver import Resolver, shaft_content, unit_con
 from fe_drivetrain.uncertainty.response_surface import touching, unit_surface
 from fe_drivetrain.uncertainty.sampling import check_spreads, nominal_value, with_values
 
-pytestmark = pytest.mark.usefixtures("kept_between_runs")
-
 BEARING = "main_bearing"
 STEEL, IRON = "materials.steel.youngs_modulus", "materials.ductile_iron.youngs_modulus"
 DIAMETER = "shaft.sections.0.outer_diameter"

@@ -24,7 +24,7 @@ _NAMED, _CURVES = 3, 6
 _FROM_ZERO = 0.9
 #: The level of the assembly of solids.
 _ASSEMBLY = 4
-#: Round-off of the other value.
+#: Share of the largest value that is round-off.
 _NOTHING = 1e-6
 
 
@@ -100,7 +100,7 @@ def compared(
         page.text(why_solid(solid[0], names, tolerance))
         page.table(
             "What level 2 may be wrong by, of the quantities that need level 4",
-            [_short_row(one, names) for one in solid],
+            [what_level_two_lacks(one, names) for one in solid],
         )
     page.text(
         "A change is relative to the value of the first design. Its band is what both values may "
@@ -137,8 +137,8 @@ def _sentence(one: Difference, names: Sequence[str]) -> str:
     signed = "+" if len(one.values[0].values) == 1 else ""
     text = f"{change:{signed}.3g} % ± {band:.2g} %"
     if one.ranks[k] > _FROM_ZERO:
-        before, after = one.values[0].size, one.values[k + 1].size
-        text = f"from {_number(before, after)} to {_number(after, before)} {_unit(one)}"
+        sizes = _sizes(one)
+        text = f"from {_number(sizes[0])} to {_number(sizes[k + 1])} {_unit(one)}"
     level = one.values[0].level
     return (
         f"{one.quantity.name} of {names[k + 1]} against {names[0]}: {text} (level {level}, "
@@ -180,7 +180,16 @@ def _at_level_two(one: Difference, names: Sequence[str]) -> tuple[str, float, fl
     return names[worst], 100 * housing, 100 * shaft
 
 
-def _short_row(one: Difference, names: Sequence[str]) -> Record:
+def what_level_two_lacks(one: Difference, names: Sequence[str]) -> Record:
+    """A row of what level 2 may be wrong by, and level 4 where a value is more than round-off.
+
+    Parameters
+    ----------
+    one : Difference
+        At level 4.
+    names : sequence of str
+        Of the designs.
+    """
     name, housing, shaft = _at_level_two(one, names)
     return {
         "quantity": one.quantity.name,
@@ -188,12 +197,20 @@ def _short_row(one: Difference, names: Sequence[str]) -> Record:
         "of it shape of the seats [%]": housing,
         "of it beam for the shaft [%]": shaft,
         "largest in": name,
-        "± at level 4 [%]": 100 * max(value.band for value in one.values),
+        "± at level 4 [%]": 100
+        * max((v.band for v, n in zip(one.values, _sizes(one), strict=True) if n), default=0.0),
     }
 
 
-def _number(value: float, other: float) -> str:
-    return "nothing" if abs(value) < _NOTHING * abs(other) else f"{value:.3g}"
+def _sizes(one: Difference) -> list[float]:
+    """The value of each design, zero where it is the round-off of the largest."""
+    sizes = [value.size for value in one.values]
+    least = _NOTHING * max(map(abs, sizes))
+    return [0.0 if abs(size) < least else size for size in sizes]
+
+
+def _number(value: float) -> str:
+    return f"{value:.3g}" if value else "nothing"
 
 
 def _unit(one: Difference) -> str:
@@ -205,7 +222,7 @@ def _rows(found: Sequence[Difference], names: Sequence[str]) -> list[Record]:
     for one in found:
         vector = len(one.values[0].values) > 1
         row: Record = {"quantity": f"{one.quantity.name} [{'-' if vector else one.quantity.unit}]"}
-        row |= {name: v.size for name, v in zip(names, one.values, strict=True)}
+        row |= dict(zip(names, _sizes(one), strict=True))
         for name, change, band in zip(names[1:], _sensible(one), one.bands, strict=True):
             of = f"{name}: " if len(names) > 2 else ""
             row[f"{of}change [%]"] = None if change is None else 100 * change
