@@ -1,5 +1,6 @@
 """Designs side by side: what changes, by how much, and which level says so."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,15 @@ from conftest import coarse_scene
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.commands.design_page import what_level_two_lacks, why_solid
 from fe_drivetrain.commands.designs import parse_values
+from fe_drivetrain.commands.studies import run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity import designs as designs_module
 from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import Difference, Value, compare_designs, scene_changes
+from fe_drivetrain.report.results import read_results
 from fe_drivetrain.scene.reading import change_scene
+
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
 BORE = "shaft.sections.0.inner_diameter"
 #: What level 2 knows of a coarse scene.
@@ -158,3 +163,13 @@ def test_the_command_shows_a_sweep(tmp_path: Any, capsys: pytest.CaptureFixture[
     assert ended.value.code == 0
     assert "hub.stiffness.rx of 0.25 against 0.1: -" in capsys.readouterr().out
     assert "what changes with" in (tmp_path / "report.html").read_text()
+
+
+def test_a_page_names_all_its_scenes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def said(*scenes: str) -> str:
+        run_on_scene("compare", scenes, "Title", tmp_path, lambda run, page: None)
+        return str(read_results(tmp_path / "results.json").source)
+
+    assert said("a/solid.yaml") == "the scene solid"
+    assert said("a/solid.yaml", "b/bored.yaml") == "the scenes solid and bored"
+    assert said("a/solid.yaml", "b/solid.yaml") == "the scenes a/solid.yaml and b/solid.yaml"

@@ -31,6 +31,8 @@ from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import parse_scene, read_scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 BEARING = Bearing(kind="ring")
 COARSE = MeshSizes(shaft=0.3, bearing=0.12, housing=0.14, bearing_edge=0.12, elements_per_turn=8)
 SCENE = """

@@ -13,6 +13,8 @@ from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.reading import parse_scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 FORMS = ("sliding", "averaged", "rigid")
 SCENE = """
 title: a spherical bearing in its own housing

@@ -37,6 +37,8 @@ from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene, parse_scene, read_scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 BEARING = Bearing(kind="ring")
 SIZES = MeshSizes(shaft=0.3, bearing=0.2, housing=0.25, bearing_edge=0.2, elements_per_turn=8)
 

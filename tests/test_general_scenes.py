@@ -17,6 +17,8 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 SIZES = {"mesh.elements_per_turn": 8, "mesh.housing": 0.15, "mesh.bearing": 0.12}
 #: The library's main bearing on a shaft of two diameters.
 STEPS = {

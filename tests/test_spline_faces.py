@@ -20,6 +20,8 @@ from fe_drivetrain.geometry.step_files import write_step
 from fe_drivetrain.mesh.measures import area, volume
 from fe_drivetrain.scene.reading import parse_scene
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 BEARING = Bearing(kind="ring")
 SIZES = MeshSizes(shaft=0.3, bearing=0.2, housing=0.25, bearing_edge=0.2, elements_per_turn=8)
 SCENE = """

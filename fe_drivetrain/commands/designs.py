@@ -89,13 +89,12 @@ def compare_command(
             for scene in designs.values():
                 one.check(scene)
         share = parse_tolerance(tolerance)
-        stem = "-".join(dict.fromkeys(Path(name).stem for name in scenes))
         title = f"{' against '.join(reversed(scenes))}: what changes"
         if varied is not None:
             title = f"{scenes[0]}: what changes with {varied.key}"
         return run_on_scene(
             "compare",
-            stem,
+            scenes,
             title,
             out,
             lambda run, page: compared(run, page, designs, asked, share, given, varied),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -52,7 +52,7 @@ def check_command(scene: SceneName, out: OutFolder = None, set_: SceneSettings =
 
         title = f"{found.title}: what the scene is, and what it costs"
         results, page = _results_of_scene(
-            "check", scene, title, out, lambda run, page: checked(run, page, found)
+            "check", [scene], title, out, lambda run, page: checked(run, page, found)
         )
         write(sys.stdout, tables_text(results, page))
         return PASSED
@@ -117,7 +117,7 @@ def study_command(
         own = None if loads is None else own_loads(loads, skip, found, names)
         return run_on_scene(
             "study",
-            scene,
+            [scene],
             f"{found.title}: stiffness, reactions, and beams against FE",
             out,
             lambda run, page: studied(run, page, found, own, slope or SLOPES, weight),
@@ -172,7 +172,7 @@ def advise_command(
         share = parse_tolerance(tolerance)
         return run_on_scene(
             "advise",
-            scene,
+            [scene],
             f"{found.title}: the model level that {name} needs",
             out,
             lambda run, page: advised(run, page, found, asked, share, to_the_top),
@@ -250,7 +250,7 @@ def uncertainty_command(
         sobol_samples = 2 ** (samples.bit_length() - 1) if sobol else 0
         return run_on_scene(
             "uncertainty",
-            scene,
+            [scene],
             f"{found.title}: uncertainty of the results",
             out,
             lambda run, page: uncertain(
@@ -273,7 +273,7 @@ def uncertainty_command(
 
 def run_on_scene(
     command: str,
-    scene: str,
+    scenes: Sequence[str],
     title: str,
     out: Path | None,
     study: Callable[[Run, Page], None],
@@ -286,8 +286,8 @@ def run_on_scene(
     ----------
     command : str
         What is done, for the folder.
-    scene : str
-        Name or file of the scene, for the folder.
+    scenes : sequence of str
+        Names or files of the scenes, for the folder and the source.
     title : str
         Of the page.
     out : Path or None
@@ -305,14 +305,14 @@ def run_on_scene(
         The exit status.
     """
     with scheduled_by(scheduler):
-        results, page = _results_of_scene(command, scene, title, out, study, quick)
+        results, page = _results_of_scene(command, scenes, title, out, study, quick)
     write(sys.stdout, results_text(results, page))
     return PASSED if results.passed else FAILED
 
 
 def _results_of_scene(
     command: str,
-    scene: str,
+    scenes: Sequence[str],
     title: str,
     out: Path | None,
     study: Callable[[Run, Page], None],
@@ -322,8 +322,12 @@ def _results_of_scene(
     from fe_drivetrain.suite.case import Case
     from fe_drivetrain.suite.result_folders import run_case
 
-    name = Path(scene).stem
-    case = Case(f"{command}/{name}", title, f"the scene {name}", study, command=as_typed())
+    stems = [Path(scene).stem for scene in scenes]
+    unique = dict.fromkeys(stems)
+    name = "-".join(unique)
+    names = " and ".join(stems if len(unique) == len(stems) else scenes)
+    source = f"the scene{'s' * (len(scenes) > 1)} {names}"
+    case = Case(f"{command}/{name}", title, source, study, command=as_typed())
     folder = Path("reports", command, name) if out is None else out
     with show_steps() as report:
         results = run_case(case, folder.resolve(), quick=quick, report=report)
