@@ -1,9 +1,32 @@
-"""Memory of this process, on systems that say."""
+"""Memory of this process: how much it took, and that it uses again what it has."""
 
+import ctypes
+import os
 import sys
 from pathlib import Path
 
 STATUS = Path("/proc/self/status")
+
+# Of mallopt(3): from which size on an array is mapped by itself, and from how much free memory on
+# the system gets it back.
+_OPTIONS = {"MALLOC_MMAP_THRESHOLD_": -3, "MALLOC_TRIM_THRESHOLD_": -1}
+_MOST = 2**30
+
+
+def keep_freed_memory() -> None:
+    """Let new arrays take the memory of freed ones, up to 1 GiB, before the system is asked.
+
+    GNU's C library hands the memory of large arrays back to the system at once, which then clears
+    every page of the next array anew: at 10 k unknowns a fifth of a solve, and most of the time
+    that the kernel takes at a million. A user's ``MALLOC_MMAP_THRESHOLD_`` or
+    ``MALLOC_TRIM_THRESHOLD_`` stays, and other C libraries are left as they are.
+    """
+    if sys.platform != "linux":
+        return
+    library = ctypes.CDLL(None)
+    for name, number in _OPTIONS.items():
+        if hasattr(library, "mallopt") and name not in os.environ:
+            library.mallopt(number, _MOST)
 
 
 def peak_memory() -> int | None:

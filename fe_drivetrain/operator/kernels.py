@@ -4,7 +4,8 @@ Matrices are block CSR with 3x3 blocks, one block row a node (``indptr``, ``indi
 in ``scipy.sparse.bsr_array``); or ``data`` is flat, and has each node's three rows one after the
 other, see `by_rows`. Right-hand sides are the columns of C-ordered (n, m) arrays, and every loop
 takes all of them in one pass over the matrix. Compiled by numba at the first call (seconds), then
-kept in its cache on disk.
+kept in its cache on disk. With the import, memory of freed arrays stays for the next ones, see
+`keep_freed_memory`.
 """
 
 from typing import Any
@@ -15,12 +16,15 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.memory import keep_freed_memory
 from fe_drivetrain.operator.vectors import LANES, load, plus, store, times
 
 Index = NDArray[np.int32]
 
 # Nodes that a thread takes at once have one place for what their neighbours do.
 _PIECES = 32
+
+keep_freed_memory()
 
 
 @njit(cache=True)
