@@ -96,7 +96,7 @@ def assemble(
     kind = element_kind(cells.shape[1])
     pattern = pattern or sparsity(cells, n_blocks)
     nodes = np.ascontiguousarray(cells, dtype=np.int32)
-    # NumPy asks for large pages for `empty`, not for `zeros`, whose small ones cost a third of a solve
+    # NumPy asks for large pages for `empty`, not for `zeros`, whose small ones cost a third of all
     data = np.empty((len(pattern.indices), 3, 3))
     data.fill(0.0)
     if kind.n_corners == 4:
