@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -366,6 +367,22 @@ def test_rounds_are_interleaved_and_slow_rows_run_less_often(tmp_path):
     assert [len(r.found) for r in rows] == [3, 1]
     assert order[:2] == [quick, slow]
     assert order[2:] == [quick, quick]
+
+
+def test_no_tool_always_runs_after_the_same_other(tmp_path):
+    own = [Variant("this_project", name) for name in ("auto", "multigrid", "superlu")]
+    tools = [*own, Variant("ngsolve", "multigrid")]
+    order = []
+
+    def start(variant, problem, warm_up, limits, interpreter):
+        order.append(variant)
+        return Outcome("done", row(variant, 1, 1.0).found[0])
+
+    lasting = rounds.Plan(5, 100.0, plan().limits)
+    rounds.run_rounds([(t, "") for t in tools], tmp_path, tmp_path, 1000, lasting, start=start)
+    before = {t: {a for a, b in pairwise(order) if b == t} - {t} for t in tools}
+    assert len(order) == 20
+    assert all(len(others) > 1 for others in before.values())
 
 
 def test_a_row_in_trouble_is_left_and_larger_meshes_not_begun(tmp_path):

@@ -119,6 +119,9 @@ def run_rounds(
 ) -> list[Row]:
     """Run every tool on one mesh, once a round, in an order that turns from round to round.
 
+    Every other round goes backwards: what ran before leaves the machine's memory in pieces
+    or whole, so no tool should always come after the same other.
+
     Parameters
     ----------
     variants : sequence of tuple
@@ -142,7 +145,8 @@ def run_rounds(
         row.trouble, row.least_seconds = foreseen(row, earlier, plan.limits)
     for number in range(plan.repetitions):
         turn = number * len(variants) // plan.repetitions
-        for variant, interpreter in [*variants[turn:], *variants[:turn]]:
+        order = [*variants[turn:], *variants[:turn]][:: -1 if number % 2 else 1]
+        for variant, interpreter in order:
             row = rows[variant]
             if row.trouble or (row.found and number >= plan.runs(row.found[0]["seconds"])):
                 continue
