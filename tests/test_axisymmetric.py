@@ -31,6 +31,8 @@ from fe_drivetrain.revolution.rigid_seats import (
 from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.solve.solid import solve_solid
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 STEEL = MATERIALS["steel"]
 CORK = Material(youngs_modulus=1e10, poisson_ratio=0.0, density=1000.0)
 

@@ -18,6 +18,8 @@ from fe_drivetrain.foreign.step_solid import opened, seat_cylinders
 from fe_drivetrain.geometry import Bearing, ForeignHousing, MeshSizes, gmsh_session, write_sample
 from fe_drivetrain.geometry.step_files import write_step
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 SMALL = Limits(file=5_000_000, memory=1_500_000_000, seconds=5, result=20_000_000)
 TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
 

@@ -27,6 +27,8 @@ from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.mesh.symmetry import turns
 from fe_drivetrain.scene.component import CarrierComponent, material_of
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 
 @pytest.fixture(scope="module")
 def carrier() -> CarrierComponent:

@@ -20,6 +20,8 @@ from fe_drivetrain.fidelity.shafts import beam_shaft, meridian_shaft
 from fe_drivetrain.scene.reading import library_scene
 from fe_drivetrain.solve.condensation import keep_points
 
+pytestmark = pytest.mark.usefixtures("kept_between_runs")
+
 #: What the extra of a format installs.
 IMPORTS = {"hdf5": "h5py", "nastran": "pyNastran"}
 
