@@ -1,7 +1,5 @@
 """The program itself: version, help without heavy imports, and the script of a case."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +7,7 @@ import pytest
 from tiny_case import Result, count
 
 from fe_drivetrain.commands.app import main_of_case
+from fe_drivetrain.common.interpreter import run_python
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.suite.case import Case
 
@@ -39,9 +38,8 @@ def test_help_and_list_import_nothing_heavy(argument: str) -> None:
         "finally:\n"
         f"    print([m for m in {heavy} if m in sys.modules], file=sys.stderr)\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
+    done = run_python("-c", program)
+    assert done.returncode == 0
     assert done.stderr.strip() == "[]"
 
 

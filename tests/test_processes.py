@@ -328,7 +328,7 @@ def test_the_command_line_holds_itself_to_the_cores_that_the_user_gives() -> Non
     )
     environment = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
     done = subprocess.run(
-        [sys.executable, "-c", program],
+        [sys.executable, "-P", "-c", program],
         env={**environment, CORES_VARIABLE: "1"},
         capture_output=True,
         text=True,

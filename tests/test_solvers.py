@@ -2,7 +2,6 @@
 
 import importlib.util
 import os
-import subprocess
 import sys
 from dataclasses import replace
 
@@ -11,6 +10,7 @@ import pytest
 from scipy import sparse
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.interpreter import run_python
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import eliminate, fixed
 from fe_drivetrain.mesh.blocks import brick
@@ -256,9 +256,7 @@ def test_a_package_without_what_is_used_of_it_is_not_installed(put_in_place):
 def test_no_solver_is_loaded_before_it_is_asked_for():
     """Programs begin without the libraries of the optional ones."""
     code = "import sys, fe_drivetrain.solve.solvers; print(*sys.modules)"
-    loaded = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, check=True, text=True
-    )
+    loaded = run_python("-c", code)
     assert "scipy" in loaded.stdout.split()
     assert not {"pypardiso", "sksparse"} & set(loaded.stdout.split())
 
