@@ -58,15 +58,17 @@ def _look_at_step(request: dict[str, Any]) -> dict[str, Any]:
         survey = step_solid.opened(request["file"], request["smallest_detail"])
         survey["seats"] = step_solid.seat_cylinders(survey)
         points, triangles, owner = np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros(0, int)
+        curved: dict[str, Any] = {}
         try:
             step_heal.surface_mesh()
             points, triangles, owner = _surface()
             if step_solid.has_splines(survey):
-                survey["measured"] = _measured()
+                curved = _curved()
         except Exception as error:
             why = step_heal.reason(error)
             survey["unmeshed"] = f"{why}{step_heal.where(why)}"
-    return {"survey": _text(survey), "points": points, "triangles": triangles, "owner": owner}
+    surface = {"points": points, "triangles": triangles, "owner": owner}
+    return {"survey": _text(survey)} | surface | curved
 
 
 def _surface() -> tuple[Any, Any, Any]:
@@ -83,28 +85,26 @@ def _surface() -> tuple[Any, Any, Any]:
     return points, np.concatenate(blocks), np.concatenate(owner)
 
 
-def _measured() -> dict[str, float]:
-    """Volume and area within the surface mesh that is there, its triangles curved [mm^3, mm^2]."""
+def _curved() -> dict[str, Any]:
+    """The outside of the surface mesh that is there, of curved triangles turned outward [mm]."""
     import gmsh
 
     from fe_drivetrain.foreign.step_solids import outside
     from fe_drivetrain.geometry.session import numbered_nodes
-    from fe_drivetrain.mesh.facets import facet_points
 
     gmsh.model.mesh.setOrder(2)
     points, number = numbered_nodes()
-    volume = area = 0.0
+    blocks = [np.zeros((0, 6), int)]
     for face in outside():
-        nodes = gmsh.model.mesh.getElementsByType(9, face)[1].reshape(-1, 6)
+        nodes = number[gmsh.model.mesh.getElementsByType(9, face)[1].reshape(-1, 6)]
         if not len(nodes):
             continue
-        at = facet_points(points, number[nodes])
-        middle = points[number[nodes[0]], :][3]
+        first, second, third, middle = points[nodes[0, :4]]
         on = gmsh.model.getClosestPoint(2, face, middle.tolist())[1]
-        side = at.normals[0].mean(axis=0) @ np.array(gmsh.model.getNormal(face, list(on)))
-        volume += np.sign(side) * np.einsum("fqi,fqi,fq->", at.positions, at.normals, at.areas) / 3
-        area += float(at.areas.sum())
-    return {"volume": float(volume), "area": area}
+        normal = np.array(gmsh.model.getNormal(face, list(on)))
+        outward = np.cross(second - first, third - first) @ normal > 0
+        blocks.append(nodes if outward else nodes[:, [0, 2, 1, 5, 4, 3]])
+    return {"curved_points": points, "curved_triangles": np.concatenate(blocks)}
 
 
 def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,8 @@ from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.foreign.words import nearly
 from fe_drivetrain.geometry.foreign_housing import MESH_ENDINGS, STEP_ENDINGS
-from fe_drivetrain.mesh.measures import mass_moments, scaled_jacobians
+from fe_drivetrain.mesh.facets import facet_points
+from fe_drivetrain.mesh.measures import enclosed_volume, mass_moments, scaled_jacobians
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 
 _MOST_ROWS = 24
@@ -101,8 +102,10 @@ def _of_step(path: Path) -> Survey:
         low, high = found["points"].min(axis=0), found["points"].max(axis=0)
     rows: list[tuple[str, ...]]
     size, area = f"{after['volume'] / 1e6:.6g} dm^3", after["area"]
-    if "measured" in data:  # splines, of which OpenCASCADE's integrals are inexact
-        volume, area = data["measured"]["volume"], data["measured"]["area"]
+    splines = "curved_triangles" in found  # of which OpenCASCADE's integrals are inexact
+    if splines:
+        curved = found["curved_points"], found["curved_triangles"]
+        volume, area = enclosed_volume(*curved), facet_points(*curved).areas.sum()
         apart = abs(volume - after["volume"])
         size = f"{volume / 1e6:.5g} +- {apart / 1e6:.2g} dm^3"
     lines = [
@@ -113,7 +116,7 @@ def _of_step(path: Path) -> Survey:
         f"before healing: {before['words']}, {before['faces']} faces, "
         f"{before['volume'] / 1e6:.6g} dm^3",
     ]
-    if "measured" in data:
+    if splines:
         lines[-1] += f", after it {after['volume'] / 1e6:.6g} dm^3 in the same way"
         lines.append(
             "faces are splines: the volume is that within curved facets, and its band how far "

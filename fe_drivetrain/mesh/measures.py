@@ -252,3 +252,9 @@ def area_vectors(points: Floats, facets: Ints) -> Floats:
     """Integral of the normal over each curved facet, (nf, 3), m2; zero in sum when closed."""
     at = facet_points(points, facets, _AREA_DEGREE)
     return np.asarray(np.einsum("fqi,fq->fi", at.normals, at.areas))
+
+
+def enclosed_volume(points: Floats, facets: Ints) -> float:
+    """Volume within a closed surface of curved facets that are turned outward, m3."""
+    at = facet_points(points, facets)
+    return float(np.einsum("fqi,fqi,fq->", at.positions, at.normals, at.areas)) / 3
