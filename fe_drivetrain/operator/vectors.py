@@ -101,3 +101,21 @@ def plus(typing: Any, vector: Any, number: Any, other: Any) -> Any:
         return builder.fadd(vector, product, flags=("contract",))
 
     return _VECTOR(vector, number, other), generate
+
+
+@_in_loops
+def fetch(typing: Any, array: Any, index: Any) -> Any:
+    """Ask memory for what a loop will read at an index of a flat array, within it or beyond."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        array, index = given
+        data = context.make_array(signature.args[0])(context, builder, array).data
+        byte = ir.IntType(8).as_pointer()
+        address = builder.bitcast(builder.gep(data, [index]), byte)
+        kind = ir.FunctionType(ir.VoidType(), [byte, _PLACE, _PLACE, _PLACE])
+        prefetch = builder.module.declare_intrinsic("llvm.prefetch", [byte], kind)
+        # to read, for several times, as data
+        builder.call(prefetch, [address, _PLACE(0), _PLACE(3), _PLACE(1)])
+        return context.get_dummy_value()
+
+    return types.void(array, index), generate

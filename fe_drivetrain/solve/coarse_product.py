@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.operator.kernels import Index
+from fe_drivetrain.operator.kernels import AHEAD, Index
+from fe_drivetrain.operator.vectors import LANES, fetch, load, plus, store
 
 # Rows that a thread takes at once have a marker for each coarse node.
 _PIECES = 16
@@ -115,6 +116,7 @@ def _fill(
                 i, weight = Rind[s], to[s]
                 for p in range(Kptr[i], Kptr[i + 1]):
                     j = Kind[p]
+                    fetch(K, 9 * p + AHEAD // K.itemsize)
                     for q in range(Pptr[j], Pptr[j + 1]):
                         b = Pind[q]
                         t = place[b]
@@ -132,8 +134,8 @@ def _fill(
 @njit(inline="always")
 def _add(data: Floats, t: np.uint64, factor: float, K: Floats, p: np.uint64) -> None:
     """Add a factor times a block; at indices that cannot be negative."""
-    for k in range(np.uint64(9)):
-        data[t + k] += factor * K[p + k]
+    store(plus(load(data, t), factor, load(K, p)), data, t)
+    data[t + np.uint64(LANES)] += factor * K[p + np.uint64(LANES)]
 
 
 @njit(cache=True)

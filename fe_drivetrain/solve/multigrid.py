@@ -69,7 +69,7 @@ class Options:
     strength: float = 0.0
     prolongation_smoother: str | None = "jacobi"
     apart: bool = True
-    coarsest: int = 300
+    coarsest: int = 100
     single: bool = True
 
 
@@ -303,22 +303,22 @@ def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
     r = np.random.default_rng(0).standard_normal((3 * len(inverse), 1))
     zero, Kp, z = np.zeros_like(r), np.empty_like(r), np.empty_like(r)
     kernels.times_blocks(inverse, r, 1.0, z)
-    p, rz = z.copy(), float(r.ravel() @ z.ravel())
+    x, p, rz = np.zeros_like(r), z.copy(), float(kernels.dots(r, z)[0])
     diagonal, beside = [], []
     alpha, beta = 1.0, 0.0
     for _ in range(LANCZOS_STEPS):
         kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)  # either form of K
-        curvature = -float(p.ravel() @ Kp.ravel())
+        curvature = -float(kernels.dots(p, Kp)[0])
         if curvature <= 0.0 or rz <= 0.0:
             break
         before, alpha = alpha, rz / curvature
         diagonal.append(1.0 / alpha + beta / before)
-        r += alpha * Kp
+        kernels.advance(x, r, p, Kp, np.array([alpha]))
         kernels.times_blocks(inverse, r, 1.0, z)
-        new = float(r.ravel() @ z.ravel())
+        new = float(kernels.dots(r, z)[0])
         beta, rz = new / rz, new
         beside.append(math.sqrt(max(beta, 0.0)) / alpha)
-        p = z + beta * p
+        kernels.redirect(p, z, np.array([beta]))
     values, vectors = linalg.eigh_tridiagonal(diagonal, beside[:-1])
     return float(values[-1] + beside[-1] * abs(vectors[-1, -1]))
 
