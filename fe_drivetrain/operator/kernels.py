@@ -53,13 +53,13 @@ def distances(indptr: Index, indices: Index, start: int) -> Index:
     return steps
 
 
-@njit(cache=True)
+@njit(cache=True, parallel=True)
 def places(
     indptr: Index, indices: Index, rows: NDArray[np.int64], columns: NDArray[np.int64]
 ) -> NDArray[np.int64]:
     """Where the blocks of some rows and columns stand in ``data``; -1 where there are none."""
     found = np.full(len(rows), -1, np.int64)
-    for k in range(len(rows)):
+    for k in prange(len(rows)):
         for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
             if indices[p] == columns[k]:
                 found[k] = p
@@ -417,27 +417,33 @@ def _add_product_of_many(
 
 
 def kept_blocks(indptr: Index, indices: Index, data: Floats, kept: Floats, out: Floats) -> None:
-    """Blocks with rows and columns of degrees of freedom zeroed where (n_nodes, 3) ``kept`` is."""
+    """Blocks with rows and columns of degrees of freedom zeroed where (n_nodes, 3) ``kept`` is.
+
+    Where ``out`` is ``data``, little is read and written.
+    """
     whole = np.asarray(kept.all(axis=1))
-    _keep_blocks(indptr, indices, data.reshape(-1), kept, whole, out.reshape(-1))
+    flat = data.reshape(-1), out.reshape(-1)
+    _keep_blocks(indptr, indices, kept, whole, *flat, out is not data)
 
 
 @njit(cache=True, parallel=True)
 def _keep_blocks(
     indptr: Index,
     indices: Index,
-    data: Floats,
     kept: Floats,
     whole: NDArray[np.bool_],
+    data: Floats,
     out: Floats,
+    copies: bool,
 ) -> None:
     three, nine = np.uint64(3), np.uint64(9)
     for i in prange(len(indptr) - 1):
         for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
             j, q = np.uint64(indices[p]), nine * p
-            fetch(data, q + np.uint64(AHEAD // data.itemsize))
-            for k in range(nine):
-                out[q + k] = data[q + k]
+            if copies:
+                fetch(data, q + np.uint64(AHEAD // data.itemsize))
+                for k in range(nine):
+                    out[q + k] = data[q + k]
             if not (whole[i] and whole[j]):
                 for k in range(nine):
                     out[q + k] *= kept[i, k // three] * kept[j, k % three]

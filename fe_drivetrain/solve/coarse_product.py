@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.operator.kernels import AHEAD, Index
+from fe_drivetrain.operator.kernels import AHEAD, Index, pattern_of
 from fe_drivetrain.operator.vectors import LANES, fetch, load, plus, store
 
 # Rows that a thread takes at once have a marker for each coarse node.
@@ -35,9 +35,7 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     """
     n = prolongation.shape[1]
     P = prolongation.tobsr((3, 3))
-    R = prolongation.T.tobsr((3, 3))
-    forwards = _Blocks(P.indptr.astype(np.int32), P.indices.astype(np.int32), P.data)
-    back = _Blocks(R.indptr.astype(np.int32), R.indices.astype(np.int32), R.data)
+    forwards, back = _Blocks(P), _Blocks(P.T)
     pieces = np.linspace(0, n // 3, _PIECES + 1).astype(np.int64)
     indptr = np.zeros(n // 3 + 1, dtype=np.int32)
     patterns = back.indptr, back.indices, K.indptr, K.indices, forwards.indptr, forwards.indices
@@ -55,11 +53,14 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
 class _Blocks:
     """A block matrix, and which factor times the identity each block is: NaN of the others."""
 
-    def __init__(self, indptr: Index, indices: Index, data: Floats) -> None:
-        self.indptr, self.indices, self.data = indptr, indices, data
-        factors = data[:, 0, 0].copy()
-        plain = (data == factors[:, None, None] * np.eye(3)).all(axis=(1, 2))
-        self.factors = np.where(plain, factors, np.nan)
+    def __init__(self, P: sparse.bsr_array) -> None:
+        self.indptr, self.indices = pattern_of(P)
+        self.data = P.data
+        first, *others, last = P.data.reshape(-1, 9).T
+        plain = (first == others[3]) & (first == last)
+        for place in (0, 1, 2, 4, 5, 6):
+            plain &= others[place] == 0.0
+        self.factors = np.where(plain, first, np.nan)
 
 
 @njit(cache=True, parallel=True)
