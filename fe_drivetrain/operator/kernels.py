@@ -34,38 +34,6 @@ _LINE = 64
 keep_freed_memory()
 
 
-@njit(cache=True)
-def distances(indptr: Index, indices: Index, start: int) -> Index:
-    """Steps from one node to each other one along the graph of a matrix; -1 where none lead."""
-    n = len(indptr) - 1
-    steps, queue = np.full(n, -1, np.int32), np.empty(n, np.int32)
-    steps[start], queue[0] = 0, start
-    first, last = 0, 1
-    while first < last:
-        i = queue[first]
-        first += 1
-        for p in range(indptr[i], indptr[i + 1]):
-            j = indices[p]
-            if steps[j] < 0:
-                steps[j] = steps[i] + 1
-                queue[last] = j
-                last += 1
-    return steps
-
-
-@njit(cache=True, parallel=True)
-def places(
-    indptr: Index, indices: Index, rows: NDArray[np.int64], columns: NDArray[np.int64]
-) -> NDArray[np.int64]:
-    """Where the blocks of some rows and columns stand in ``data``; -1 where there are none."""
-    found = np.full(len(rows), -1, np.int64)
-    for k in prange(len(rows)):
-        for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
-            if indices[p] == columns[k]:
-                found[k] = p
-    return found
-
-
 @njit(cache=True, error_model="numpy")
 def inverse_transposed(J: Floats, A: Floats) -> float:
     """Put J^-T into A, of no numbers where there is none; the determinant of J."""
@@ -118,6 +86,7 @@ def _node_residual(
     indptr: Index,
     indices: Index,
     data: Floats,
+    start: Any,
     rowwise: bool,
     x: Floats,
     b: Floats,
@@ -125,19 +94,18 @@ def _node_residual(
 ) -> tuple[Any, Any, Any]:
     """``B - K X`` of node i in each direction, of eight columns, all arrays flat.
 
-    Indices that cannot be negative: half the time of the same loop without `vectors`.
+    Its blocks are in ``data`` from ``start`` on. Indices that cannot be negative: half the time of
+    the same loop without `vectors`.
     """
     m, one, two, three = np.uint64(columns), np.uint64(1), np.uint64(2), np.uint64(3)
     first, end = np.uint64(indptr[i]), np.uint64(indptr[i + 1])
-    q = np.uint64(9) * first
+    q = start
     along, across = np.uint64(9), three
     if rowwise:
         along, across = three, three * (end - first)
     t = three * np.uint64(i) * m + np.uint64(first_column)
     f, g, h = load(b, t), load(b, t + m), load(b, t + m + m)
-    ahead = np.uint64(AHEAD // data.itemsize)
     for p in range(first, end):
-        fetch(data, q + ahead)
         s = three * np.uint64(indices[p]) * m + np.uint64(first_column)
         u, v, w = load(x, s), load(x, s + m), load(x, s + m + m)
         f = plus(plus(plus(f, -data[q], u), -data[q + one], v), -data[q + two], w)
@@ -185,8 +153,10 @@ def residual(
     assert out.flags.c_contiguous  # else what is flat would be a copy
     rowwise = data.ndim == 1
     flat, x, b, y = (array.reshape(-1) for array in (data, X, B, out))
-    if m > 1:
-        _residual_of_many(indptr, indices, flat, rowwise, x, b, y, m)
+    if m > 1 and rowwise:
+        _residual_of_many_rows(indptr, indices, flat, x, b, y, m)
+    elif m > 1:
+        _residual_of_many(indptr, indices, flat, x, b, y, m)
     elif rowwise:
         _residual_of_rows(indptr, indices, flat, x, b, y)
     else:
@@ -195,22 +165,60 @@ def residual(
 
 @njit(cache=True, parallel=True)
 def _residual_of_many(
-    indptr: Index,
-    indices: Index,
-    data: Floats,
-    rowwise: bool,
-    x: Floats,
-    b: Floats,
-    out: Floats,
-    columns: int,
+    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats, columns: int
 ) -> None:
     for i in prange(len(indptr) - 1):
+        start, end = np.uint64(9) * np.uint64(indptr[i]), np.uint64(9) * np.uint64(indptr[i + 1])
+        for k in range(start, end, np.uint64(_LINE // data.itemsize)):
+            fetch(data, k + np.uint64(AHEAD // data.itemsize))
         for k in range(0, columns, LANES):
-            f, g, h = _node_residual(i, k, indptr, indices, data, rowwise, x, b, columns)
+            f, g, h = _node_residual(i, k, indptr, indices, data, start, False, x, b, columns)
             t = 3 * i * columns + k
             store(f, out, t)
             store(g, out, t + columns)
             store(h, out, t + 2 * columns)
+
+
+@njit(cache=True)
+def _most(indptr: Index, first: int, end: int) -> int:
+    """Most blocks of a node, of some."""
+    most = 0
+    for i in range(first, end):
+        most = max(most, indptr[i + 1] - indptr[i])
+    return most
+
+
+@njit(inline="always")
+def _own(i: int, indptr: Index, data: Floats, own: Floats) -> None:
+    """The blocks of node i in double precision.
+
+    Converted one by one for each column's sums they would take twice the time of all else.
+    """
+    first, count = np.uint64(9 * indptr[i]), np.uint64(9 * (indptr[i + 1] - indptr[i]))
+    for k in range(np.uint64(0), count, np.uint64(_LINE // data.itemsize)):
+        fetch(data, first + k + np.uint64(AHEAD // data.itemsize))
+    for k in range(count):
+        own[k] = data[first + k]
+
+
+@njit(cache=True, parallel=True)
+def _residual_of_many_rows(
+    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats, columns: int
+) -> None:
+    n = len(indptr) - 1
+    for piece in prange(_PIECES):
+        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
+        own = np.empty(9 * _most(indptr, low, high))
+        for i in range(low, high):
+            _own(i, indptr, data, own)
+            for k in range(0, columns, LANES):
+                f, g, h = _node_residual(
+                    i, k, indptr, indices, own, np.uint64(0), True, x, b, columns
+                )
+                t = 3 * i * columns + k
+                store(f, out, t)
+                store(g, out, t + columns)
+                store(h, out, t + 2 * columns)
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"})
@@ -238,15 +246,6 @@ def _residual_of_one(
         out[3 * i] = b[3 * i] - f
         out[3 * i + 1] = b[3 * i + 1] - g
         out[3 * i + 2] = b[3 * i + 2] - h
-
-
-@njit(cache=True)
-def _most(indptr: Index, first: int, end: int) -> int:
-    """Most blocks of a node, of some."""
-    most = 0
-    for i in range(first, end):
-        most = max(most, indptr[i + 1] - indptr[i])
-    return most
 
 
 @njit(inline="always")
@@ -343,18 +342,25 @@ def _step_of_many(
     step: float,
     columns: int,
 ) -> None:
-    for i in prange(len(indptr) - 1):
-        for k in range(0, columns, LANES):
-            f, g, h = _node_residual(i, k, indptr, indices, data, True, x, b, columns)
-            for r in range(3):
-                t = (3 * i + r) * columns + k
-                change = times(step * inverse[i, r, 0], f)
-                if momentum != 0.0:
-                    change = plus(change, momentum, load(d, t))
-                change = plus(change, step * inverse[i, r, 1], g)
-                change = plus(change, step * inverse[i, r, 2], h)
-                store(change, d, t)
-                store(plus(load(x, t), 1.0, change), out, t)
+    n = len(indptr) - 1
+    for piece in prange(_PIECES):
+        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
+        own = np.empty(9 * _most(indptr, low, high))
+        for i in range(low, high):
+            _own(i, indptr, data, own)
+            for k in range(0, columns, LANES):
+                f, g, h = _node_residual(
+                    i, k, indptr, indices, own, np.uint64(0), True, x, b, columns
+                )
+                for r in range(3):
+                    t = (3 * i + r) * columns + k
+                    change = times(step * inverse[i, r, 0], f)
+                    if momentum != 0.0:
+                        change = plus(change, momentum, load(d, t))
+                    change = plus(change, step * inverse[i, r, 1], g)
+                    change = plus(change, step * inverse[i, r, 2], h)
+                    store(change, d, t)
+                    store(plus(load(x, t), 1.0, change), out, t)
 
 
 @njit(cache=True, parallel=True, fastmath=True)

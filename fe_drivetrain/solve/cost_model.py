@@ -19,7 +19,7 @@ from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.mesh.facets import local_facets
 from fe_drivetrain.mesh.shapes import element_kind
-from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator import graph
 from fe_drivetrain.solve import direct_solvers
 from fe_drivetrain.solve.reduction import Elements, System
 
@@ -187,8 +187,8 @@ def _alone(facets: Ints) -> Ints:
 def width(K: sparse.bsr_array) -> float:
     """Mean number of nodes in a cross-section, of the levels of a breadth-first search."""
     start = int(np.argmax(np.diff(K.indptr)))  # not one that stands alone
-    far = int(np.argmax(kernels.distances(K.indptr, K.indices, start)))
-    level = kernels.distances(K.indptr, K.indices, far)
+    far = int(np.argmax(graph.distances(K.indptr, K.indices, start)))
+    level = graph.distances(K.indptr, K.indices, far)
     size = np.bincount(level[level >= 0]).astype(float)
     return float((size**2).sum() / size.sum())
 

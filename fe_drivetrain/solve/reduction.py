@@ -18,7 +18,7 @@ from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.shapes import element_kind
-from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator import graph, kernels
 from fe_drivetrain.solve.own_rows import passed_on
 from fe_drivetrain.solve.sums import Sums, sums_of
 
@@ -182,7 +182,7 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
 def _diagonal_places(K: sparse.bsr_array) -> Ints:
     """Where the diagonal blocks stand; -1 where there are none."""
     nodes = np.arange(len(K.indptr) - 1)
-    return np.asarray(kernels.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
+    return np.asarray(graph.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
 
 
 def reduced_stiffness(
@@ -215,7 +215,7 @@ def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
     blocks = few.tobsr((3, 3))
     rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
     columns = blocks.indices.astype(np.int64)
-    places = kernels.places(*kernels.pattern_of(K), rows, columns)
+    places = graph.places(*kernels.pattern_of(K), rows, columns)
     if (places < 0).any():
         return in_blocks(K + blocks)
     K.data[places] += blocks.data
