@@ -20,7 +20,7 @@ from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.operator.vectors import LANES
-from fe_drivetrain.solve.aggregates import coarsened
+from fe_drivetrain.solve.aggregates import between_aggregates, coarsened
 from fe_drivetrain.solve.coarse_product import coarse_product
 from fe_drivetrain.solve.reduction import Joints, System, diagonal_blocks, in_blocks
 from fe_drivetrain.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
@@ -255,7 +255,7 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         degree = options.coarse_degree if levels else options.degree
         P, motions = coarsened(K, motions, connected, options.prolongation_smoother, *smoothing[1:])
         levels.append(Level(*smoothing, degree, _in_rows(P), _in_rows(P.T)))
-        K, connected = P.T @ K @ P, None
+        K, connected = between_aggregates(K, P), None
     last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)
