@@ -1,11 +1,10 @@
 """Compiled loops over node blocks: what NumPy cannot say without large copies.
 
 Matrices are block CSR with 3x3 blocks, one block row a node (``indptr``, ``indices``, ``data`` as
-in ``scipy.sparse.bsr_array``); or ``data`` is flat, and has each node's three rows one after the
-other, see `by_rows`. Right-hand sides are the columns of C-ordered (n, m) arrays, and every loop
-takes all of them in one pass over the matrix. Compiled by numba at the first call (seconds), then
-kept in its cache on disk. With the import, memory of freed arrays stays for the next ones, see
-`keep_freed_memory`.
+in ``scipy.sparse.bsr_array``), in double or single precision. Right-hand sides are the columns of
+C-ordered (n, m) arrays, and every loop takes all of them in one pass over the matrix. Compiled by
+numba at the first call (seconds), then kept in its cache on disk. With the import, memory of freed
+arrays stays for the next ones, see `keep_freed_memory`.
 """
 
 from typing import Any
@@ -17,7 +16,18 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.memory import keep_freed_memory
-from fe_drivetrain.operator.vectors import LANES, fetch, load, plus, store, times
+from fe_drivetrain.operator.vectors import (
+    LANES,
+    fetch,
+    load,
+    plus,
+    plus_each,
+    row_sums,
+    store,
+    thrice,
+    times,
+    zeros,
+)
 
 Index = NDArray[np.int32]
 
@@ -56,27 +66,15 @@ def invert(blocks: Floats, out: Floats) -> None:
         inverse_transposed(blocks[i], out[i])
 
 
-def by_rows(indptr: Index, blocks: Floats, out: Floats) -> None:
-    """Put the three rows of each node one after the other into the flat ``out``.
-
-    In single precision blocks take a loop over one column a fifth longer than in double precision,
-    for each of nine entries is converted by itself; of rows, eight at once, two thirds of that.
-    """
-    _put_by_rows(indptr, blocks.reshape(-1), out)
+def rounded(blocks: Floats, out: Floats) -> None:
+    """Put the entries of blocks into ``out``, which may be of single precision, on all cores."""
+    _round(blocks.reshape(-1), out.reshape(-1))
 
 
 @njit(cache=True, parallel=True)
-def _put_by_rows(indptr: Index, blocks: Floats, out: Floats) -> None:
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    for i in prange(len(indptr) - 1):
-        first, end = np.uint64(indptr[i]), np.uint64(indptr[i + 1])
-        t = np.uint64(9) * first
-        for r in range(three):
-            q = np.uint64(9) * first + three * r
-            for _ in range(first, end):
-                out[t], out[t + one], out[t + two] = blocks[q], blocks[q + one], blocks[q + two]
-                t += three
-                q += np.uint64(9)
+def _round(numbers: Floats, out: Floats) -> None:
+    for i in prange(len(numbers)):
+        out[i] = numbers[i]
 
 
 @njit(inline="always")
@@ -87,7 +85,6 @@ def _node_residual(
     indices: Index,
     data: Floats,
     start: Any,
-    rowwise: bool,
     x: Floats,
     b: Floats,
     columns: int,
@@ -98,22 +95,18 @@ def _node_residual(
     the same loop without `vectors`.
     """
     m, one, two, three = np.uint64(columns), np.uint64(1), np.uint64(2), np.uint64(3)
-    first, end = np.uint64(indptr[i]), np.uint64(indptr[i + 1])
     q = start
-    along, across = np.uint64(9), three
-    if rowwise:
-        along, across = three, three * (end - first)
     t = three * np.uint64(i) * m + np.uint64(first_column)
     f, g, h = load(b, t), load(b, t + m), load(b, t + m + m)
-    for p in range(first, end):
+    for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
         s = three * np.uint64(indices[p]) * m + np.uint64(first_column)
         u, v, w = load(x, s), load(x, s + m), load(x, s + m + m)
         f = plus(plus(plus(f, -data[q], u), -data[q + one], v), -data[q + two], w)
-        r = q + across
-        g = plus(plus(plus(g, -data[r], u), -data[r + one], v), -data[r + two], w)
-        r += across
-        h = plus(plus(plus(h, -data[r], u), -data[r + one], v), -data[r + two], w)
-        q += along
+        q += three
+        g = plus(plus(plus(g, -data[q], u), -data[q + one], v), -data[q + two], w)
+        q += three
+        h = plus(plus(plus(h, -data[q], u), -data[q + one], v), -data[q + two], w)
+        q += three
     return f, g, h
 
 
@@ -151,16 +144,13 @@ def residual(
         out[:] = wide[:, :m]
         return
     assert out.flags.c_contiguous  # else what is flat would be a copy
-    rowwise = data.ndim == 1
     flat, x, b, y = (array.reshape(-1) for array in (data, X, B, out))
-    if m > 1 and rowwise:
-        _residual_of_many_rows(indptr, indices, flat, x, b, y, m)
-    elif m > 1:
-        _residual_of_many(indptr, indices, flat, x, b, y, m)
-    elif rowwise:
-        _residual_of_rows(indptr, indices, flat, x, b, y)
-    else:
+    if m == 1:
         _residual_of_one(indptr, indices, flat, x, b, y)
+    elif data.dtype == np.float64:
+        _residual_of_many(indptr, indices, flat, x, b, y, m)
+    else:
+        _residual_of_many_rounded(indptr, indices, flat, x, b, y, m)
 
 
 @njit(cache=True, parallel=True)
@@ -172,7 +162,7 @@ def _residual_of_many(
         for k in range(start, end, np.uint64(_LINE // data.itemsize)):
             fetch(data, k + np.uint64(AHEAD // data.itemsize))
         for k in range(0, columns, LANES):
-            f, g, h = _node_residual(i, k, indptr, indices, data, start, False, x, b, columns)
+            f, g, h = _node_residual(i, k, indptr, indices, data, start, x, b, columns)
             t = 3 * i * columns + k
             store(f, out, t)
             store(g, out, t + columns)
@@ -202,7 +192,7 @@ def _own(i: int, indptr: Index, data: Floats, own: Floats) -> None:
 
 
 @njit(cache=True, parallel=True)
-def _residual_of_many_rows(
+def _residual_of_many_rounded(
     indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats, columns: int
 ) -> None:
     n = len(indptr) - 1
@@ -212,80 +202,49 @@ def _residual_of_many_rows(
         for i in range(low, high):
             _own(i, indptr, data, own)
             for k in range(0, columns, LANES):
-                f, g, h = _node_residual(
-                    i, k, indptr, indices, own, np.uint64(0), True, x, b, columns
-                )
+                f, g, h = _node_residual(i, k, indptr, indices, own, np.uint64(0), x, b, columns)
                 t = 3 * i * columns + k
                 store(f, out, t)
                 store(g, out, t + columns)
                 store(h, out, t + 2 * columns)
 
 
+@njit(inline="always")
+def _node_product(
+    i: int, indptr: Index, indices: Index, data: Floats, x: Floats
+) -> tuple[float, float, float]:
+    """``K x`` of node i for one column: eight of a block's nine entries at once.
+
+    Two sums take turns, so that one need not wait for the other.
+    """
+    two, three, eight, nine = np.uint64(2), np.uint64(3), np.uint64(8), np.uint64(9)
+    most, ahead = np.uint64(len(x)), np.uint64(AHEAD // data.itemsize)
+    this, that, last = zeros(), zeros(), 0.0
+    f = g = h = 0.0
+    for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+        c, q = three * np.uint64(indices[p]), nine * p
+        fetch(data, q + ahead)
+        if c + eight <= most:
+            this, that = that, plus_each(this, load(data, q), thrice(load(x, c)))
+            last += data[q + eight] * x[c + two]
+        else:  # beyond the last nodes there is nothing to load
+            for k in range(three):
+                f += data[q + k] * x[c + k]
+                g += data[q + three + k] * x[c + k]
+                h += data[q + three + three + k] * x[c + k]
+    one, other = row_sums(this), row_sums(that)
+    return f + (one[0] + other[0]), g + (one[1] + other[1]), h + (one[2] + other[2]) + last
+
+
 @njit(cache=True, parallel=True, fastmath={"contract"})
 def _residual_of_one(
     indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
 ) -> None:
-    """Three sums in registers, at indices that cannot be negative.
-
-    Twice as fast as the loop over columns. With additions reordered (`fastmath`) it would be slower
-    than that.
-    """
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
     for i in prange(len(indptr) - 1):
-        f = g = h = 0.0
-        ahead = np.uint64(AHEAD // data.itemsize)
-        for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
-            c, q = three * np.uint64(indices[p]), np.uint64(9) * p
-            fetch(data, q + ahead)
-            u, v, w = x[c], x[c + one], x[c + two]
-            f += data[q] * u + data[q + one] * v + data[q + two] * w
-            q += three
-            g += data[q] * u + data[q + one] * v + data[q + two] * w
-            q += three
-            h += data[q] * u + data[q + one] * v + data[q + two] * w
+        f, g, h = _node_product(i, indptr, indices, data, x)
         out[3 * i] = b[3 * i] - f
         out[3 * i + 1] = b[3 * i + 1] - g
         out[3 * i + 2] = b[3 * i + 2] - h
-
-
-@njit(inline="always")
-def _node_rows(
-    i: int, indptr: Index, indices: Index, data: Floats, x: Floats, near: Floats
-) -> tuple[float, float, float]:
-    """``K x`` of node i for one column, by rows; its neighbours' values come to ``near``."""
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    first = np.uint64(indptr[i])
-    length = np.uint64(0)
-    for p in range(first, np.uint64(indptr[i + 1])):
-        c = three * np.uint64(indices[p])
-        near[length], near[length + one], near[length + two] = x[c], x[c + one], x[c + two]
-        length += three
-    f = g = h = 0.0
-    q = np.uint64(9) * first
-    ahead = q + np.uint64(AHEAD // data.itemsize)
-    for k in range(np.uint64(0), three * length, np.uint64(_LINE // data.itemsize)):
-        fetch(data, ahead + k)
-    q1, q2 = q + length, q + length + length
-    for k in range(length):
-        f += data[q + k] * near[k]
-        g += data[q1 + k] * near[k]
-        h += data[q2 + k] * near[k]
-    return f, g, h
-
-
-@njit(cache=True, parallel=True, fastmath=True)
-def _residual_of_rows(
-    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
-) -> None:
-    n = len(indptr) - 1
-    for piece in prange(_PIECES):
-        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
-        near = np.empty(3 * _most(indptr, low, high))
-        for i in range(low, high):
-            f, g, h = _node_rows(i, indptr, indices, data, x, near)
-            out[3 * i] = b[3 * i] - f
-            out[3 * i + 1] = b[3 * i + 1] - g
-            out[3 * i + 2] = b[3 * i + 2] - h
 
 
 def chebyshev_step(
@@ -306,8 +265,6 @@ def chebyshev_step(
 
     Parameters
     ----------
-    data : Floats
-        By rows.
     inverse : Floats
         (n_nodes, 3, 3) inverses of the diagonal blocks.
     """
@@ -321,7 +278,7 @@ def chebyshev_step(
         return
     assert D.flags.c_contiguous
     assert out.flags.c_contiguous
-    x, b, d, y = (array.reshape(-1) for array in (X, B, D, out))
+    data, x, b, d, y = (array.reshape(-1) for array in (data, X, B, D, out))
     if m > 1:
         _step_of_many(indptr, indices, data, inverse, x, b, d, y, momentum, step, m)
     else:
@@ -349,9 +306,7 @@ def _step_of_many(
         for i in range(low, high):
             _own(i, indptr, data, own)
             for k in range(0, columns, LANES):
-                f, g, h = _node_residual(
-                    i, k, indptr, indices, own, np.uint64(0), True, x, b, columns
-                )
+                f, g, h = _node_residual(i, k, indptr, indices, own, np.uint64(0), x, b, columns)
                 for r in range(3):
                     t = (3 * i + r) * columns + k
                     change = times(step * inverse[i, r, 0], f)
@@ -376,21 +331,17 @@ def _step_of_one(
     momentum: float,
     step: float,
 ) -> None:
-    n = len(indptr) - 1
-    for piece in prange(_PIECES):
-        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
-        near = np.empty(3 * _most(indptr, low, high))
-        for i in range(low, high):
-            f, g, h = _node_rows(i, indptr, indices, data, x, near)
-            f, g, h = b[3 * i] - f, b[3 * i + 1] - g, b[3 * i + 2] - h
-            for r in range(3):
-                row = 3 * i + r
-                change = inverse[i, r, 0] * f + inverse[i, r, 1] * g + inverse[i, r, 2] * h
-                change *= step
-                if momentum != 0.0:
-                    change += momentum * d[row]
-                d[row] = change
-                out[row] = x[row] + change
+    for i in prange(len(indptr) - 1):
+        f, g, h = _node_product(i, indptr, indices, data, x)
+        f, g, h = b[3 * i] - f, b[3 * i + 1] - g, b[3 * i + 2] - h
+        for r in range(3):
+            row = 3 * i + r
+            change = inverse[i, r, 0] * f + inverse[i, r, 1] * g + inverse[i, r, 2] * h
+            change *= step
+            if momentum != 0.0:
+                change += momentum * d[row]
+            d[row] = change
+            out[row] = x[row] + change
 
 
 def add_product(A: sparse.csr_array, X: Floats, out: Floats) -> None:

@@ -73,8 +73,8 @@ class Options:
     single: bool = True
 
 
-class ByRows(NamedTuple):
-    """A matrix in 3x3 blocks, its entries flat and each node's three rows one after the other."""
+class Rounded(NamedTuple):
+    """A matrix in 3x3 blocks, (n, 3, 3), which may be of single precision."""
 
     indptr: NDArray[np.int32]
     indices: NDArray[np.int32]
@@ -87,7 +87,7 @@ class Level:
 
     Attributes
     ----------
-    K : ByRows
+    K : Rounded
         Stiffness; in single precision where that has the range: half the bytes for a smoother to
         read. Conjugate gradients have the finest one in double precision, so answers are as exact.
         Rounding is symmetric, and so is the hierarchy.
@@ -101,7 +101,7 @@ class Level:
         To and from the next level.
     """
 
-    K: ByRows
+    K: Rounded
     inverse: Floats
     largest: float
     degree: int
@@ -273,7 +273,7 @@ def _in_rows(P: sparse.sparray) -> sparse.csr_array:
     return sparse.csr_array((P.data, indices, indptr), shape=P.shape)
 
 
-def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[ByRows, Floats, float]:
+def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[Rounded, Floats, float]:
     """Stiffness, inverse blocks and largest eigenvalue of a level."""
     diagonal = diagonal_blocks(K)
     sizes = np.einsum("nii->ni", diagonal)  # a view
@@ -281,12 +281,14 @@ def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[ByRows, Floats, f
     inverse = np.empty_like(diagonal)
     kernels.invert(diagonal, inverse)
     single = options.single and sizes.min() > _SMALLEST and sizes.max() < _LARGEST
-    rows = ByRows(K.indptr, K.indices, np.empty(K.data.size, np.float32 if single else np.float64))
-    kernels.by_rows(K.indptr, K.data, rows.data)
-    return rows, inverse, largest_eigenvalue(rows, inverse)
+    data = np.empty(K.data.shape, np.float32) if single else K.data
+    if single:
+        kernels.rounded(K.data, data)
+    blocks = Rounded(K.indptr, K.indices, data)
+    return blocks, inverse, largest_eigenvalue(blocks, inverse)
 
 
-def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
+def largest_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
     """An upper bound of the eigenvalues of diag^-1 K, by a few steps of Lanczos.
 
     A single flat element has an eigenvalue far above the others, that a power method hardly sees;
@@ -295,7 +297,7 @@ def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
 
     Parameters
     ----------
-    K : ByRows or sparse.bsr_array
+    K : Rounded or sparse.bsr_array
         (n, n) symmetric positive semi-definite, 3x3 blocks.
     inverse : Floats
         (n / 3, 3, 3) inverses of its diagonal blocks.
@@ -307,7 +309,7 @@ def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
     diagonal, beside = [], []
     alpha, beta = 1.0, 0.0
     for _ in range(LANCZOS_STEPS):
-        kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)  # either form of K
+        kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)
         curvature = -float(kernels.dots(p, Kp)[0])
         if curvature <= 0.0 or rz <= 0.0:
             break
