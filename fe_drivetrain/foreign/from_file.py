@@ -323,7 +323,7 @@ def named_arrays(name: str, mesh: Mesh, facts: Mapping[str, Any]) -> dict[str, N
         The mesh has a fault.
     """
     try:
-        refuse_unsound(mesh, joints=[tuple(f"body.{side}" for side in SIDES)])
+        refuse_unsound(mesh, joints=[(f"body.{SIDES[0]}", f"body.{SIDES[1]}")])
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     return {

@@ -78,7 +78,8 @@ def rings_round_bolts(
                     and distance(plane["tag"], end.tolist()) < 1.01 * radius
                 ):
                     found.append(end)
-                    rings.append(annulus(end, normal, radius, bolted["pressed_diameter"] / 2))
+                    outer = bolted["pressed_diameter"] / 2
+                    rings.append(annulus(end.tolist(), normal.tolist(), radius, outer))
                     break
     if not rings:
         raise InputError(
