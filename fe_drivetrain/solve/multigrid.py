@@ -424,7 +424,7 @@ def iterates(
     """
     R = np.array(F, order="C")
     X = np.zeros_like(R)
-    P = precondition(R)
+    P = np.ascontiguousarray(precondition(R))  # for others each loop would be compiled once more
     rz = kernels.dots(R, P)
     start = rz
     KP, zero = np.empty_like(R), np.zeros_like(R)
@@ -442,7 +442,7 @@ def iterates(
         kernels.advance(X, R, P, KP, alpha)
         terms.append(alpha * rz)
         yield Iteration(X, len(terms), energy_error(np.array(terms)))
-        Z = precondition(R)
+        Z = np.ascontiguousarray(precondition(R))
         new = kernels.dots(R, Z)
         kernels.redirect(P, Z, np.divide(new, rz, out=np.zeros_like(rz), where=alive))
         rz = new
