@@ -54,22 +54,28 @@ def solve(n: int) -> Record:
     }
 
 
+#: Where the exact values come from: a field that fulfils all of this is the solution.
+THEORY = (
+    "theory: stresses in equilibrium and compatible, with free surfaces and the given resultant "
+    "(tests/test_plane_rings.py checks each); the form is Golovin's, 1881"
+)
+
+
 def target(key: str, within: float, h: float) -> Target:
     """One quantity, and what a finest mesh of elements of size h may miss of it."""
-    source = "Golovin 1881; Timoshenko and Goodier 1970, art "
-    source += "29 and 31" if key.startswith("bending") else "33"
     if key not in HOOP:
         why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
-        return Target(key, EXACT[key], within, why + "only there", source)
+        return Target(key, EXACT[key], within, why + "only there", THEORY)
     miss = missed_at_surface(*HOOP[key], h, 1e-3 * INNER)
     why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the Gauss "
     why += "points misses at a surface; the element's own error is of that size"
-    return Target(key, EXACT[key], 4.0 * miss, why, source, relative=False)
+    return Target(key, EXACT[key], 4.0 * miss, why, THEORY, relative=False)
 
 
 @case(
     "Thick curved bar in bending and under an end force",
-    source="Golovin 1881; Timoshenko and Goodier 1970, Theory of Elasticity, art 29 and 33",
+    source="theory: Golovin's bar of 1881, in equilibrium, compatible, free on its surfaces and "
+    "with the given resultant (tests/test_plane_rings.py)",
 )
 def run(run: Run, page: Page) -> None:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
