@@ -13,6 +13,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.commands import bands
 from fe_drivetrain.common import (
     FORCES,
+    MOTIONS,
 )
 from fe_drivetrain.fidelity import (
     LEAST_ORDER,
@@ -74,7 +75,7 @@ STEP = 1e-3
 _LEAST = 1e-3
 
 #: What is looked at: its name at the cheap level.
-HUB = tuple(f"hub.stiffness.{m}" for m in ("ux", "uy", "uz", "rx", "ry", "rz"))
+HUB = tuple(f"hub.stiffness.{m}" for m in MOTIONS)
 MOMENT = f"{BEARING}.My"
 Slopes = dict[str, dict[str, float]]
 """By quantity and by value."""
