@@ -284,7 +284,7 @@ def _check_deviations(page: Page, found: Study, top: Slopes, coarse: Slopes) -> 
         page.at_most(
             f"{q}: standard deviation for the inputs, how far outside of the two bounds of "
             f"level 1, {100 * bounds[0]:.3g} and {100 * bounds[1]:.3g} % [%]",
-            100 * max(bounds[0] - exact, exact - bounds[1], 0.0),
+            100 * max(bounds[0] - exact, exact - bounds[1]),
             10 * exact,
             why="a tenth of the assembly's: the samples themselves know a band to that",
             source=f"sensitivities of the assembly: {100 * exact:.3g} %",
