@@ -35,13 +35,6 @@ def solve(tube: theory.Tube, refinement: int) -> Record:
     }
 
 
-#: Where fields and stresses come from.
-FLEXURE = (
-    "theory: Saint-Venant's flexure, its stresses those of its displacements, in equilibrium, "
-    "free on the surface and with the given resultant (tests/test_shaft_theory.py checks each)"
-)
-
-
 @case(
     "Cantilever with shear: Saint-Venant's flexure and Cowper's coefficient",
     source="theory: Saint-Venant's flexure, in equilibrium, free on its surfaces and with the "
@@ -50,10 +43,8 @@ FLEXURE = (
 def run(run: Run, page: Page) -> None:
     """Exact tractions on both ends."""
     page.section("Saint-Venant's flexure")
-    page.image(
-        "Shaft with a bore of half its diameter",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, 0.5 * OUTER)),
-    )
+    sketch = run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, 0.5 * OUTER))
+    page.image("Shaft with a bore of half its diameter", sketch)
     inputs.show_inputs(
         page,
         ("outer diameter", OUTER, "m", inputs.SIZE),
@@ -92,10 +83,10 @@ def check(page: Page, tube: theory.Tube, series: MeshSeries) -> float:
     tip = Target(TIP, best[CLOSED], within, arcs, beam, order=4.0)
     page.targets(f"By mesh, {name}", series, [tip, coefficient], "closed form", name)
     worst = "as for the deflection, at the worst node"
-    error = Target(ERROR, 0.0, within, worst, FLEXURE, measure="deflection")
+    error = Target(ERROR, 0.0, within, worst, theory.FLEXURE, measure="deflection")
     where = f"shear stress on the neutral axis, {'at the skin' if tube.inner else 'at the centre'}"
     recovered, why = theory.within_recovery(best[TURN])
     near = recovered * best["largest of the section [Pa]"] / abs(exact)
     why += ", of the largest stress of the section"
-    page.settled(series, error, Target(STRESS, exact, near, why, FLEXURE, where), of=name)
+    page.settled(series, error, Target(STRESS, exact, near, why, theory.FLEXURE, where), of=name)
     return float(abs(best[TIP] / best[CLOSED] - 1))

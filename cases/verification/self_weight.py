@@ -72,10 +72,7 @@ def run(run: Run, page: Page) -> None:
         f"%), {-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
     )
     page.section("Sag")
-    page.image(
-        "The shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)),
-    )
+    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)))
     length = "overhang", LENGTH, "m"
     show_inputs(page, ("diameter, solid", OUTER, "m", SIZE), length, steel=STEEL, gravity=DOWN)
     title = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "

@@ -72,10 +72,7 @@ def run(run: Run, page: Page) -> None:
         + f" at L = {L / OUTER:g} D."
     )
     page.section("Simple supports")
-    page.image(
-        "The shaft",
-        run.sketch(solid_shafts.straight((0.0, L), OUTER)),
-    )
+    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, L), OUTER)))
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", SIZE),

@@ -12,6 +12,12 @@ import numpy as np
 
 from fe_drivetrain.common import Floats, Ints
 
+#: Where stresses of `CurvedBar` come from, for the source of a check.
+CURVED_BAR = (
+    "theory: stresses in equilibrium and compatible, with free surfaces and the given resultant "
+    "(tests/test_plane_rings.py checks each); the form is Golovin's, 1881"
+)
+
 
 @dataclass(frozen=True)
 class Plane:

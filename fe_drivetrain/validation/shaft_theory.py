@@ -16,6 +16,12 @@ from fe_drivetrain.beam import cowper_shear_coefficient
 from fe_drivetrain.common import Floats
 from fe_drivetrain.scene import Material
 
+#: Where `flexure_field` and `flexure_stress` come from, for the source of a check.
+FLEXURE = (
+    "theory: Saint-Venant's flexure, its stresses those of its displacements, in equilibrium, "
+    "free on the surface and with the given resultant (tests/test_shaft_theory.py checks each)"
+)
+
 
 @dataclass(frozen=True)
 class Tube:
