@@ -158,7 +158,7 @@ def friction() -> list[Found]:
             43.084,
             "by hand",
             5e-4,
-            "its last digit",
+            "half of the last digit that is printed",
         ),
         Found("of twice the loads, over it", double / base, 2.0, "homogeneous"),
         Found("in N mm, over it in N m", metres / base, 1e3, "one length in each term"),

@@ -40,7 +40,7 @@ def captured() -> list[Found]:
                 mean,
                 "middles of the printed classes",
                 5e-3,
-                "its last digit",
+                "half of the last digit that is printed",
             ),
         ]
     return found
