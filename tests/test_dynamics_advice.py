@@ -5,6 +5,7 @@ import pytest
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import point_motions
+from fe_drivetrain.compare.tolerances import digit
 from fe_drivetrain.dynamics.advice import (
     RUNGS,
     Answer,
@@ -30,7 +31,6 @@ from fe_drivetrain.fidelity.component_frames import carrier_frame
 from fe_drivetrain.scene.reading import library_component
 from fe_drivetrain.solve.condensation import Condensed
 from fe_drivetrain.validation import park_2021 as park
-from fe_drivetrain.validation.published_drivetrains import digit
 
 FIVE_MW, C = library_machine("nrel_5mw"), library_machine("synthetic_2mw")
 

@@ -11,12 +11,13 @@ import pytest
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.housing import placed_housing
-from fe_drivetrain.foreign.mesh_file import read
+from fe_drivetrain.foreign.mesh_file import _EDGES, read
 from fe_drivetrain.foreign.reading import Limits, read_in_process
 from fe_drivetrain.foreign.step_mesh import mesh as mesh_solid
 from fe_drivetrain.foreign.step_solid import opened, seat_cylinders
 from fe_drivetrain.geometry import Bearing, ForeignHousing, MeshSizes, gmsh_session, write_sample
 from fe_drivetrain.geometry.step_files import write_step
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -283,3 +284,7 @@ def test_small_details_are_removed_where_asked_for_and_with_a_message(tmp_path):
     with pytest.warns(UserWarning, match="box.step: healing has removed 1 faces and 3 edges"):
         found = placed_housing(ForeignHousing(**housing, smallest_detail=0.2), bearing, sizes)
     assert found.facts["faces removed"] == 1
+
+
+def test_edges_are_those_of_all_tetrahedra() -> None:
+    np.testing.assert_array_equal(np.sort(_EDGES, axis=1), TETRAHEDRON_EDGES)

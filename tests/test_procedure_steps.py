@@ -25,7 +25,9 @@ def test_it_cannot_end_with_a_step_that_was_not_taken(missing: int) -> None:
 
 def test_any_order_is_complete_that_has_each_step() -> None:
     for order in permutations(range(1, 7)):
-        require_complete(taken(*order))
+        found = taken(*order)
+        assert not found.missing
+        require_complete(found)
 
 
 def test_loops_are_logged_with_their_reason() -> None:

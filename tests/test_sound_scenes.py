@@ -116,7 +116,8 @@ def test_bearing_units_in_each_other_are_refused_as_they_are_read(x, says):
 
 
 def test_bearing_units_beside_each_other_are_taken():
-    change_scene(library_scene("main_bearing_spherical"), two_units(x=0.3601))
+    scene = change_scene(library_scene("main_bearing_spherical"), two_units(x=0.3601))
+    assert [unit.bearing.x for unit in scene.bearing_units] == [0.0, 0.3601]
 
 
 def fits_in_cad(shaft, bearings, housings) -> bool:

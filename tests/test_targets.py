@@ -5,7 +5,7 @@ import pytest
 from fe_drivetrain.compare.convergence import band_of
 from fe_drivetrain.report.charts import bars, trace
 from fe_drivetrain.suite.page import Page
-from fe_drivetrain.suite.records import MeshSeries
+from fe_drivetrain.suite.records import MeshSeries, goal
 from fe_drivetrain.suite.targets import Target, split_unit
 
 
@@ -110,3 +110,25 @@ def test_a_chart_without_points_is_a_sentence() -> None:
     page = Page()
     page.chart("Mass of all", [trace("none", [], [])], "x", "y")
     assert page.sections[0].items[0].kind == "text"
+
+
+@pytest.mark.parametrize(
+    ("measured", "bound", "reached"),
+    [
+        (1.0, {"most": 1.0}, "yes"),
+        (1.1, {"most": 1.0}, "no"),
+        (1.1, {"least": 1.0}, "yes"),
+        (0.9, {"least": 1.0}, "no"),
+        (float("nan"), {"most": 1.0}, "no"),
+        (None, {"least": 1.0}, "no"),
+    ],
+)
+def test_a_goal_is_reached_at_its_bound_and_never_unmeasured(
+    measured: float | None, bound: dict[str, float], reached: str
+) -> None:
+    assert goal("time [s]", measured, **bound)["reached"] == reached
+
+
+def test_a_goal_has_one_bound() -> None:
+    with pytest.raises(TypeError, match="either most or least"):
+        goal("time [s]", 1.0, most=1.0, least=0.5)

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import QuickRun
 from numpy.testing import assert_allclose
 
 from fe_drivetrain.common.arrays import Floats
@@ -140,12 +139,6 @@ def test_backlash_opens_meshes_of_an_unloaded_machine() -> None:
 def test_a_mesh_that_is_not_there() -> None:
     with pytest.raises(InputError, match="no mesh 'stage 9 mesh'"):
         varying_equations(park()[0], {"stage 9 mesh": Meshing(1.6, 128.0)})
-
-
-@pytest.mark.quick("performance/drivetrain_transient")
-def test_speed_of_a_gearbox_in_time(quick_run: QuickRun) -> None:
-    results = quick_run("performance/drivetrain_transient")
-    assert all(verdict.passed for verdict in results.verdicts)
 
 
 def test_the_examples_of_the_docs_run() -> None:

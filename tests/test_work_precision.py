@@ -237,7 +237,7 @@ def test_quick_run_measures_every_element_and_writes_its_page(quick_run: QuickRu
     }
     assert best[CURVED] < best[STRAIGHT]
     assert best["hex 20"] < best["hex 8"]
-    assert set(results.figures) == {"shaft", "housing", "growth"}
+    assert set(results.figures) == {"shaft", "housing", "growth", "goals"}
     assert len(results.figures["growth"]) == 2
     assert "Pareto front" in (folder / "report.html").read_text()
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import GridConvergence, grid_convergence
+from fe_drivetrain.compare import GridConvergence, digit, grid_convergence
 from fe_drivetrain.geometry import Shaft
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
@@ -35,7 +35,7 @@ ORDERS = (2, 3, 4)
 
 TABLE = published.table("nrel_750kw")
 TABLED = TABLE.shafts[0].stiffness
-HALF_DIGIT = published.digit("3.69e7") / 2
+HALF_DIGIT = digit("3.69e7") / 2
 IMPLIED = implied(TABLED, TABLE.shafts[0].damping)
 
 MAKERS: dict[str, Callable[[Drivetrain, GeneratorState], Torsional]] = {

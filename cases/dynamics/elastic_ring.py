@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
 from fe_drivetrain.dynamics import (
     Rim,
     assemble,
@@ -119,8 +120,7 @@ def check_ring(page: Page) -> None:
             f"free rim of 10 mm, {n} waves [Hz]",
             ring.frequency(n),
             float(np.sqrt(w2 / (n**2 + 1)) / (2 * np.pi)),
-            within=1e-12,
-            why="round-off",
+            **round_off(30, "a root of products and powers, in another order"),
             source="Love 1927, art. 293",
             basis="self-consistency",
         )

@@ -4,7 +4,11 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import decades, fitted_exponent
+from fe_drivetrain.compare import (
+    decades,
+    fitted_exponent,
+    round_off,
+)
 from fe_drivetrain.dynamics import (
     AVERAGE,
     LINEAR,
@@ -203,8 +207,9 @@ def check_period(page: Page) -> None:
                 float(
                     np.abs((1.0 + np.array(longer)) * 2 * np.arctan(steps / 2) / steps - 1).max()
                 ),
-                within=1e-10,
-                why="round-off",
+                **round_off(
+                    100 / steps.min(), "the angle that an eigenvalue close to 1 turns in a step"
+                ),
                 source="w dt / (2 atan(w dt / 2))",
             )
     page.section("Period and damping")

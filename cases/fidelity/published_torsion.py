@@ -64,7 +64,7 @@ def beside_published(page: Page, scene: Scene, published: Published) -> None:
     )
     page.at_most(
         f"finite elements without fillets above the sections in series, {where}, relative",
-        max(plain / summed - 1.0, 0.0),
+        plain / summed - 1.0,
         1e-8,
         why="round-off of a condensed stiffness",
         source="sections kept plane and round only make it stiffer (least potential energy)",

@@ -162,6 +162,7 @@ def _check_plane_strain(page: Page, count: int, orders: tuple[int, int]) -> None
             within=max(1e-9, band / reference),
             why="what the higher order of elements of two changed, or round-off",
             source="Lame 1852" if k == 0 else "Michell 1899: four powers of the radius",
+            basis="self-consistency",
             band=band,
         )
 

@@ -67,11 +67,11 @@ class Compared:
     changes : dict of str to Changes
         By key of `QUANTITIES`.
     stiffer_on_softer : float
-        Largest share by which a motion of the hub is stiffer where its supports are softer; 0 by
-        Rayleigh.
+        Largest share by which a motion of the hub is stiffer where its supports are softer; none
+        is above 0 (Rayleigh).
     stiffer_than_beam : float
         Share by which the free shaft's meridian is stiffer in torsion than its beam, fillets left
-        out; 0, because a beam keeps its sections plane and round.
+        out; not above 0, because a beam keeps its sections plane and round.
     """
 
     scene: str
@@ -117,8 +117,8 @@ def compared(name: str, scene: Scene) -> Compared:
         name,
         scene.shaft.length / max(section.outer_diameter for section in scene.shaft.sections),
         changes,
-        max(0.0, *softened),
-        max(0.0, _end_torsion(sharp) / _end_torsion(beam) - 1.0),
+        max(softened),
+        _end_torsion(sharp) / _end_torsion(beam) - 1.0,
     )
 
 

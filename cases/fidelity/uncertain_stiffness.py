@@ -13,6 +13,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.commands import bands
 from fe_drivetrain.common import (
     FORCES,
+    MOTIONS,
 )
 from fe_drivetrain.fidelity import (
     LEAST_ORDER,
@@ -74,7 +75,7 @@ STEP = 1e-3
 _LEAST = 1e-3
 
 #: What is looked at: its name at the cheap level.
-HUB = tuple(f"hub.stiffness.{m}" for m in ("ux", "uy", "uz", "rx", "ry", "rz"))
+HUB = tuple(f"hub.stiffness.{m}" for m in MOTIONS)
 MOMENT = f"{BEARING}.My"
 Slopes = dict[str, dict[str, float]]
 """By quantity and by value."""
@@ -283,7 +284,7 @@ def _check_deviations(page: Page, found: Study, top: Slopes, coarse: Slopes) -> 
         page.at_most(
             f"{q}: standard deviation for the inputs, how far outside of the two bounds of "
             f"level 1, {100 * bounds[0]:.3g} and {100 * bounds[1]:.3g} % [%]",
-            100 * max(bounds[0] - exact, exact - bounds[1], 0.0),
+            100 * max(bounds[0] - exact, exact - bounds[1]),
             10 * exact,
             why="a tenth of the assembly's: the samples themselves know a band to that",
             source=f"sensitivities of the assembly: {100 * exact:.3g} %",

@@ -8,6 +8,7 @@ from scipy.stats import norm
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
 from fe_drivetrain.gear import (
     ParallelStage,
     PlanetaryStage,
@@ -238,8 +239,7 @@ def counts(page: Page) -> None:
             f"loads of {name} per turn of the rotor, drivetrain C",
             of[name],
             exact,
-            within=1e-12,
-            why="counting",
+            **round_off(10, "a quotient of whole numbers of teeth"),
             source="teeth of drivetrain C",
         )
     page.section("How often a tooth is loaded")

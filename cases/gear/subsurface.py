@@ -103,7 +103,7 @@ def run(run: Run, page: Page) -> None:
             at,
             within=0.005,
             relative=False,
-            why="two digits",
+            why="half of the last of the two digits that are printed",
             source=SOURCE,
         )
     highest = found["high speed"].pressure

@@ -32,6 +32,7 @@ from fe_drivetrain.cases.life.operating import (
     state_meaning,
 )
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
 from fe_drivetrain.coupled import body_on_races, on_springs, scene_body
 from fe_drivetrain.life import miner_load
 from fe_drivetrain.report import Chart, trace
@@ -304,8 +305,7 @@ def second_ways(page: Page, world: models.World, hub: Floats, ground: str) -> No
     page.vanishes(
         f"{ground}: {models.CATALOGUE}, life by Miner's load, relative difference",
         float(abs(life / mean - 1.0)),
-        within=1e-12,
-        why="round-off",
+        **round_off(1e3, "sums of powers of 10/3 over all load steps, and their root"),
         source="Miner's rule in loads and in lives",
         basis="self-consistency",
     )

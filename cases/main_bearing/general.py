@@ -400,7 +400,8 @@ def secant_page(run: Run, page: Page, scene: Scene, cases: Cases) -> None:
                 float(parts.shares.sum()) if found.scatter else 1.0,
                 1.0,
                 within=1e-6,
-                why="round-off",
+                why="terms of a moment may cancel but for a share of 1e-9 of them, of which "
+                "rounding leaves six digits",
                 source="the terms and the rest are all of the moment",
                 basis="self-consistency",
             )

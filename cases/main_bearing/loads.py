@@ -23,7 +23,7 @@ from fe_drivetrain.hub_loads import (
     require_points,
     surrogate_grid,
 )
-from fe_drivetrain.report import Chart, rounded, trace
+from fe_drivetrain.report import rounded, trace
 from fe_drivetrain.scene import Scene
 from fe_drivetrain.suite import Jobs, Page, Run
 
@@ -313,21 +313,12 @@ def group_chart(
                 error_y={"type": "data", "array": rounded(by_group.std[rows])},
             )
         )
-    page.add(
-        Chart(
-            caption=f"{caption}: mean and standard deviation over the seeds of each group, "
-            "staggered about the mean wind speed",
-            figure={
-                "data": traces,
-                "layout": {
-                    "xaxis": {
-                        "title": {"text": "mean wind speed [m/s]"},
-                        "tickvals": sorted({g[0] for g in groups}),
-                    },
-                    "yaxis": {"title": {"text": y}, "rangemode": "tozero"},
-                },
-            },
-        )
+    page.chart(
+        f"{caption}: mean and standard deviation over the seeds of each group, staggered about the "
+        "mean wind speed",
+        traces,
+        "mean wind speed [m/s]",
+        y,
     )
 
 

@@ -57,7 +57,7 @@ def check_series(page: Page, series: Series, label: str) -> None:
             f"{label}, coarser meshes of its bands: equilibrium and linearity, the worst",
             series.worst_error(),
             within=1e-8,
-            why="solver accuracy",
+            why="the residual at which the solver of the linear scene stops",
             source="exact",
         )
 

@@ -179,7 +179,7 @@ def run(run: Run, page: Page) -> None:
         "sliding: moment on the bearing per unit of bending moment at the hub",
         float(np.abs(main.response.reactions[name][3:, 3:6]).max()),
         within=1e-8,
-        why="solver accuracy",
+        why="the residual at which the solver stops: the joint has no row for a moment",
         source="a sphere without friction carries no moment",
     )
 

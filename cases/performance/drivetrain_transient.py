@@ -35,7 +35,7 @@ from fe_drivetrain.dynamics.machines import slip_line
 from fe_drivetrain.dynamics.steady_state import restoring
 from fe_drivetrain.export.programs.exudyn_motion import exudyn_motion
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run, grouped
+from fe_drivetrain.suite import Page, Record, Run, goal, grouped
 
 SPEED = 12.1 * np.pi / 30.0  # rad/s, rated
 TORQUE = 3945990.3  # N m, rated, on the first carrier
@@ -107,14 +107,6 @@ def run(run: Run, page: Page) -> None:
         why="forces of meshes would be wrong else",
         source="its residual",
     )
-    if not run.quick:
-        page.at_most(
-            "ten minutes at 1 kHz [s]",
-            seconds,
-            GOAL,
-            why="a goal for two cores",
-            source="measured here",
-        )
     with run.step("error over the step"):
         rows, peer = methods(
             equations, loads, start, QUICK_SHORT if run.quick else SHORT, run.quick
@@ -135,6 +127,12 @@ def run(run: Run, page: Page) -> None:
         "loads and low modes are right, the fast meshes need steps of 0.05 ms, which the chart "
         "shows.",
     )
+    if not run.quick:
+        page.section("Goal")
+        page.table(
+            "What was measured on one core, and the goal of this project for two",
+            [goal("ten minutes at 1 kHz [s]", seconds, most=GOAL)],
+        )
     page.section("Error over the step, and over time")
     for key in ("step [s]", TIME):
         page.chart(

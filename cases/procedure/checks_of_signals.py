@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases.procedure.checks_of_parts import Found
+from fe_drivetrain.compare import round_off
 from fe_drivetrain.histories import (
     alias,
     capture_matrix,
@@ -31,7 +32,7 @@ def captured() -> list[Found]:
                 float(of.windows),
                 "printed",
                 0.0,
-                "a count",
+                "windows are counted, one by one",
             ),
             Found(
                 f"{of.where}: mean turbulence [%], {100 * of.turbulence:.2f} printed",
@@ -39,7 +40,7 @@ def captured() -> list[Found]:
                 mean,
                 "middles of the printed classes",
                 5e-3,
-                "its last digit",
+                "half of the last digit that is printed",
             ),
         ]
     return found
@@ -69,7 +70,7 @@ def counted() -> list[Found]:
             0.0,
             "ASTM E1049: 3 x 0.5, 4 x 1.5, 6 x 0.5, 8 x 1, 9 x 0.5",
             0.0,
-            "counts",
+            "halves of cycles are counted, which doubles hold exactly",
         ),
         Found(
             "equivalent range of ten periods of a sine of range 6",
@@ -92,8 +93,21 @@ def counted() -> list[Found]:
             0.1,
             "one sample at the edge of a class",
         ),
-        Found("load durations [s]", float(durations.amount.sum()), 500.0, "T"),
-        Found("equivalent level from mean to maximum", float(inside), 1.0, "p > 1", 0.0, "a truth"),
+        Found(
+            "load durations [s]",
+            float(durations.amount.sum()),
+            500.0,
+            "T",
+            **round_off(500.0 * len(signal), "a sum of the times of all samples, to 500 s"),
+        ),
+        Found(
+            "equivalent level from mean to maximum",
+            float(inside),
+            1.0,
+            "p > 1",
+            0.0,
+            "1: it lies between",
+        ),
     ]
 
 

@@ -29,6 +29,7 @@ from fe_drivetrain.cases.procedure.pitch_and_yaw import (
     stop_motion,
 )
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
 from fe_drivetrain.histories import capture_matrix
 from fe_drivetrain.procedure import (
     Solutions,
@@ -205,8 +206,7 @@ def identification(page: Page) -> list[Record]:
         "Eq 1 with the aerodynamic torque: inertia over J*",
         float(driven / inertia),
         FRONT / REDUCED,
-        within=1e-8,
-        why="rounding",
+        **round_off(1e4, "least squares over all samples, whose columns are far from parallel"),
         source="J_r / J*",
         measure="identity",
     )
@@ -299,8 +299,7 @@ def pitch(page: Page) -> list[Record]:
         "friction of 3 MN m, 200 kN, 100 kN at 2 m [kN m]",
         whole / 1e3,
         43.0836,
-        within=1e-9,
-        why="arithmetic",
+        **round_off(10, "three products and their sum"),
         source="0.003 (4.4 x 3000 + 200 x 2 + 2.2 x 100 x 2 x 1.73)",
         measure="reaction",
         basis="self-consistency",
@@ -363,16 +362,18 @@ def yaw(page: Page) -> list[Record]:
         "shear with wind on the tower, beyond the force, over it",
         found - 1.0,
         q * BRIDGES / (2.0 * force),
-        within=1e-9,
-        why="rounding",
+        **round_off(
+            100 * force / (q * BRIDGES), "what the wind adds to a shear, less the force itself"
+        ),
         source="q L / 2",
         measure="reaction",
     )
     page.vanishes(
         "gyroscopic torque about the tower [kN m]",
         float(torque[2]),
-        within=1e-9,
-        why="rounding",
+        **round_off(
+            4 * float(np.linalg.norm(torque)), "products with a turning along the tower alone"
+        ),
         source="H x turning is across both",
     )
     return [

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
 from fe_drivetrain.histories import even_levels, time_at_level
 from fe_drivetrain.hub_loads import (
     Condition,
@@ -101,8 +102,10 @@ def shutdown(page: Page) -> None:
         "stop: work of the motor [kJ]",
         given / 1e3,
         used / 1e3,
-        within=1e-3,
-        why="trapezia over steps of 10 ms of ramps that last 300 ms",
+        **round_off(
+            len(time),
+            "sums over all samples; inertia's power is a sine of each ramp",
+        ),
         source="work of load and friction; the blade rests before and after",
         measure="energy",
     )
@@ -111,8 +114,10 @@ def shutdown(page: Page) -> None:
         "stop, Eq 5.1 as printed: work beyond that of the load, over that of friction",
         dissipated / work(friction, speed),
         -1.0,
-        within=1e-2,
-        why="trapezia over steps of 10 ms of ramps that last 300 ms",
+        **round_off(
+            100 * len(time),
+            "sums over all samples, less that of the load; inertia's power is a sine of each ramp",
+        ),
         source="friction with the printed sign gives power",
         measure="energy",
     )
@@ -137,8 +142,7 @@ def shutdown(page: Page) -> None:
         "friction of 3 MN m, 200 kN and 100 kN at 2 m [kN m]",
         example,
         0.003 * (4.4 * 3000 + 200 * 2 + 2.2 * 100 * 2 * 1.73),
-        within=1e-12,
-        why="arithmetic",
+        **round_off(10, "three products and their sum, in other units"),
         source="Rothe Erde, with F_r D 1.73",
         measure="reaction",
         basis="self-consistency",
@@ -208,8 +212,7 @@ def pitching(run: Run, page: Page) -> Floats:
             f"{wind:g} m/s: meshes of all teeth",
             float(teeth.sum()),
             travel * TEETH / (2.0 * np.pi),
-            within=1e-9,
-            why="a sum in another order",
+            **round_off(10 * len(found.pitch), "the travel between samples, tooth by tooth"),
             source="travel over the pitch of the teeth",
             measure="identity",
         )
@@ -276,8 +279,7 @@ def yawing(page: Page) -> None:
         "yawing: mean angle of a motion [deg]",
         float(np.degrees(found.angle.mean())),
         5.0,
-        within=1e-9,
-        why="a sum of samples",
+        **round_off(len(speed), "an angle is the difference of two sums of all samples"),
         source="PROTEST 2010, section 6.4",
         measure="identity",
     )
@@ -285,8 +287,10 @@ def yawing(page: Page) -> None:
         "direct switching: time that transients add to the load durations [s]",
         float(direct.amount.sum() - levels.amount.sum()),
         starts * 0.03,
-        within=1e-9,
-        why="a sum",
+        **round_off(
+            len(levels.amount) * DURATION * starts / (starts * 0.03),
+            "of the durations of all levels what transients add is a small difference",
+        ),
         source="30 ms at each start",
         measure="identity",
     )
@@ -321,8 +325,7 @@ def yawing(page: Page) -> None:
     page.vanishes(
         "yawing: gyroscopic torque about the tower, over its whole [kN m/(kN m)]",
         float(gyroscopic[2] / np.linalg.norm(gyroscopic)),
-        within=1e-12,
-        why="rounding",
+        **round_off(4, "products with a turning that is along the tower alone"),
         source="H x turning is across both, with a shaft tilted by 5 degrees",
     )
     page.text(
@@ -386,7 +389,7 @@ def tower(page: Page) -> None:
             q * BRIDGES / 2e3,
             within=1e-9,
             relative=False,
-            why="rounding of a difference",
+            why="of two bending moments of MN m the shear is a difference, known to 1e-9 kN",
             source="q L / 2: a tower with an even load",
             measure="reaction",
         )

@@ -142,8 +142,8 @@ def mapped(run: Run, lengths: Floats, bores: Floats) -> Map:
 
 @case(
     "Beam theory against elasticity: uniform shafts, by length and bore",
-    source="Cowper 1966, J. Appl. Mech. 33, 335-340; Love 1927, A Treatise on the Mathematical "
-    "Theory of Elasticity, articles 229-231",
+    source="Cowper 1966, J. Appl. Mech. 33, 335-340; theory: Saint-Venant's flexure "
+    "(tests/test_shaft_theory.py)",
 )
 def run(run: Run, page: Page) -> None:
     """Map the errors, correct the beam by its ends, and check against solids."""

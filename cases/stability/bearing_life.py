@@ -15,7 +15,11 @@ from fe_drivetrain.cases.life.operating import (
     thesis_setup,
 )
 from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import decades, safe_range
+from fe_drivetrain.compare import (
+    decades,
+    round_off,
+    safe_range,
+)
 from fe_drivetrain.life import (
     GRADES,
     Damage,
@@ -77,8 +81,7 @@ def lubricant(page: Page) -> None:
     page.vanishes(
         "life factor less the formula from kappa 0.1 to 4, relative, the worst",
         float(np.abs(life_factor(0.5, inside) / formula - 1.0).max()),
-        within=1e-12,
-        why="round-off",
+        **round_off(200, "the same four powers, the last of them -9, once more"),
         source="ISO 281 as Stirling 2023, eqs 5.11 to 5.13, prints it",
     )
     thin, thick = (float(life_factor(0.5, k)) for k in (1e-2, 1e2))
@@ -86,16 +89,14 @@ def lubricant(page: Page) -> None:
         "life factor at kappa 0.01, over the least",
         thin / 0.1,
         1.0,
-        within=1e-12,
-        why="round-off",
+        **round_off(1, "one division of the least value"),
         source="below 0.1 no life is rated but the least",
     )
     page.equals(
         "life factor at kappa 100, over that at 4",
         thick / float(life_factor(0.5, 4.0)),
         1.0,
-        within=1e-12,
-        why="round-off",
+        **round_off(1, "both are the formula at kappa 4"),
         source="more viscosity than 4 brings nothing",
     )
     setup = own_setup()
@@ -163,8 +164,7 @@ def fatigue_limit(page: Page) -> None:
         "life factor where its formula is 50, kappa 4",
         float(life_factor(capped, 4.0)),
         50.0,
-        within=1e-9,
-        why="round-off",
+        **round_off(1e3, "the power -9 of a bracket that its own inverse has made"),
         source="ISO 281 as Stirling 2023, eq. 5.13, prints it, solved for the load",
     )
     page.at_most(
@@ -351,8 +351,7 @@ def standstill(page: Page) -> float:
         "life of the moving ring at half a turn to either side, over that of rotation",
         float(ratio[-1]),
         1.0,
-        within=1e-9,
-        why="round-off",
+        **round_off(1e4, "sums over the rollers' places and two powers of them"),
         source="every place meets every load",
     )
     amplitude = np.array([row[AMPLITUDE] for row in rows])

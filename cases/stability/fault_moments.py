@@ -26,8 +26,7 @@ from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions
 from fe_drivetrain.geometry import NO_BANDS, MeshSizes, Shaft
 from fe_drivetrain.geometry import Section as ShaftSection
 from fe_drivetrain.interfaces import dofs
-from fe_drivetrain.mesh import cached_mesh, write
-from fe_drivetrain.mesh.cached import _content
+from fe_drivetrain.mesh import cached_mesh, mesh_content, write
 from fe_drivetrain.operator.kernels import invert
 from fe_drivetrain.report import Environment, Results, read_results
 from fe_drivetrain.report.page import render
@@ -63,7 +62,7 @@ def small(run: Run, page: Page) -> None:
     page.data("stiffness", stiffness)
 
 
-MESH_CONTENT = _content(SHAFT, [], {}, SIZES, frozenset(), NO_BANDS)
+MESH_CONTENT = mesh_content(SHAFT, [], {}, SIZES, frozenset(), NO_BANDS)
 CASE_KILLED = Case("faults/small", "Small case", "Saint-Venant", small, settings=("mark",))
 
 

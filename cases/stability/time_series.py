@@ -219,8 +219,8 @@ def check_crossing(page: Page, found: Crossing) -> float:
         measure="identity",
     )
     page.equals(
-        f"relative error at the least mean, {found.means[-1]:g} standard deviations, over that "
-        "expected",
+        "relative error / expected error at the smallest mean, "
+        f"{found.means[-1]:g} standard deviations",
         float(np.median(found.relative_excess[-1])),
         1.0,
         within=3 / np.sqrt(SAMPLES),
@@ -229,14 +229,14 @@ def check_crossing(page: Page, found: Crossing) -> float:
         measure="identity",
     )
     page.vanishes(
-        "relative error: worst of all means and histories over that expected, less one",
+        "relative error / expected error, less one: worst of all means and histories",
         float(np.abs(found.relative_excess - 1).max()),
         within=5 / np.sqrt(SAMPLES),
         why="five sampling errors: of thousands of histories none is beyond",
         source=EXPECTED,
     )
     page.holds(
-        "mean percentage error over that expected, at the least mean: beyond its safe range",
+        "mean percentage error / expected error at the smallest mean is outside the safe range",
         bool(found.excess[-1] > KEPT),
         why=f"a sweep that never reaches {KEPT:g} times the expected error finds no limit",
         source="the thesis's metric breaks down where the reference passes zero",

@@ -65,10 +65,7 @@ def run(run: Run, page: Page) -> None:
         f"displacements to {max(column(rows, MOVED)):.0e} of the largest."
     )
     page.section("Tension")
-    page.image(
-        "The bored shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)),
-    )
+    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
     pull = "tension on the ends", SIGMA / 1e6, "MPa"
     show_uniform(page, OUTER, BORE, ("length", LENGTH, "m"), pull, steel=STEEL)
     page.sweep(

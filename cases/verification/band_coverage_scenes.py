@@ -17,7 +17,7 @@ from fe_drivetrain.cases.verification.band_coverage import (
     WIDE,
     counted,
 )
-from fe_drivetrain.common import Cache, Floats, InputError
+from fe_drivetrain.common import MOTIONS, Cache, Floats, InputError
 from fe_drivetrain.fidelity import (
     LevelModel,
     Quantity,
@@ -43,7 +43,6 @@ FINER, APART = (0.75, 0.55, 0.45, 0.4), 1.15
 #: Order of the reference: that of energy at a crack, where it converges most slowly.
 ORDER = 1.0
 
-STIFFNESSES = ("ux", "uy", "uz", "rx", "ry", "rz")
 STIFFNESS, REACTION = "stiffness at the hub", "reaction"
 
 
@@ -53,7 +52,7 @@ def quantities(scene: Scene) -> list[Quantity]:
     statics, length = statics_level(scene), scene.shaft.length
     reactions = [Quantity(f"{name}.{c}") for c in ("Fz", "My")]
     return [
-        *(Quantity(f"hub.stiffness.{motion}") for motion in STIFFNESSES),
+        *(Quantity(f"hub.stiffness.{motion}") for motion in MOTIONS),
         *(q for q in reactions if not np.isfinite(q.of(statics, length)).all()),
     ]
 

@@ -80,10 +80,7 @@ def run(run: Run, page: Page) -> None:
         "Shear and pure bending are exact with every element of second order."
     )
     page.section("Energy of the cantilever")
-    page.image(
-        "The block",
-        run.sketch(BLOCK.mesh(20, (12, 4, 3), BLOCK.width)),
-    )
+    page.image("The block", run.sketch(BLOCK.mesh(20, (12, 4, 3), BLOCK.width)))
     page.sweep("Strain energy that is missed", rows, THROUGH, MISSED, by="element", log="xy")
     page.table("Shear and bending, four elements along the block and two through it", displaced)
     page.text(

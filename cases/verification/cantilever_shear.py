@@ -37,16 +37,14 @@ def solve(tube: theory.Tube, refinement: int) -> Record:
 
 @case(
     "Cantilever with shear: Saint-Venant's flexure and Cowper's coefficient",
-    source="Love 1927, A Treatise on the Mathematical Theory of Elasticity, articles 229-231; "
-    "Cowper 1966, J. Appl. Mech. 33, 335-340",
+    source="theory: Saint-Venant's flexure, in equilibrium, free on its surfaces and with the "
+    "given resultant (tests/test_shaft_theory.py); Cowper 1966, J. Appl. Mech. 33, 335-340",
 )
 def run(run: Run, page: Page) -> None:
     """Exact tractions on both ends."""
     page.section("Saint-Venant's flexure")
-    page.image(
-        "Shaft with a bore of half its diameter",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, 0.5 * OUTER)),
-    )
+    sketch = run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, 0.5 * OUTER))
+    page.image("Shaft with a bore of half its diameter", sketch)
     inputs.show_inputs(
         page,
         ("outer diameter", OUTER, "m", inputs.SIZE),
@@ -78,18 +76,17 @@ def check(page: Page, tube: theory.Tube, series: MeshSeries) -> float:
     best = series.last
     name, share, exact = (best[key] for key in (SHAFT, "shear's share", "exact " + STRESS))
     within, arcs = theory.within_arcs(best[TURN], "I", 4)
-    beam, love = "F L^3 / 3EI + F L / kGA, k of Cowper 1966", "Love 1927, articles 229-231"
+    beam = "F L^3 / 3EI + F L / kGA, k of Cowper 1966"
     of_tip = f"the tip's tolerance, of which shear is {100 * share:.2g} %"
     k, wide = tube.shear_coefficient, within / share
     coefficient = Target(COEFFICIENT, k, wide, of_tip, COWPER, "", True, "stiffness", 4.0)
     tip = Target(TIP, best[CLOSED], within, arcs, beam, order=4.0)
     page.targets(f"By mesh, {name}", series, [tip, coefficient], "closed form", name)
     worst = "as for the deflection, at the worst node"
-    error = Target(ERROR, 0.0, within, worst, love, measure="deflection")
+    error = Target(ERROR, 0.0, within, worst, theory.FLEXURE, measure="deflection")
     where = f"shear stress on the neutral axis, {'at the skin' if tube.inner else 'at the centre'}"
     recovered, why = theory.within_recovery(best[TURN])
     near = recovered * best["largest of the section [Pa]"] / abs(exact)
     why += ", of the largest stress of the section"
-    flexure = "Saint-Venant's flexure, Love 1927, articles 230-231"
-    page.settled(series, error, Target(STRESS, exact, near, why, flexure, where), of=name)
+    page.settled(series, error, Target(STRESS, exact, near, why, theory.FLEXURE, where), of=name)
     return float(abs(best[TIP] / best[CLOSED] - 1))

@@ -66,8 +66,7 @@ def run(run: Run, page: Page) -> None:
     )
     page.section("Clamped end")
     page.image(
-        "Shaft of five diameters",
-        run.sketch(solid_shafts.straight((0.0, 5.0 * OUTER), OUTER)),
+        "Shaft of five diameters", run.sketch(solid_shafts.straight((0.0, 5.0 * OUTER), OUTER))
     )
     show_inputs(page, ("outer diameter", OUTER, "m", SIZE), steel=STEEL)
     title = "How much stiffer a clamped shaft with a rigid tip is than Timoshenko's beam, against "

@@ -9,7 +9,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.curved_bars import bent_and_pulled, missed_at_surface
-from fe_drivetrain.validation.plane_rings import CurvedBar, plane_strain
+from fe_drivetrain.validation.plane_rings import CURVED_BAR, CurvedBar, plane_strain
 from fe_drivetrain.validation.ring_solids import ring_sector
 
 INNER, OUTER = 0.1, 0.3  # m
@@ -56,20 +56,19 @@ def solve(n: int) -> Record:
 
 def target(key: str, within: float, h: float) -> Target:
     """One quantity, and what a finest mesh of elements of size h may miss of it."""
-    source = "Golovin 1881; Timoshenko and Goodier 1970, art "
-    source += "29 and 31" if key.startswith("bending") else "33"
     if key not in HOOP:
         why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
-        return Target(key, EXACT[key], within, why + "only there", source)
+        return Target(key, EXACT[key], within, why + "only there", CURVED_BAR)
     miss = missed_at_surface(*HOOP[key], h, 1e-3 * INNER)
     why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the Gauss "
     why += "points misses at a surface; the element's own error is of that size"
-    return Target(key, EXACT[key], 4.0 * miss, why, source, relative=False)
+    return Target(key, EXACT[key], 4.0 * miss, why, CURVED_BAR, relative=False)
 
 
 @case(
     "Thick curved bar in bending and under an end force",
-    source="Golovin 1881; Timoshenko and Goodier 1970, Theory of Elasticity, art 29 and 33",
+    source="theory: Golovin's bar of 1881, in equilibrium, compatible, free on its surfaces and "
+    "with the given resultant (tests/test_plane_rings.py)",
 )
 def run(run: Run, page: Page) -> None:
     """Solve a quarter circle of the bar under the exact tractions on its ends."""
@@ -89,7 +88,5 @@ def run(run: Run, page: Page) -> None:
         "Plane strain, hexahedra of 27 nodes, a quarter circle. The ends carry the exact "
         "tractions, so no clamp disturbs the stress."
     )
-    page.image(
-        "The quarter circle that is solved, of one mesh",
-        run.sketch(ring_sector(INNER, OUTER, 0.05, QUARTER, (4, 8, 1))),
-    )
+    sketch = run.sketch(ring_sector(INNER, OUTER, 0.05, QUARTER, (4, 8, 1)))
+    page.image("The quarter circle that is solved, of one mesh", sketch)

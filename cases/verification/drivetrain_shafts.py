@@ -88,8 +88,6 @@ def run(run: Run, page: Page) -> None:
         f"{of_a[STRESS]:.1f} MPa: a thick, short flange rather than a shaft. The frequencies of "
         "all four are found under drivetrain/."
     )
-    page.image(
-        "The low-speed shaft of drivetrain D, as its stiffness and damper imply it",
-        run.sketch(straight((0.0, uniform.length), uniform.diameter)),
-    )
+    sketch = run.sketch(straight((0.0, uniform.length), uniform.diameter))
+    page.image("The low-speed shaft of drivetrain D, as its stiffness and damper imply it", sketch)
     page.data("implied_low_speed_shaft", uniform._asdict())

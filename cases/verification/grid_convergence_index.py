@@ -3,7 +3,11 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.compare import GridConvergence, grid_convergence
+from fe_drivetrain.compare import (
+    GridConvergence,
+    grid_convergence,
+    round_off,
+)
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run
 
@@ -148,8 +152,10 @@ def check_worked(page: Page, worked: GridConvergence) -> None:
     page.vanishes(
         "worked set: asymptotic ratio less the ratio of the two finest solutions",
         worked.asymptotic_ratio - SOLUTIONS[2] / SOLUTIONS[1],
-        within=1e-9,
-        why="round-off",
+        **round_off(
+            100 * SOLUTIONS[2] / (SOLUTIONS[2] - SOLUTIONS[1]),
+            "differences of solutions, whose order is found to the rounding of them",
+        ),
         source="algebra: with the order observed on the same grids both are one number",
         basis="self-consistency",
     )

@@ -78,10 +78,7 @@ def run(run: Run, page: Page) -> None:
         f"length, {off['bored']:.3f} off a bored one's."
     )
     page.section("Held ends")
-    page.image(
-        "The bored shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)),
-    )
+    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
     meshed = "length of the shaft in three dimensions", LENGTH, "m"
     show_uniform(page, OUTER, BORE, meshed, steel=STEEL)
     title = "What ends that can neither contract nor warp add to E A / L"

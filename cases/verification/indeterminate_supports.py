@@ -74,10 +74,7 @@ def run(run: Run, page: Page) -> None:
         f"solid's largest reactions differ from them by at most {100 * largest:.2f} %."
     )
     page.section("Indeterminate supports")
-    page.image(
-        "The shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)),
-    )
+    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)))
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),

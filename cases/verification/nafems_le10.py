@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.interfaces import Constraint
 from fe_drivetrain.operator import pressure
-from fe_drivetrain.report import Parts, Solid, write_solid_view
+from fe_drivetrain.report import Parts, solid_or_picture
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped
 from fe_drivetrain.validation.elliptic_plate import EllipticPlate
@@ -60,17 +60,11 @@ def loaded(nodes: int, divisions: tuple[int, int, int]) -> tuple[LoadedBlock, Fl
 def in_three_dimensions(run: Run, page: Page) -> None:
     """A coarse mesh of the plate as it is bent, to be turned."""
     found, _, _ = loaded(27, QUICK_DIVISIONS[1])
-    plate = Parts(found.block.points, {"plate": found.block.cells})
-    still = run.sketch(found.block)
+    plate, lame = Parts(found.block.points, {"plate": found.block.cells}), {"plate": STEEL.lame}
+    still, fields = run.sketch(found.block), {"1 MPa on the upper face": found.u}
     page.image("Quarter of the plate, as meshed for the view below", still)
-    write_solid_view(
-        plate,
-        {"1 MPa on the upper face": found.u},
-        {"plate": STEEL.lame},
-        run.folder / "plate.3d.json",
-    )
     caption = "The plate under 1 MPa: displacements and von Mises stress"
-    page.add(Solid(caption=caption, file="plate.3d.json", still=still))
+    page.add(solid_or_picture(caption, plate, fields, lame, run.folder, still))
 
 
 @case(

@@ -72,10 +72,7 @@ def run(run: Run, page: Page) -> None:
     met = ", ".join(f"{r['quantity']} {100 * (r['solid'] / r['frame'] - 1):+.3f} %" for r in rows)
     page.answer(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
     page.section("Overhung shaft")
-    page.image(
-        "The shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)),
-    )
+    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)))
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),

@@ -87,8 +87,6 @@ def run(run: Run, page: Page) -> None:
     title = "Force of a constant stress on nodes inside, by degree of the quadrature, relative to "
     title += "the largest of one element on a node; the large marker is the assembly's own rule"
     page.chart(title, traces, "degree of the quadrature", "false force on nodes inside [-]", "y")
-    page.image(
-        "The last of the patches: hexahedra of 27 nodes, curved",
-        run.sketch(blocks.patches()[-1].block),
-    )
+    sketch = run.sketch(blocks.patches()[-1].block)
+    page.image("The last of the patches: hexahedra of 27 nodes, curved", sketch)
     page.data("largest errors", rows)

@@ -77,10 +77,7 @@ def run(run: Run, page: Page) -> None:
         f"{worst:.1g} of the exact field, over the largest displacement."
     )
     page.section("Pure bending")
-    page.image(
-        "The bored shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)),
-    )
+    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
     curved = "curvature", CURVATURE, "1/m", "chosen: 40 MPa at the skin"
     show_uniform(page, OUTER, BORE, ("length", LENGTH, "m"), curved, steel=STEEL)
     title = "Anticlastic bending: sideways displacement of the skin round the shaft, at mid length"

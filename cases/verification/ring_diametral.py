@@ -88,9 +88,7 @@ def run(run: Run, page: Page) -> None:
         f"({rings.ORDERS} even harmonics)."
     )
     thick = ring(ratios[0])
-    page.image(
-        "A quarter of the thickest ring",
-        run.sketch(ring_sector(thick.inner, thick.outer, 0.1, 0.5 * np.pi, (4, 12, 1))),
-    )
+    sketch = run.sketch(ring_sector(thick.inner, thick.outer, 0.1, 0.5 * np.pi, (4, 12, 1)))
+    page.image("A quarter of the thickest ring", sketch)
     page.data("curved beam [m]", [ring(ratio).curved_beam() for ratio in ratios])
     page.data("thin ring [m]", [ring(ratio).thin() for ratio in ratios])

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, show_inputs
+from fe_drivetrain.common import GRAVITY
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
@@ -11,11 +12,11 @@ from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, par
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, sag_over_beam
 
 STEEL = MATERIALS["steel"]
-OUTER, RATIO, GRAVITY = 0.4, 6.0, -9.80665  # diameter [m], overhang over it, m/s^2
+OUTER, RATIO, DOWN = 0.4, 6.0, -GRAVITY  # diameter [m], overhang over it, m/s^2
 LENGTH = RATIO * OUTER
 TUBE = Tube(OUTER, 0.0, LENGTH, STEEL)
 SHAFT = SupportedShaft(TUBE, (0.0, LENGTH), ((np.inf, np.inf), (0.0, 0.0)))
-Q = STEEL.density * TUBE.area * GRAVITY  # N/m
+Q = STEEL.density * TUBE.area * DOWN  # N/m
 ROTATION = -Q * LENGTH**3 / (6 * TUBE.EI)  # rad
 RATIOS = (1.5, 2.0, 3.0, 4.0)  # of the chart
 OVERHANG, FOUND, EVEN = "overhang over diameter", "solid", "beam, evenly held"
@@ -27,7 +28,7 @@ SAG, TURNED, MASS, TURN = "sag [m]", "rotation [rad]", "mass [kg]", "elements ro
 def solid(refinement: int) -> Record:
     """Sag, rotation and mass of one mesh, its root held by its mean motion."""
     turn, C = SHAFT.compliance(refinement, 1.5 * OUTER)
-    down, turned = GRAVITY * C.weight[1]
+    down, turned = DOWN * C.weight[1]
     moved = {SAG: float(down), TURNED: float(turned)}
     return {TURN: turn, **moved, MASS: float(C.weight_resultant[0])}
 
@@ -45,7 +46,7 @@ def beyond_the_beam(ratio: float) -> Record:
 def run(run: Run, page: Page) -> None:
     """Gravity on the solid, its root held by its mean motion."""
     closed, even = (sag(Q, TUBE.EI, k, LENGTH) for k in (TUBE.kGA, evenly_loaded_shear(TUBE)))
-    frame = run.timed("frame", SHAFT.frame, Load(1, gravity=GRAVITY)).motions[1]
+    frame = run.timed("frame", SHAFT.frame, Load(1, gravity=DOWN)).motions[1]
     meshes = [run.timed("mesh and solve", solid, r) for r in ((1, 2) if run.quick else (1, 2, 3))]
     ratios = RATIOS[:2] if run.quick else RATIOS
     sweep = [run.timed("other lengths", beyond_the_beam, ratio) for ratio in ratios]
@@ -71,12 +72,9 @@ def run(run: Run, page: Page) -> None:
         f"%), {-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
     )
     page.section("Sag")
-    page.image(
-        "The shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)),
-    )
+    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)))
     length = "overhang", LENGTH, "m"
-    show_inputs(page, ("diameter, solid", OUTER, "m", SIZE), length, steel=STEEL, gravity=GRAVITY)
+    show_inputs(page, ("diameter, solid", OUTER, "m", SIZE), length, steel=STEEL, gravity=DOWN)
     title = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
     title += "section; beside it the beam with that of an evenly held root"
     curves = {FOUND: FOUND, EVEN: EVEN}

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, show_inputs
+from fe_drivetrain.common import GRAVITY
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
@@ -18,8 +19,8 @@ STATIONS = (0.0, L / 4, L / 2, 3 * L / 4, L)
 MIDDLE, END = 2, 4
 PINNED, FREE = (np.inf, 0.0), (0.0, 0.0)
 SHAFT = SupportedShaft(TUBE, STATIONS, (PINNED, FREE, FREE, FREE, PINNED))
-F, M, GRAVITY = 1e6, 1e6, -9.80665  # N, N m, m/s^2
-W = STEEL.density * TUBE.area * GRAVITY * L  # N
+F, M, DOWN = 1e6, 1e6, -GRAVITY  # N, N m, m/s^2
+W = STEEL.density * TUBE.area * DOWN * L  # N
 BENT, SHEARED = L**3 / TUBE.EI, L / TUBE.kGA  # m/N
 #: Of each load the closed form with shear at mid span [m], and the force of load and supports that
 #: enters evenly, and moves mid span [N]. A moment's reactions move both ends by the same amount,
@@ -27,7 +28,7 @@ BENT, SHEARED = L**3 / TUBE.EI, L / TUBE.kGA  # m/N
 LOADS = {
     "force at mid span": (Load(MIDDLE, force=F), F * (BENT / 48 + SHEARED / 4), 1.5 * F),
     "moment at the end": (Load(END, moment=M), M / L * BENT / 16, M / L),
-    "own weight": (Load(MIDDLE, gravity=GRAVITY), W * (5 * BENT / 384 + SHEARED / 8), abs(W) / 2),
+    "own weight": (Load(MIDDLE, gravity=DOWN), W * (5 * BENT / 384 + SHEARED / 8), abs(W) / 2),
 }
 FRAME, REACTION = "Timoshenko frame of the library", "reaction of the downwind support, solid [N]"
 
@@ -71,10 +72,7 @@ def run(run: Run, page: Page) -> None:
         + f" at L = {L / OUTER:g} D."
     )
     page.section("Simple supports")
-    page.image(
-        "The shaft",
-        run.sketch(solid_shafts.straight((0.0, L), OUTER)),
-    )
+    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, L), OUTER)))
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", SIZE),
@@ -82,7 +80,7 @@ def run(run: Run, page: Page) -> None:
         ("force at mid span", F / 1e6, "MN"),
         ("moment at the downwind end", M / 1e6, "MN m"),
         steel=STEEL,
-        gravity=GRAVITY,
+        gravity=DOWN,
     )
     title = "Deflection over its largest: Macaulay's beam with shear, and the means of the solid's "
     page.chart(f"{title}sections", traces, "x [m]", "deflection over the largest")

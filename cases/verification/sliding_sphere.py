@@ -128,10 +128,7 @@ def run(run: Run, page: Page) -> None:
     for joint in JOINTS:
         computed = [m.stiffness for m in moved[joint]]
         page.data(joint, {"exact": exact[joint], "computed": computed})
-    page.image(
-        "Half of both shells",
-        run.sketch(cut_open(mesh_of(INNER, OUTER, 4, 2))),
-    )
+    page.image("Half of both shells", run.sketch(cut_open(mesh_of(INNER, OUTER, 4, 2))))
 
 
 def band(sizes: list[float], values: list[float]) -> float:

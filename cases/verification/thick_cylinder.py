@@ -90,7 +90,5 @@ def run(run: Run, page: Page) -> None:
         "on the true circles. The mean displacement of the bore is the work of the pressure over "
         "pressure and area."
     )
-    page.image(
-        "The eighth of the ring that is solved",
-        run.sketch(ring_sector(RING.inner, RING.outer, 0.075, EIGHTH, (4, 4, 1))),
-    )
+    sketch = run.sketch(ring_sector(RING.inner, RING.outer, 0.075, EIGHTH, (4, 4, 1)))
+    page.image("The eighth of the ring that is solved", sketch)

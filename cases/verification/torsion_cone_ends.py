@@ -73,10 +73,7 @@ def run(run: Run, page: Page) -> None:
         f"angle of {HALF_ANGLE:g} degrees."
     )
     page.section("Cone")
-    page.image(
-        "The cone",
-        run.sketch(SHAFT),
-    )
+    page.image("The cone", run.sketch(SHAFT))
     show_inputs(page, *INPUTS, steel=STEEL)
     title = "How much too stiff the integral of dx / GJ is: against rigid flat ends, and against "
     title += "Michell's cone between spheres through the ends' centres"

@@ -65,10 +65,7 @@ def run(run: Run, page: Page) -> None:
         f"{best[ERROR]:.1g}."
     )
     page.section("Cone")
-    page.image(
-        "The cone",
-        run.sketch(SHAFT),
-    )
+    page.image("The cone", run.sketch(SHAFT))
     show_inputs(page, *INPUTS, steel=STEEL)
     curves = {MISSED: "torque", ERROR: "displacement, largest"}
     title, axis = "Convergence on Michell's field", "relative error"

@@ -74,10 +74,7 @@ def run(run: Run, page: Page) -> None:
         f"{100 * abs(solid[SOLID] / middle - 1):.2g} % of the middle of two exact bounds."
     )
     page.section("What a step adds")
-    page.image(
-        "The bored shaft",
-        run.sketch(solid_shafts.stepped((LARGE, SMALL), LENGTH, BORE)),
-    )
+    page.image("The bored shaft", run.sketch(solid_shafts.stepped((LARGE, SMALL), LENGTH, BORE)))
     names = "large diameter", "small diameter", "bore of the bored shaft", "length of each part"
     sizes = [(name, d, "m") for name, d in zip(names, (LARGE, SMALL, BORE, LENGTH), strict=True)]
     sharp = "fillet", 0.0, "m", "sharp step: the most that a step can add"

@@ -75,10 +75,7 @@ def run(run: Run, page: Page) -> None:
         "round a turn, solid and bored; what is left is what parabolas miss of the circle."
     )
     page.section("Torsional stiffness")
-    page.image(
-        "The bored shaft",
-        run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)),
-    )
+    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
     length = "length", LENGTH, "m", "chosen: the answer does not depend on it"
     show_uniform(page, OUTER, BORE, length, steel=STEEL)
     curves = [trace(of, column(r, TURN), column(r, ERROR), True) for of, r in grouped(rows, SHAFT)]

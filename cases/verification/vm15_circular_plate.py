@@ -66,10 +66,7 @@ def run(run: Run, page: Page) -> None:
     """Solve both plates as solids, their edges carried by the shear that plate theory has there."""
     counts = (4, 8, 16) if run.quick else (6, 12, 24)
     page.section("Stress and deflection")
-    page.image(
-        "Quarter of the plate",
-        run.sketch(PLATE.quarter(4, 2)),
-    )
+    page.image("Quarter of the plate", run.sketch(PLATE.quarter(4, 2)))
     for support, load in PRESSURES.items():
         rows = [run.timed(f"{support}, {n} {COUNT}", solve, support, n) for n in counts]
         thin = PLATE.thin_deflection(load, clamped=support == "clamped")

@@ -81,10 +81,7 @@ def run(run: Run, page: Page) -> None:
     )
     page.section("Deflection and stresses")
     bar = round_bar(DIAMETER, 0.5 * np.pi * RADIUS, 8, 14)
-    page.image(
-        "The bar",
-        run.sketch(replace(bar, points=bent(bar.points))),
-    )
+    page.image("The bar", run.sketch(replace(bar, points=bent(bar.points))))
     page.targets("By mesh", MeshSeries(rows, ROUND), targets)
     page.text(
         "The bar continues two diameters behind its root and is clamped there, so that the clamp's "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, cos, degrees, radians, tan
+from math import cos, radians, tan
 from typing import Literal
 
 from fe_drivetrain.bearing.contact import (
@@ -342,30 +342,6 @@ def ball_row(
         0.5 * radial_clearance * cos(alpha),
         phase,
     )
-
-
-def contact_angle_from_taper(outer_diameter: float, inner_diameter: float, length: float) -> float:
-    """Half the cone of a race from its two diameters.
-
-    Parameters
-    ----------
-    outer_diameter, inner_diameter : float
-        Largest and smallest diameter of the race [m].
-    length : float
-        Along the race [m].
-
-    Returns
-    -------
-    angle : float
-        [deg].
-    """
-    share = 0.5 * (outer_diameter - inner_diameter) / length
-    if not 0.0 < share < 1.0:
-        raise InputError(
-            f"a race from {1e3 * inner_diameter:g} to {1e3 * outer_diameter:g} mm along "
-            f"{1e3 * length:g} mm is no cone: check its diameters"
-        )
-    return degrees(asin(share))
 
 
 def _inclined(what: str, contact_angle: float) -> float:

@@ -1,4 +1,4 @@
-"""What takes long to make, kept on disk under a hash of all that it depends on.
+"""Expensive results, cached on disk under a hash of their inputs.
 
 One mechanism for meshes, made hub loads, solutions, and figures of long studies. They are kept in
 the user's cache folder, which may be deleted at any time; the environment variable

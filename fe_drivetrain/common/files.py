@@ -1,4 +1,4 @@
-"""Files and folders that appear whole or not at all, and what is left of those that never did.
+"""Atomic files and folders, and clean-up of interrupted ones.
 
 What is being written stands beside its target under a hidden name, and its writer holds a lock on
 it. The system lets go of the lock when the writer ends, however it ends: so what is not locked was

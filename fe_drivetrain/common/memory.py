@@ -17,7 +17,7 @@ def keep_freed_memory() -> None:
     """Let new arrays take the memory of freed ones, up to 1 GiB, before the system is asked.
 
     GNU's C library hands the memory of large arrays back to the system at once, which then clears
-    every page of the next array anew: at 10 k unknowns a fifth of a solve, and most of the time
+    every page of the next array again: at 10 k unknowns a fifth of a solve, and most of the time
     that the kernel takes at a million. A user's ``MALLOC_MMAP_THRESHOLD_`` or
     ``MALLOC_TRIM_THRESHOLD_`` stays, and other C libraries are left as they are.
     """

@@ -32,3 +32,6 @@ from .sweeps import safe_range as safe_range
 from .time_weighted import sample_weights as sample_weights
 from .time_weighted import weighted_rms as weighted_rms
 from .time_weighted import weighted_statistics as weighted_statistics
+from .tolerances import as_printed as as_printed
+from .tolerances import digit as digit
+from .tolerances import round_off as round_off

@@ -147,7 +147,8 @@ def grid_convergence(
         Factor on the distance to the limit: 1.25 with three meshes (Roache 1994).
     expected_order : float or None
         Of the theory. A higher observed order is not believed; where the two are more than a tenth
-        apart, the safety factor is 3 (Oberkampf and Roy 2010, section 8.7; recalled, not re-read).
+        apart, the safety factor is 3, as Roache has it where the observed order is unreasonable
+        (2011, J. Fluids Eng. 133, 115501); the tenth is recalled of Oberkampf and Roy 2010, 8.7.
     least_order : float or None
         Order to count on at the worst, as where stress is singular. The band then holds the limits
         at that order, too, and where no order is observed, it is the one that is used. Oberkampf

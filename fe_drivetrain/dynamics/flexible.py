@@ -2,9 +2,9 @@
 
 A carrier comes as a free body at its hub and the middles of its pins, of beams or of finite
 elements (`fe_drivetrain.fidelity.component_frames`, `component_solid`); a shaft as one at its ends
-and its bearings (`fe_drivetrain.fidelity.condensed_shaft`: beam, meridian or solid); a housing on
-its supports as the spring that it is at the axis of its ring, or as a superelement at its ring and
-bearings. The rim of a ring bends by its harmonics.
+and its bearings (`fe_drivetrain.fidelity.shafts.condensed_shaft`: beam, meridian or solid); a
+housing on its supports as the spring that it is at the axis of its ring, or as a superelement at
+its ring and bearings. The rim of a ring bends by its harmonics.
 """
 
 from collections.abc import Mapping

@@ -13,6 +13,7 @@ from math import cos, pi, radians, sin
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import ALL, Body, Superelement, assemble
 from fe_drivetrain.dynamics.elastic_ring import Rim, with_rim
@@ -491,7 +492,7 @@ def steady_load(machine: Machine, system: System, torque: float, hub: Floats) ->
     """
     wrench = np.asarray(hub, dtype=float).copy()
     wrench[3] += torque
-    return system.load_on("rotor", wrench) + system.gravity(np.array([0.0, 0.0, -9.80665]))
+    return system.load_on("rotor", wrench) + system.gravity(np.array([0.0, 0.0, -GRAVITY]))
 
 
 def azimuths(count: int) -> Floats:

@@ -8,14 +8,13 @@ from numpy.typing import NDArray
 from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.system import System
 from fe_drivetrain.torsion.system import Oscillations
 
 Complex = NDArray[np.complex128]
-
-_DIRECTIONS = {"ux", "uy", "uz", "rx", "ry", "rz"}
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ class SystemModes:
             mesh, sliced, _ = name.partition(" slice ")
             place, _, direction = name.rpartition(" ")
             under = [mesh] if sliced else [name]
-            if not sliced and direction in _DIRECTIONS and place not in self.bodies:
+            if not sliced and direction in MOTIONS and place not in self.bodies:
                 under.append(place)
             for key in under:
                 found[key] = found[key] + shares if key in found else shares

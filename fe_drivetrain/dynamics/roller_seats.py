@@ -20,7 +20,7 @@ from fe_drivetrain.bearing.rolling import free_motions
 from fe_drivetrain.bearing.stored_energy import energy_of
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import diagonal_roots
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.levels import Assembly, planetary_set
 from fe_drivetrain.dynamics.springs import Place, Spring, directed
@@ -271,7 +271,7 @@ def static_on_rollers(
         residual = norm / allowed if norm else 0.0
         if residual <= 1.0 or steps == MAX_STEPS:
             break
-        held = K / np.outer(root, root)
+        held = scaled_to_unit_diagonal(K, system.K.diagonal())
         held[np.diag_indices_from(held)] += firm * min(1.0, norm / max(size, norm * 1e-3))
         d = -np.linalg.solve(held, g / root) / root
         step, q = _along(problem, q, d, float(g @ d))

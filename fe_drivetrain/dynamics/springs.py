@@ -15,7 +15,7 @@ from fe_drivetrain.beam.frame import CrossSection
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.scaling import diagonal_roots
+from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.scene.materials import Material
 
@@ -143,7 +143,7 @@ def bushing(
     if np.abs(k - k.T).max() > 1e-9 * np.abs(k).max():
         raise InputError(f"{name}: the stiffness matrix must be symmetric: make it so")
     root = diagonal_roots(k.diagonal())
-    values, vectors = np.linalg.eigh(k / np.outer(root, root))
+    values, vectors = np.linalg.eigh(scaled_to_unit_diagonal(k))
     if values[0] < -1e-9 * values[-1]:
         raise InputError(
             f"{name}: the stiffness matrix has an eigenvalue of {values[0]:g} (on a unit diagonal) "

@@ -8,6 +8,7 @@ from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.equations import Equations
 
 
@@ -294,7 +295,9 @@ def free_motions(equations: Equations) -> Floats:
     root = np.sqrt(np.diag(equations.mass))
     s = equations.springs
     wound = np.sqrt(s.stiffness)[:, None] * s.rows / root
-    values, vectors = linalg.eigh(equations.extra / np.outer(root, root))
+    values, vectors = linalg.eigh(
+        scaled_to_unit_diagonal(equations.extra, equations.mass.diagonal())
+    )
     bent = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
     whole = np.vstack([wound, bent]) if equations.extra.any() else wound
     _, sizes, basis = np.linalg.svd(whole, full_matrices=True)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.equations import Equations, Loads
 from fe_drivetrain.dynamics.integration import (
     AVERAGE,
@@ -150,9 +151,10 @@ def integrate_adaptively(
 
 def _static_strain(equations: Equations, loads: Loads) -> float:
     """Twice the strain energy of the largest loads, put on slowly: a scale from the first step."""
-    root = np.sqrt(np.diag(equations.mass))
-    flexible = np.linalg.pinv(equations.K / np.outer(root, root), rcond=1e-12, hermitian=True)
-    P = loads.patterns / root[:, None]
+    mass = equations.mass.diagonal()
+    scaled = scaled_to_unit_diagonal(equations.K, mass)
+    flexible = np.linalg.pinv(scaled, rcond=1e-12, hermitian=True)
+    P = loads.patterns / np.sqrt(mass)[:, None]
     return float(
         np.einsum("sr,rq,sq->s", loads.histories, P.T @ flexible @ P, loads.histories).max()
     )

@@ -13,6 +13,7 @@ from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.equations import Equations, Loads
 from fe_drivetrain.dynamics.integration import State, at_rest
 
@@ -79,7 +80,8 @@ def modal_superposition(
     _without_laws(equations)
     M = equations.mass
     root = np.sqrt(np.diag(M))
-    square, shapes = linalg.eigh(equations.K / np.outer(root, root), M / np.outer(root, root))
+    K = scaled_to_unit_diagonal(equations.K, M.diagonal())
+    square, shapes = linalg.eigh(K, scaled_to_unit_diagonal(M))
     shapes = shapes / root[:, None]
     square = np.where(square > 1e-15 * len(root) * square.max(initial=0.0), square, 0.0)[:modes]
     shapes = shapes[:, :modes]

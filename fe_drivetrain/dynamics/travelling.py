@@ -25,6 +25,7 @@ import numpy as np
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.dynamics.equations import Equations, Loads
 from fe_drivetrain.dynamics.flexible import Flexible
 from fe_drivetrain.dynamics.integration import AVERAGE, TOLERANCE, Motion, Scheme, State, at_rest
@@ -464,11 +465,13 @@ class _Run:
             inside = (1 - af) * then.force
             residual = given - inertia - inside
             A = (1 - am) * b[0] * M + (1 - af) * (then.K + b[1] * then.C)
-            root = np.sqrt(np.abs(A.diagonal()))
+            diagonal = np.abs(A.diagonal())
+            root = np.sqrt(diagonal)
             size = max(float(np.abs(part / root).max()) for part in (given, inertia, inside))
             if float(np.abs(residual / root).max()) <= tolerance * size:
                 return step, then, count, True
             if count < MOST_STEPS:
-                change = np.linalg.solve(A / np.outer(root, root), residual / root) / root
+                scaled = scaled_to_unit_diagonal(A, diagonal)
+                change = np.linalg.solve(scaled, residual / root) / root
                 step = step + (1.0 if count < MOST_STEPS // 2 else 0.5) * change
         return step, then, MOST_STEPS, False

@@ -47,7 +47,7 @@ def effects(
     quantity : Quantity
         What is asked for.
     level : int
-        1 or 2, see `levels.shaft_level`.
+        1 or 2, see `ladder.shaft_level`.
     housings : Mapping[str, Floats]
         Stiffness of each bearing unit, faces held in shape (`bearing_units.unit_stiffness`).
     """

@@ -193,7 +193,7 @@ def motions_on_supports(
 
 
 class GearboxSprings(NamedTuple):
-    """What a suspended housing is to a shaft behind it: `gearbox.stiffness` of a scene.
+    """What a suspended housing is to a shaft behind it: stiffness of the gearbox of a scene.
 
     Attributes
     ----------

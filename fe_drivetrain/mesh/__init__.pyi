@@ -6,6 +6,7 @@ from .blocks import brick as brick
 from .blocks import joined as joined
 from .bodies import connected_bodies as connected_bodies
 from .cached import cached_mesh as cached_mesh
+from .cached import mesh_content as mesh_content
 from .checks import FLATTEST as FLATTEST
 from .checks import find_faults as find_faults
 from .checks import flatness as flatness

@@ -52,7 +52,7 @@ def cached_mesh(
         As `fe_drivetrain.mesh.generation.generate`.
     """
     used = user_cache() if cache is None else cache
-    content = _content(shaft, bearings, housings, sizes, bonded, bands)
+    content = mesh_content(shaft, bearings, housings, sizes, bonded, bands)
     arrays = used.load("meshes", content)
     if arrays is not None:
         try:
@@ -64,7 +64,7 @@ def cached_mesh(
     return _from_arrays(arrays)
 
 
-def _content(
+def mesh_content(
     shaft: Shaft | None,
     bearings: Sequence[Bearing],
     housings: Mapping[str, Housing],

@@ -62,7 +62,7 @@ def stresses_of_fields(physical: Floats, moved: Floats, lame: tuple[float, float
     Parameters
     ----------
     physical : Floats
-        (n_cells, n_q, 3, k) gradients of the shape functions, of `shapes.jacobian` [1/m].
+        (n_cells, n_q, 3, k) gradients of the shape functions, of `mapping.jacobian` [1/m].
     moved : Floats
         (n_cells, k, m, 3) displacements of the nodes of each cell in m fields [m].
     lame : tuple[float, float]

@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.hub_loads.recorded import csv_channels
@@ -30,7 +31,7 @@ _UNITS: Mapping[str, tuple[float, str]] = {
         "rad/s": {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": _TURN},
         "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
         "m/s": {"m/s": 1.0},
-        "m/s^2": {"m/s^2": 1.0, "m/s2": 1.0, "g": 9.80665},
+        "m/s^2": {"m/s^2": 1.0, "m/s2": 1.0, "g": GRAVITY},
         "rad/s^2": {"rad/s^2": 1.0, "rad/s2": 1.0},
         "W": {"W": 1.0, "kW": 1e3, "MW": 1e6},
         "C": {"C": 1.0, "degC": 1.0},

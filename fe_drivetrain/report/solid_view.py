@@ -96,7 +96,7 @@ def deformed_shape(
     NoPictureError
         This machine cannot draw.
     """
-    picture, view = "deformed.png", "deformed.3d.json"
+    picture = "deformed.png"
     factor = picture_of_deformation(model, response, load_factors, folder / picture)
     mesh, scene = model.mesh, model.scene
     lame = {part: scene.material_of(part).lame for part in mesh.part_names}
@@ -105,6 +105,36 @@ def deformed_shape(
         column = FORCES.index(component)
         fields[f"{name} at the hub"] = _MEGA * response.displacements[..., column]
     caption = f"Deformed shape, displacements times {factor:,.0f}, under {what}"
+    return solid_or_picture(caption, mesh, fields, lame, folder, picture)
+
+
+def solid_or_picture(
+    caption: str,
+    mesh: Mesh | Parts,
+    fields: Mapping[str, Floats],
+    lame: Mapping[str, tuple[float, float]],
+    folder: Path,
+    picture: str,
+) -> Solid | Image:
+    """Write a deformed mesh for the browser, beside a picture of it.
+
+    Parameters
+    ----------
+    caption : str
+        Of either.
+    mesh, fields, lame : Mesh or Parts, Mapping, Mapping
+        See `write_solid_view`.
+    folder : Path
+        Has the picture, and takes a JSON of the same name.
+    picture : str
+        Its file.
+
+    Returns
+    -------
+    item : Solid or Image
+        For the page; the picture alone where the surface is too fine for a browser.
+    """
+    view = f"{Path(picture).stem}.3d.json"
     if not write_solid_view(mesh, fields, lame, folder / view):
         return Image(caption=caption, file=picture)
     return Solid(caption=caption, file=view, still=picture)

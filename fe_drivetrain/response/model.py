@@ -200,7 +200,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     Raises
     ------
     InputError
-        The mesh has a fault, see `mesh_checks`; or the scene is a mechanism, or but for round-off;
+        The mesh has a fault, see `mesh.checks`; or the scene is a mechanism, or but for round-off;
         the message names the part and its place or motion.
     """
     units = scene.bearing_units

@@ -2,7 +2,7 @@
 
 A radial push on a patch of a cylinder's surface, a strip of it along x and an arc of it round the
 axis, is a Fourier sum over the circumference, and so is the displacement that it causes. Harmonic
-by harmonic the body answers in its meridian alone (see `axisymmetric`), so that the compliance
+by harmonic the body answers in its meridian alone (see `harmonics`), so that the compliance
 between any two places of the raceway is a sum of cosines of the angle between them. A push without
 width has no finite displacement under itself (it grows as the logarithm of the number of
 harmonics): patches have a width, along which both the pressure is uniform and the displacement is
@@ -158,7 +158,7 @@ def influence_functions(
         Half of a patch's arc [rad].
     held : Ints or None
         Degrees of freedom (k,) of the mesh that don't move in any harmonic, such as those of a
-        surface in a rigid housing; see `axisymmetric.dofs`.
+        surface in a rigid housing; see `harmonics.dofs`.
     anchor : Strip or None
         Where a body that ``held`` leaves free to move sideways is supported: displacements are
         relative to the mean motion of this strip, which takes the resultant of all pushes. Where

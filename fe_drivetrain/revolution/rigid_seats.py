@@ -195,7 +195,7 @@ def _between(
     mesh, n : Meridian, int
         The meridian and the harmonic.
     law, order : Floats, Ints
-        As for `fronts.condensed`; the law of the components only.
+        As for `frontal.condensed`; the law of the components only.
     seats : Sequence[tuple[Ints, Floats]]
         Nodes (k,) and their motions (k, components, m).
     components : slice

@@ -218,7 +218,7 @@ _TAKEN = ("housing", "outer", "bore", "seat", "joint", "base", "ground", "bolt",
 
 
 def _check_parts(unit: "BearingUnit") -> None:
-    """Refuse further parts that cannot be told apart, hang in the air, or hold what stands."""
+    """Refuse further parts that cannot be distinguished, hang in the air, or hold what stands."""
     name, parts, housing = unit.bearing.name, {p.name: p for p in unit.parts}, unit.foreign
     if unit.condensed is not None and parts:
         raise ValueError(

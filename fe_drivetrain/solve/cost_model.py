@@ -106,7 +106,7 @@ class Cost:
         if self.bytes >= 2**30:
             memory = f"{self.bytes / 2**30:.3g} GiB"
         return f"{self.method} about {self.seconds:.2g} s, {memory}" + (
-            "" if self.fits else ", which is not there"
+            "" if self.fits else ", more memory than is free"
         )
 
 

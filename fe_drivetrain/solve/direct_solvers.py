@@ -100,7 +100,7 @@ def _fault(method: str) -> str:
 def _load_pardiso() -> None:
     # read when it is loaded: its idle threads would spin for 200 ms, beside our loops
     os.environ.setdefault("KMP_BLOCKTIME", "1")
-    # Unless it is told the place, it looks through all files of the environment, at each solver.
+    # Unless the place is stated, it looks through all files of the environment, at each solver.
     place = "PYPARDISO_MKL_RT"
     for library in sorted(Path(sys.prefix).glob("lib/libmkl_rt.*"))[:1]:
         os.environ.setdefault(place, str(library))

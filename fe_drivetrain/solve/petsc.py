@@ -202,7 +202,7 @@ def _launch() -> list[str]:
 
 
 def _environment() -> dict[str, str]:
-    """Each process has one thread; Open MPI is told that there may be more of them than cores."""
+    """Each process has one thread; Open MPI is to accept more of them than cores."""
     values = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     values |= thread_limits(1)
     values |= {

@@ -44,7 +44,7 @@ class Diagnostics:
         step of refinement changed.
     round_off : float
         What the rounding of the stiffness' own entries may have done to the energy of a solution,
-        relative, at worst: no solver can do better, see `round_off.round_off`.
+        relative, at worst: no solver can do better, see `rounding.round_off`.
     iterations : int
         Of conjugate gradients; 0 of a direct solver.
     method, reason : str
@@ -195,7 +195,7 @@ def factorise(
         ``superlu`` (always there), ``cholmod``, ``pardiso`` (optional packages), ``multigrid``,
         ``schwarz`` (for thin and slender solids of any size), ``petsc`` and ``petsc-mumps`` (in
         parts, on MPI processes: see `petsc`), or ``auto``: the one with the least
-        predicted time, see `cost.predict`.
+        predicted time, see `cost_model.predict`.
     n_rhs : int
         How many right-hand sides will come, for ``auto``.
     tolerance : float

@@ -5,6 +5,7 @@ from .page import Page as Page
 from .records import MeshSeries as MeshSeries
 from .records import Record as Record
 from .records import column as column
+from .records import goal as goal
 from .records import grouped as grouped
 from .result_folders import run_case as run_case
 from .result_folders import run_into as run_into

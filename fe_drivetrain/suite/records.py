@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -37,6 +38,35 @@ def group_name(by: str, value: Any) -> str:
 def counted(n: Any, what: str) -> str:
     """A number and what it counts: "4 elements round", "1 element round"."""
     return f"{n} {what.replace('elements', 'element', 1) if n == 1 else what}"
+
+
+def goal(
+    what: str, measured: float | None, *, most: float | None = None, least: float | None = None
+) -> Record:
+    """A row of a table of goals: of a project, as how fast it wants to be, and so no check.
+
+    Parameters
+    ----------
+    what : str
+        What was measured, with its unit.
+    measured : float or None
+        In that unit; what was not measured, None or NaN, is not reached.
+    most, least : float, optional
+        The goal: one of them, in that unit.
+    """
+    found = math.nan if measured is None else measured
+    if most is not None and least is None:
+        asked, reached = f"at most {most:.3g}", found <= most
+    elif least is not None and most is None:
+        asked, reached = f"at least {least:.3g}", found >= least
+    else:
+        raise TypeError(f"goal {what!r}: needs either most or least")
+    return {
+        "goal": what,
+        "measured": None if math.isnan(found) else found,
+        "asked for": asked,
+        "reached": "yes" if reached else "no",
+    }
 
 
 class MeshSeries(NamedTuple):

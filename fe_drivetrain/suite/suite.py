@@ -1,4 +1,4 @@
-"""Several cases in one go: side by side, but for those that measure; and a page that lists them."""
+"""Several cases in parallel, except those that measure time; and a page that lists them."""
 
 from __future__ import annotations
 

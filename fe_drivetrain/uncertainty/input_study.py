@@ -128,7 +128,7 @@ def study(
     scene : Scene
         With its `Scene.uncertainty`.
     asked : Sequence[str]
-        Names, see `reported.known_names`, before every stiffness that is reported; the adviser
+        Names, see `quantities.known_names`, before every stiffness that is reported; the adviser
         answers for these, or for `DEFAULT`.
     load : Floats or None
         (n,) factors of `model.scene_loads`, for reactions.
@@ -261,7 +261,7 @@ def _errors(
         other, named = condensed_shaft(scene, 2), "the change from beam to meridian"
     else:
         filleted = any(piece.fillet > 0 for piece in scene.shaft.pieces)
-        # one order less than `meridian.meridian` takes
+        # one order less than `meridian_mesh.meridian` takes
         other, named = meridian_shaft(scene, order=3 if filleted else 5), "elements of lower order"
     shaft = shaft_numbers(other)
     errors = {}

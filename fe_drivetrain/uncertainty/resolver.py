@@ -76,7 +76,7 @@ class Resolver:
         Raises
         ------
         InputError
-            See `levels.shaft_level` and `bearing_units.unit_stiffness`.
+            See `ladder.shaft_level` and `bearing_units.unit_stiffness`.
         """
         names = [unit.bearing.name for unit in scene.bearing_units]
         springs = {name: self.spring(scene, name) for name in names}

@@ -52,12 +52,12 @@ class UnitSurface:
     reach : Floats
         (d,) how far they were moved at least, relative.
     root : Floats
-        (6, c) square root of the nominal stiffness, see `reported.carried_root`.
+        (6, c) square root of the nominal stiffness, see `quantities.carried_root`.
     slopes, bends : Floats
         (d, c, c) coefficients of the logarithm of each value, and of its square.
     error : float
         Largest relative difference to the solutions that check it, over the stiffnesses of
-        `reported.UNIT`.
+        `quantities.UNIT`.
     solutions : int
         How many solid solutions it took.
     """

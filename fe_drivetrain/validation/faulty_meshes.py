@@ -32,7 +32,7 @@ class Faulty:
     label : str
         What was done.
     kind : str
-        Of `mesh_checks.Fault` that must be found.
+        Of `checks.Fault` that must be found.
     mesh : Mesh
         With the fault.
     place : Floats

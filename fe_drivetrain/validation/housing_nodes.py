@@ -49,7 +49,7 @@ class Tilted:
     model, response : Model, Response
         As a user gets them.
     by_plane : dict[str, dict[str, float]]
-        K_R by plane and estimator of `stiffness.tilt_stiffness` [N m/rad].
+        K_R by plane and estimator of `bearing_stiffness.tilt_stiffness` [N m/rad].
     condensed : dict[str, float]
         K_R by plane from the motion of the unloaded shaft behind the bearing [N m/rad].
     """

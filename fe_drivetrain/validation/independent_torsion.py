@@ -20,8 +20,8 @@ def holzer(
 ) -> tuple[float, Floats]:
     """Torque left over at the end of a chain that swings at omega [rad/s], and its angles.
 
-    The first angle is 1; each shaft's torque is what the inertias before it need (Holzer 1921; Den
-    Hartog, Mechanical Vibrations, section 5.4; recalled). Nothing is left over at a frequency.
+    The first angle is 1; each shaft's torque is what the inertias before it need (Holzer 1921,
+    recalled): equilibrium, mass by mass. Nothing is left over at a frequency.
     """
     angle, torque = 1.0, 0.0
     angles: list[float] = [angle]

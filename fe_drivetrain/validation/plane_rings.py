@@ -12,6 +12,12 @@ import numpy as np
 
 from fe_drivetrain.common import Floats, Ints
 
+#: Where stresses of `CurvedBar` come from, for the source of a check.
+CURVED_BAR = (
+    "theory: stresses in equilibrium and compatible, with free surfaces and the given resultant "
+    "(tests/test_plane_rings.py checks each); the form is Golovin's, 1881"
+)
+
 
 @dataclass(frozen=True)
 class Plane:
@@ -290,8 +296,8 @@ class CurvedBar:
     def bending(self, r: Floats, moment: float) -> tuple[Floats, Floats]:
         """Radial and hoop stress under end moments that straighten the bar [Pa].
 
-        Golovin 1881; Timoshenko and Goodier 1970, art 29 (recalled, not re-read; tests check its
-        equilibrium and its moment).
+        Golovin 1881. Written from memory, and checked by itself: it is in equilibrium, compatible,
+        free on its surfaces, and has this moment (``tests/test_plane_rings.py``).
 
         Parameters
         ----------
@@ -311,8 +317,8 @@ class CurvedBar:
     def bending_rotation(self, moment: float, plane: Plane) -> float:
         """Rotation of the ends against each other, per angle of the bar.
 
-        Sections stay plane, v = 4 B r t / E; Timoshenko and Goodier 1970, art 31 (recalled, not
-        re-read; the tests check it against the strain energy).
+        Sections stay plane, v = 4 B r t / E. Written from memory, and checked by itself: the work
+        of the moment is the strain energy (``tests/test_plane_rings.py``).
         """
         a, b = self.inner, self.outer
         N = (b**2 - a**2) ** 2 - 4.0 * a**2 * b**2 * np.log(b / a) ** 2
@@ -321,8 +327,8 @@ class CurvedBar:
     def end_force(self, r: Floats, t: Floats, force: float) -> tuple[Floats, Floats, Floats]:
         """Radial and hoop stress and shear under a radial force on the end at t = 0 [Pa].
 
-        Timoshenko and Goodier 1970, art 33 (recalled, not re-read; the tests check its equilibrium,
-        its compatibility and its resultant).
+        Written from memory, and checked by itself: it is in equilibrium, compatible, free on its
+        surfaces, and has this resultant (``tests/test_plane_rings.py``).
 
         Parameters
         ----------

@@ -12,6 +12,7 @@ import numpy as np
 import yaml
 
 from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.compare.tolerances import digit
 from fe_drivetrain.torsion import (
     Drivetrain,
     GeneratorState,
@@ -115,13 +116,6 @@ def nrel_stages(table: Drivetrain) -> tuple[PlanetaryStage, ParallelStage, Paral
     ):
         raise TypeError("drivetrain D has a planetary stage and two parallel ones")
     return one, two, three
-
-
-def digit(printed: str) -> float:
-    """One unit of the last digit of a number as printed, such as "3.69e7"."""
-    mantissa, _, power = printed.lower().partition("e")
-    decimals = len(mantissa.partition(".")[2])
-    return float(10.0 ** (int(power or 0) - decimals))
 
 
 def with_values(table: Drivetrain, values: Mapping[str, float]) -> Drivetrain:

@@ -15,6 +15,7 @@ from typing import Any
 
 import yaml
 
+from fe_drivetrain.compare.tolerances import digit
 from fe_drivetrain.gear.involute import Gear, Pair, Rack
 from fe_drivetrain.gear.load_factors import (
     Deviations,
@@ -46,7 +47,6 @@ from fe_drivetrain.gear.strength import (
     surface_factor,
     velocity_factor,
 )
-from fe_drivetrain.validation.published_drivetrains import digit
 
 RPM = pi / 30.0
 HOURS = 175200.0

@@ -16,6 +16,12 @@ from fe_drivetrain.beam import cowper_shear_coefficient
 from fe_drivetrain.common import Floats
 from fe_drivetrain.scene import Material
 
+#: Where `flexure_field` and `flexure_stress` come from, for the source of a check.
+FLEXURE = (
+    "theory: Saint-Venant's flexure, its stresses those of its displacements, in equilibrium, "
+    "free on the surface and with the given resultant (tests/test_shaft_theory.py checks each)"
+)
+
 
 @dataclass(frozen=True)
 class Tube:
@@ -201,8 +207,9 @@ def flexure_field(points: Floats, force: float, tube: Tube) -> Floats:
     """Displacements (n, 3) [m] of Saint-Venant's flexure by a force along z at x = L.
 
     Love 1927, A Treatise on the Mathematical Theory of Elasticity, articles 229-231, with the
-    flexure function of a circle or of two concentric circles (recalled, not re-read; the tests
-    check equilibrium, the free surfaces and the resultant of the field).
+    flexure function of a circle or of two concentric circles. Written from memory, and checked by
+    itself: equilibrium, free surfaces, resultant, and stresses that are those of its displacements
+    (``tests/test_shaft_theory.py``).
     """
     x, y, z = np.asarray(points).T
     nu, L = tube.material.poisson_ratio, tube.length

@@ -40,7 +40,7 @@ from fe_drivetrain.validation.stiffness_choices import (
     timed,
 )
 
-#: What is compared: K_R by plane and by estimator of `stiffness.tilt_stiffness`.
+#: What is compared: K_R by plane and by estimator of `bearing_stiffness.tilt_stiffness`.
 QUANTITIES = tuple((plane.name, kind) for kind in ("energy", "averaged seat") for plane in PLANES)
 
 #: Element sizes that converge together; the shaft stays coarse, since its ends and its bending
