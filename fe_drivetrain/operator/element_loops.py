@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
-from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.operator.kernels import Index, inverse_transposed
 from fe_drivetrain.operator.vectors import LANES, fetch, load, plus, store, times
@@ -15,15 +15,15 @@ from fe_drivetrain.operator.vectors import LANES, fetch, load, plus, store, time
 # Rows that a thread takes at once have a marker for each node.
 _PIECES = 8
 
-
 #: An edge node this close to the middle of its edge, per length of the edge, is on it.
 _STRAIGHT = 2e-13
 
 
-def is_straight(points: Floats, cells: Index) -> Bools:
+def is_straight(points: Floats, cells: Index | Ints) -> Bools:
     """Which ten-node tetrahedra have only straight edges, and so an affine map; (n_cells,)."""
     found = np.empty(len(cells), dtype=np.bool_)
-    _find_straight(points, cells, TETRAHEDRON_EDGES, found)
+    nodes = np.ascontiguousarray(cells, dtype=np.int32)
+    _find_straight(points, nodes, TETRAHEDRON_EDGES, found)
     return found
 
 

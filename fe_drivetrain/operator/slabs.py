@@ -34,7 +34,7 @@ def slabs(points: Floats, corners: Ints) -> list[list[Ints]]:
         return [[np.arange(n)]]
     count = 2 * min(max(1, n // (2 * _LARGE)), _MOST // 2)
     along = points[:, int(np.ptp(points, axis=0).argmax())]
-    place = np.add.reduce([along[corner] for corner in corners.T])
+    place: Floats = np.add.reduce([along[corner] for corner in corners.T])
     # every second number is a cut of the first round, the others are in the midst of its slabs
     cuts = [k * n // (2 * count) for k in range(1, 2 * count)]
     number = np.searchsorted(np.partition(place, cuts)[cuts], place, side="right")

@@ -61,11 +61,11 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     """The numbers of a flat array from an index on, in double precision."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        kind = signature.args[0]
+        kind, (array, index) = signature.args[0], given
         if kind.dtype.bitwidth == 64:
-            return builder.load(_address(context, builder, kind, *given, _LANES), align=8)
-        numbers = builder.load(_address(context, builder, kind, *given, _SINGLE), align=4)
-        return builder.fpext(numbers, _LANES)
+            return builder.load(_address(context, builder, kind, array, index, _LANES), align=8)
+        address = _address(context, builder, kind, array, index, _SINGLE)
+        return builder.fpext(builder.load(address, align=4), _LANES)
 
     return _VECTOR(array, index), generate
 
@@ -75,8 +75,9 @@ def store(typing: Any, vector: Any, array: Any, index: Any) -> Any:
     """Put a vector into a flat array from an index on."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        address = _address(context, builder, signature.args[1], *given[1:], _LANES)
-        builder.store(given[0], address, align=8)
+        vector, array, index = given
+        address = _address(context, builder, signature.args[1], array, index, _LANES)
+        builder.store(vector, address, align=8)
         return context.get_dummy_value()
 
     return types.void(vector, array, index), generate
@@ -143,7 +144,7 @@ def thrice(typing: Any, vector: Any) -> Any:
 @_in_loops
 def row_sums(typing: Any, vector: Any) -> Any:
     """Sums over the rows of a 3x3 block, without its last entry."""
-    sums = types.UniTuple(types.float64, 3)
+    sums = types.UniTuple(types.float64, 3)  # type: ignore[no-untyped-call]
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         found: list[Any] = [None, None, None]
