@@ -331,8 +331,8 @@ def test_a_problem_comes_back_from_its_file(bar, tmp_path):
 # --- rounds
 
 
-def plan(repetitions=3, budget=10.0):
-    return rounds.Plan(repetitions, budget, Limits(30.0, 2.0**30, 1))
+def plan(repetitions=3):
+    return rounds.Plan(repetitions, Limits(30.0, 2.0**30, 1))
 
 
 def row(variant, unknowns, seconds=None, bytes_=1e8, stiffness=1.0, trouble=""):
@@ -352,7 +352,7 @@ def row(variant, unknowns, seconds=None, bytes_=1e8, stiffness=1.0, trouble=""):
     return rounds.Row(variant, unknowns, found, trouble)
 
 
-def test_rounds_are_interleaved_and_slow_rows_run_less_often(tmp_path):
+def test_rounds_are_interleaved_and_slow_rows_run_as_often_as_others(tmp_path):
     quick, slow = Variant("ngsolve", "multigrid"), Variant("scikit_fem", "superlu")
     order = []
 
@@ -364,9 +364,9 @@ def test_rounds_are_interleaved_and_slow_rows_run_less_often(tmp_path):
     rows = rounds.run_rounds(
         [(quick, ""), (slow, "")], tmp_path, tmp_path, 1000, plan(), start=start
     )
-    assert [len(r.found) for r in rows] == [3, 1]
+    assert [len(r.found) for r in rows] == [3, 3]
     assert order[:2] == [quick, slow]
-    assert order[2:] == [quick, quick]
+    assert all(set(pair) == {quick, slow} for pair in zip(order[::2], order[1::2], strict=True))
 
 
 def test_no_tool_always_runs_after_the_same_other(tmp_path):
@@ -378,8 +378,7 @@ def test_no_tool_always_runs_after_the_same_other(tmp_path):
         order.append(variant)
         return Outcome("done", row(variant, 1, 1.0).found[0])
 
-    lasting = rounds.Plan(5, 100.0, plan().limits)
-    rounds.run_rounds([(t, "") for t in tools], tmp_path, tmp_path, 1000, lasting, start=start)
+    rounds.run_rounds([(t, "") for t in tools], tmp_path, tmp_path, 1000, plan(5), start=start)
     before = {t: {a for a, b in pairwise(order) if b == t} - {t} for t in tools}
     assert len(order) == 20
     assert all(len(others) > 1 for others in before.values())

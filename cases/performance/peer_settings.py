@@ -28,7 +28,6 @@ DEFAULTS: dict[str, Any] = {
     "problems": ["shaft", "assembly"],
     "sizes": list(SIZES),
     "repetitions": 5,
-    "budget": 6.0,
     "time_limit": 30.0,
     "memory_limit": 12.0,
     "threads": 2,
@@ -45,7 +44,6 @@ QUICK: dict[str, Any] = {
 #: Of a number: its range, and whether it is a whole one.
 RANGES = {
     "repetitions": (1, 100, True),
-    "budget": (0.0, 3600.0, False),
     "time_limit": (1.0, 86400.0, False),
     "memory_limit": (0.5, 4096.0, False),
     "threads": (1, 256, True),
@@ -98,4 +96,4 @@ def plan_of(settings: dict[str, Any]) -> Plan:
     limits = Limits(
         float(settings["time_limit"]), settings["memory_limit"] * 2.0**30, settings["threads"]
     )
-    return Plan(settings["repetitions"], float(settings["budget"]), limits)
+    return Plan(settings["repetitions"], limits)

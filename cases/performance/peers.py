@@ -58,7 +58,6 @@ SYMBOLS = ("circle", "square", "diamond", "x")
         "problems": "[shaft, assembly] (quick [shaft])",
         "sizes": "[10000, 50000, 110000, 300000, 1000000] (quick [10000])",
         "repetitions": "5 (quick 1; from 1 to 100)",
-        "budget": "6 (from 0 to 3600)",
         "time_limit": "30 (from 1 to 86400)",
         "memory_limit": "12 (from 0.5 to 4096)",
         "threads": "2 (from 1 to 256)",
@@ -397,11 +396,11 @@ def show_mesh(
     table = []
     for row in rows:
         times = [f["seconds"] for f in row.found]
-        spread = round(100 * (max(times) - min(times)) / max(times)) if len(times) > 1 else None
         line = {
             "tool and solver": row.variant.name,
-            "time [s]": significant(row.seconds),
-            "spread [%]": spread,
+            "least [s]": significant(min(times, default=None)),
+            "median [s]": significant(row.seconds),
+            "most [s]": significant(max(times, default=None)),
             "runs": len(times),
             "mesh in [s]": None if row.loading is None else round(row.loading, 3),
             "assembly [s]": significant(row.step("assembly")),
@@ -419,8 +418,8 @@ def show_mesh(
         for rule, value in references.items()
     )
     page.table(
-        f"{unknowns:,} unknowns: medians, and how far the fastest run is below the slowest; the "
-        f"solver's error, against {known or 'no reference'}",
+        f"{unknowns:,} unknowns: time from the mesh in memory to the stiffness, of all runs; "
+        f"medians of its steps; the solver's error, against {known or 'no reference'}",
         table,
     )
 
