@@ -471,24 +471,37 @@ def test_quick_is_small_and_gives_way_to_settings(tmp_path):
 
 
 def test_slower_or_hungrier_than_a_peer_is_shown():
+    benchmark = problems.hollow_shaft()
     ours = row(Variant("this_project", "auto"), 50_000, 2.0, 3e8)
     peer = row(Variant("ngsolve", "multigrid"), 50_000, 1.0, 2e8)
     direct = row(Variant("ngsolve", "cholesky"), 50_000, 4.0, 2e8)
     rows = [ours, peer, direct]
     rounds.judge_errors(rows)
-    (found,) = peers.shares(rows, plan())
+    (found,) = peers.goals(benchmark, rows, 1)
     assert found["fastest other"] == peer.variant.name
-    assert found["time, share of its"] == pytest.approx(2.0)
+    assert found["its time over ours"] == pytest.approx(0.5)
+    assert found["reached"] == "no"
     assert found["leanest direct other"] == direct.variant.name
-    assert found["peak memory, share of its"] == pytest.approx(1.5)
-    # a peer that does not reach the accuracy is no peer: the time limit stands in its place
+    assert found["its peak memory over ours"] == pytest.approx(0.667)
+    # a peer that does not reach the accuracy is no peer
     peer.error = 1e-3
+    (found,) = peers.goals(benchmark, rows, 1)
+    assert found["fastest other"] == direct.variant.name
+    assert (found["its time over ours"], found["reached"]) == (2.0, "yes")
+    # with ten right-hand sides twice as fast is not enough
+    (found,) = peers.goals(benchmark, rows, 10)
+    assert (found["goal, at least"], found["reached"]) == (4.0, "no")
+    # nothing is known of what came to no end that counts
     direct.error = 1e-3
-    (alone,) = peers.shares(rows, plan())
-    assert alone["time, share of its"] == pytest.approx(2.0 / 30.0)
+    (found,) = peers.goals(benchmark, rows, 1)
+    assert (found["its time over ours"], found["reached"]) == (None, "not known")
+    late = row(Variant("calculix", "spooles"), 50_000, trouble="over 30 s")
+    late.least_seconds = 30.0
+    (found,) = peers.goals(benchmark, [*rows, late], 1)
+    assert (found["its time over ours"], found["reached"]) == (15.0, "yes")
     # small meshes, and runs without another tool, are not compared
-    assert peers.shares([ours], plan()) == []
-    assert peers.shares([row(r.variant, 10_000, 1.0) for r in rows], plan()) == []
+    assert peers.goals(benchmark, [ours], 1) == []
+    assert peers.goals(benchmark, [row(r.variant, 8_000, 1.0) for r in rows], 1) == []
 
 
 def test_the_case_runs_and_its_page_says_what_is_missing(tmp_path, monkeypatch):
