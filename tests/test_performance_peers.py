@@ -138,6 +138,15 @@ def test_torsional_stiffness_is_g_j_over_l_but_for_the_shape_of_the_elements():
     assert abs(errors[1]) < abs(errors[0]) / 5
 
 
+@pytest.mark.parametrize("name", ["tube", "slender"])
+def test_thin_and_slender_bodies_turn_as_saint_venant_says(name):
+    benchmark = problems.BENCHMARKS[name]()
+    coarsest = benchmark.at(9.0 if name == "tube" else 1.6)
+    found = stiffness_by("this_project", "auto", coarsest)
+    # six elements a turn, at least: 4 a^4 / 500, as for the hollow shaft
+    assert found == pytest.approx(benchmark.exact, rel=4 * (2 * np.pi / 6) ** 4 / 500)
+
+
 @pytest.mark.parametrize(
     ("tool", "variant"),
     [("this_project", "superlu"), ("this_project", "multigrid"), ("scikit_fem", "superlu")],
@@ -523,3 +532,18 @@ def test_the_case_runs_and_its_page_says_what_is_missing(tmp_path, monkeypatch):
     page = (tmp_path / "out" / "report.html").read_text()
     assert "this project: auto" in page
     assert "apt-get install calculix-ccx" in page
+
+
+def test_growth_of_each_body_is_shown_with_the_goal_of_its_memory(tmp_path):
+    case = find_cases("performance/two_million_unknowns")[0]
+    settings = {"bodies": ["shaft"], "sizes": [3000, 6000], "repetitions": 2}
+    results = run_case(case, tmp_path, settings, quick=True)
+    rows = results.figures["shaft"]
+    assert [row["runs"] for row in rows] == [2, 2]
+    assert all(row["least [s]"] <= row["median [s]"] <= row["most [s]"] for row in rows)
+    assert all(v.passed for v in results.verdicts)
+    # what was not run is not said to be reached
+    assert results.figures["goals"][0]["reached"] == "not known: fewer unknowns"
+    for wrong in ({"sizes": [10]}, {"sizes": []}, {"bodies": ["plate"]}):
+        with pytest.raises(InputError, match=next(iter(wrong))):
+            run_case(case, tmp_path / "wrong", wrong, quick=True)
