@@ -76,6 +76,10 @@ def numbers(run: Run, page: Page) -> None:
     page.equals("sum", float(values.sum()), float(values.sum()), within=0.0, why="r", source="s")
 
 
+def seeded(_report: Progress, number: int) -> Floats:
+    return np.random.default_rng([7, number]).standard_normal(10)
+
+
 def wait(report: Progress, mark: Path) -> None:
     mark.touch()
     time.sleep(WAIT)

@@ -18,6 +18,8 @@ import pytest
 from cluster_jobs import WAIT
 from conftest import coarse_scene
 from test_commands_life import write_history
+from test_docs_blocks import blocks
+from test_docs_pages import DOCS
 from tiny_case import Result
 
 from fe_drivetrain.commands.loads_digest import Options
@@ -367,6 +369,62 @@ def test_a_study_has_the_same_results_to_the_last_digit(
         found.append(read_results(out / "results.json"))
     assert found[0].figures == found[1].figures
     assert len(found[0].figures) > 2
+
+
+@pytest.mark.needs("submitit")
+def test_workers_that_submitit_starts_do_the_jobs(tmp_path: Path) -> None:
+    """The block of the page, on this machine in place of Slurm: four workers of two jobs."""
+    from distributed import Client
+
+    (block,) = (b for b in blocks(DOCS / "clusters.md", "python") if "import submitit" in b)
+    (tmp_path / "workers.py").write_text(block)
+    file = tmp_path / "scheduler.json"
+    address = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    scheduler = _python("distributed.cli.dask_scheduler", *address, "--scheduler-file", str(file))
+    pids: list[int] = []
+    try:
+        until(file.exists)
+        folders = [str(Path(__file__).parent), *(folder for folder in sys.path if folder)]
+        # into files: workers hold what they inherit, and go on when this has ended
+        with (tmp_path / "pids").open("w") as pids_file, (tmp_path / "errors").open("w") as errors:
+            found = subprocess.run(
+                [sys.executable, "workers.py", "local"],
+                cwd=tmp_path,
+                env={
+                    **os.environ,
+                    "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
+                    "PYTHONPATH": os.pathsep.join(folders),
+                },
+                stdout=pids_file,
+                stderr=errors,
+                timeout=WAIT,
+            )
+        pids = [int(word) for word in (tmp_path / "pids").read_text().split()]
+        assert found.returncode == 0, (tmp_path / "errors").read_text()
+        assert len(pids) == 2
+        items = [(k,) for k in range(8)]
+        with Client(scheduler_file=str(file)) as client:
+            client.wait_for_workers(4, timeout=WAIT)
+            with scheduled_by(client.scheduler.address):
+                there = list(mapped(cluster_jobs.seeded, items, 1))
+            client.shutdown()
+        here = list(mapped(cluster_jobs.seeded, items, 1))
+        assert [one.tobytes() for one in there] == [one.tobytes() for one in here]
+        until(lambda: not any(is_running(pid) for pid in pids))
+    finally:
+        for pid in pids:
+            if is_running(pid):
+                os.kill(pid, signal.SIGTERM)
+        scheduler.kill()
+        scheduler.wait()
+
+
+def is_running(pid: int) -> bool:
+    """Whether there is such a process, other than one that has ended."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_the_end_of_the_scheduler_is_said_at_once(cluster: Cluster, tmp_path: Path) -> None:
