@@ -536,7 +536,7 @@ def test_the_case_runs_and_its_page_says_what_is_missing(tmp_path, monkeypatch):
 
 def test_growth_of_each_body_is_shown_with_the_goal_of_its_memory(tmp_path):
     case = find_cases("performance/two_million_unknowns")[0]
-    settings = {"bodies": ["shaft"], "sizes": [3000, 6000], "repetitions": 2}
+    settings = {"problems": ["shaft"], "sizes": [3000, 6000], "repetitions": 2}
     results = run_case(case, tmp_path, settings, quick=True)
     rows = results.figures["shaft"]
     assert [row["runs"] for row in rows] == [2, 2]
@@ -544,6 +544,6 @@ def test_growth_of_each_body_is_shown_with_the_goal_of_its_memory(tmp_path):
     assert all(v.passed for v in results.verdicts)
     # what was not run is not said to be reached
     assert results.figures["goals"][0]["reached"] == "not known: fewer unknowns"
-    for wrong in ({"sizes": [10]}, {"sizes": []}, {"bodies": ["plate"]}):
+    for wrong in ({"sizes": [10]}, {"sizes": []}, {"problems": ["plate"]}):
         with pytest.raises(InputError, match=next(iter(wrong))):
             run_case(case, tmp_path / "wrong", wrong, quick=True)

@@ -12,7 +12,7 @@ import numpy as np
 from numba import get_num_threads
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import InputError
+from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.operator import Pattern, assemble, kernels, sparsity
 from fe_drivetrain.peers import BENCHMARKS, Problem, problems
@@ -68,8 +68,8 @@ class Solved:
 def run(run: Run, page: Page) -> None:
     """Count what each phase reads and writes, and time it beside a plain loop over memory."""
     page.seed = None
-    names = named(run.settings.get("problems", QUICK_PROBLEMS if run.quick else PROBLEMS))
-    sizes = numbers(run.settings.get("sizes", QUICK_SIZES if run.quick else SIZES))
+    names = problems_of(run.settings.get("problems", QUICK_PROBLEMS if run.quick else PROBLEMS))
+    sizes = sizes_of(run.settings.get("sizes", QUICK_SIZES if run.quick else SIZES))
     repeats = run.count("repeats", QUICK_REPEATS if run.quick else REPEATS)
     with run.step("bandwidth"):
         rates = bandwidths(QUICK_STREAM if run.quick else STREAM, repeats)
@@ -106,35 +106,6 @@ def run(run: Run, page: Page) -> None:
     page.data("bandwidths", rates)
     page.data("phases", rows)
     page.data("iterations", found[0].iterations)
-
-
-def named(value: object) -> list[str]:
-    """Names of problems.
-
-    Raises
-    ------
-    InputError
-        One is unknown, or there is none.
-    """
-    names = [str(name) for name in value] if isinstance(value, list | tuple) else [str(value)]
-    if not names or any(name not in BENCHMARKS for name in names):
-        raise InputError(f"problems = {value!r}: use some of {', '.join(BENCHMARKS)}")
-    return names
-
-
-def numbers(value: object) -> list[int]:
-    """Sizes in ascending order.
-
-    Raises
-    ------
-    InputError
-        One is no whole number from 1000 to five million, or there is none.
-    """
-    sizes = list(value) if isinstance(value, list | tuple) else [value]
-    whole = [isinstance(n, int | float) and not isinstance(n, bool) and n == int(n) for n in sizes]
-    if not sizes or not all(whole) or not all(1_000 <= n <= 5_000_000 for n in sizes):
-        raise InputError(f"sizes = {value!r} must be whole numbers from 1000 to 5000000")
-    return sorted({int(n) for n in sizes})
 
 
 def timed(problem: Problem) -> Solved:

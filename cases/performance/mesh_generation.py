@@ -231,10 +231,10 @@ def parts_apart(page: Page, scene: Scene, whole: Made, repeats: int) -> None:
             }
         )
     longest = max(float(str(row["its volume, median [s]"])) for row in rows)
-    together = whole.seconds["volumes"]
-    apart = whole.total - together + longest
+    volumes = whole.seconds["volumes"]
+    apart = whole.total - volumes + longest
     bound: Record = {
-        "all volumes, one after the other [s]": together,
+        "all volumes, one after the other [s]": volumes,
         "longest volume alone [s]": longest,
         "meshing, as in use [s]": whole.total,
         "meshing, volumes side by side, at best [s]": apart,

@@ -61,11 +61,7 @@ def settings_of(run: Run) -> dict[str, Any]:
     """
     quick = QUICK if run.quick else {}
     settings = DEFAULTS | quick | dict(run.settings)
-    for key in ("tools", "problems", "sizes"):
-        value = settings[key]
-        settings[key] = list(value) if isinstance(value, list | tuple) else [value]
-        if not settings[key]:
-            raise InputError(f"{key} is empty: name at least one")
+    settings["tools"] = _listed("tools", settings["tools"])
     try:
         parse(list(map(str, settings["tools"])))
     except KeyError as error:
@@ -73,13 +69,8 @@ def settings_of(run: Run) -> dict[str, Any]:
             f"tools: {error.args[0]!r} is unknown: use some of {', '.join(TOOLS)}, all solvers of "
             "a tool, or one as in ngsolve.multigrid"
         ) from error
-    for name in settings["problems"]:
-        if name not in BENCHMARKS:
-            raise InputError(f"problems: {name!r} is unknown: use some of {', '.join(BENCHMARKS)}")
-    for size in settings["sizes"]:
-        if isinstance(size, bool) or not isinstance(size, int) or not 1000 <= size <= 5_000_000:
-            raise InputError(f"sizes: {size!r} must be a whole number from 1000 to 5000000")
-    settings["sizes"] = sorted(set(settings["sizes"]))
+    settings["problems"] = problems_of(settings["problems"])
+    settings["sizes"] = sizes_of(settings["sizes"])
     for key, (low, high, whole) in RANGES.items():
         value = settings[key]
         kind = int if whole else int | float
@@ -89,6 +80,44 @@ def settings_of(run: Run) -> dict[str, Any]:
                 f"{high:g}"
             )
     return settings
+
+
+def _listed(key: str, value: Any) -> list[Any]:
+    found = list(value) if isinstance(value, list | tuple) else [value]
+    if not found:
+        raise InputError(f"{key} is empty: name at least one")
+    return found
+
+
+def problems_of(value: Any) -> list[str]:
+    """Names of benchmarks.
+
+    Raises
+    ------
+    InputError
+        One is unknown, or there is none.
+    """
+    names = _listed("problems", value)
+    for name in names:
+        if name not in BENCHMARKS:
+            raise InputError(f"problems: {name!r} is unknown: use some of {', '.join(BENCHMARKS)}")
+    return names
+
+
+def sizes_of(value: Any) -> list[int]:
+    """Numbers of unknowns, each once, ascending.
+
+    Raises
+    ------
+    InputError
+        One is no whole number in their range, or there is none.
+    """
+    sizes = _listed("sizes", value)
+    for size in sizes:
+        number = isinstance(size, int | float) and not isinstance(size, bool)
+        if not number or not 1000 <= size <= 5_000_000 or size != int(size):
+            raise InputError(f"sizes: {size!r} must be a whole number from 1000 to 5000000")
+    return sorted({int(size) for size in sizes})
 
 
 def plan_of(settings: dict[str, Any]) -> Plan:

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -354,7 +353,9 @@ def option_rows(problem: Problem, repeats: int) -> list[Record]:
     rows = []
     for label, options in TRIED.items():
 
-        def whole(options: Options = options) -> tuple[multigrid.Hierarchy, Times, Any]:
+        def whole(
+            options: Options = options,
+        ) -> tuple[multigrid.Hierarchy | multigrid.Joined, Times, multigrid.Iteration]:
             hierarchy, setup = timed_runs(partial(multigrid.build, system, options), 1)
             found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-9)
             return hierarchy, setup, found

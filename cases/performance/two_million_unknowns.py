@@ -9,7 +9,8 @@ from statistics import median
 from tempfile import TemporaryDirectory
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import InputError, cores
+from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
+from fe_drivetrain.common import cores
 from fe_drivetrain.compare import PowerLaw, power_law
 from fe_drivetrain.peers import (
     BENCHMARKS,
@@ -38,7 +39,7 @@ GIB = 2**30
     "Two million unknowns in 8 GiB: thin walls and slender shafts, too",
     source="Measured here, each run in a process of its own; exact, G J / L",
     settings={
-        "bodies": "[shaft, assembly, tube, slender] (quick [shaft])",
+        "problems": "[shaft, assembly, tube, slender] (quick [shaft])",
         "sizes": "[100000, 300000, 1000000, 2000000] (quick [5000, 10000])",
         "repetitions": "5 (quick 1; from 1)",
         "time_limit": "600 (from 1)",
@@ -49,8 +50,8 @@ GIB = 2**30
 def run(run: Run, page: Page) -> None:
     """Solve every body at every size by auto, in processes of their own."""
     page.seed = None
-    bodies = chosen(run.settings.get("bodies", QUICK_BODIES if run.quick else BODIES))
-    sizes = numbers(run.settings.get("sizes", QUICK_SIZES if run.quick else SIZES))
+    bodies = problems_of(run.settings.get("problems", QUICK_BODIES if run.quick else BODIES))
+    sizes = sizes_of(run.settings.get("sizes", QUICK_SIZES if run.quick else SIZES))
     repetitions = run.count("repetitions", 1 if run.quick else 5)
     limits = Limits(
         float(run.count("time_limit", 600)), float(run.count("memory_limit", 12)) * GIB, cores()
@@ -88,39 +89,6 @@ def run(run: Run, page: Page) -> None:
     page.data("goals", goals)
     for name, rows in found.items():
         page.data(name, [line(name, row) for row in rows])
-
-
-def chosen(value: object) -> list[str]:
-    """Names of bodies.
-
-    Raises
-    ------
-    InputError
-        One is unknown, or there is none.
-    """
-    names = [str(name) for name in value] if isinstance(value, list | tuple) else [str(value)]
-    unknown = [name for name in names if name not in BENCHMARKS]
-    if unknown or not names:
-        raise InputError(f"bodies = {value!r}: use some of {', '.join(BENCHMARKS)}")
-    return names
-
-
-def numbers(value: object) -> list[int]:
-    """Sizes in ascending order.
-
-    Raises
-    ------
-    InputError
-        One is no whole number from 1000 to five million, or there is none.
-    """
-    sizes = list(value) if isinstance(value, list | tuple) else [value]
-    for size in sizes:
-        number = isinstance(size, int | float) and not isinstance(size, bool)
-        if not number or not 1_000 <= size <= 5_000_000 or size != int(size):
-            raise InputError(f"sizes: {size!r} must be a whole number from 1000 to 5000000")
-    if not sizes:
-        raise InputError("sizes is empty: name at least one")
-    return sorted({int(size) for size in sizes})
 
 
 def measured(run: Run, benchmark: Benchmark, sizes: Sequence[int], plan: Plan) -> list[Row]:

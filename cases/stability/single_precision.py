@@ -1,6 +1,6 @@
 """A hierarchy in single precision beside one in double: where does it fail, what protects?"""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -95,17 +95,20 @@ def tried(solid: Callable[[float], Solid], value: float) -> Trial:
         work.append(np.einsum("nm,nm->m", F, found.x))
         bodies_alone = made.hierarchy if isinstance(made, multigrid.Joined) else made
         stored = str(bodies_alone.levels[0].K.data.dtype)
-    joined = isinstance(made, multigrid.Joined)
-    beyond = beyond_bound(made.joints.bodies.K if joined else system.K, bodies_alone.levels[0])
+    K = made.joints.bodies.K if isinstance(made, multigrid.Joined) else system.K
+    beyond = beyond_bound(K, bodies_alone.levels[0])
+    by_double, by_single = iterations
     if min(iterations) >= 0:
         difference = float(np.abs(work[1] / work[0] - 1.0).max())
-        return Trial(value, iterations[0], iterations[1], difference, stored, beyond)
+        return Trial(value, by_double, by_single, difference, stored, beyond)
     instead = trials.answered(system, F, "multigrid")
     if instead.compliance is None:
-        return Trial(value, *iterations, 0.0, stored, beyond, "refused")
+        return Trial(value, by_double, by_single, 0.0, stored, beyond, "refused")
     exact = trials.factored(system, F, "superlu").refined
     error = float(np.abs(instead.compliance / exact - 1.0).max())
-    return Trial(value, *iterations, 0.0, stored, beyond, instead.method, error, instead.round_off)
+    return Trial(
+        value, by_double, by_single, 0.0, stored, beyond, instead.method, error, instead.round_off
+    )
 
 
 def beyond_bound(K: sparse.bsr_array, level: multigrid.Level) -> float:
@@ -202,7 +205,7 @@ class Sweep:
 def sweeps(quick: bool) -> dict[str, Sweep]:
     """All of them, in short where the run is quick."""
 
-    def of(full: Sequence[float], short: Sequence[float]) -> list[float]:
+    def of(full: Iterable[float], short: Iterable[float]) -> list[float]:
         return [float(x) for x in (short if quick else full)]
 
     return {
