@@ -330,7 +330,10 @@ def in_their_place(every: list[Trial]) -> list[str]:
         f"{name} {sum(t.answered == name for t in lost)}"
         for name in sorted({t.answered for t in lost})
     )
-    return [f"On {len(lost)} neither converges; asked for multigrid, the program has: {names}."]
+    return [
+        f"On {len(lost)} neither converges. Asked for multigrid, whose coarsest level is larger in "
+        f"the program, these answer: {names}."
+    ]
 
 
 def beyond_bounds(found: dict[str, list[Trial]]) -> list[str]:
