@@ -14,6 +14,7 @@ from .fits import check_bands as check_bands
 from .fits import check_parts as check_parts
 from .fits import refuse_millimetres as refuse_millimetres
 from .foreign_housing import AnyHousing as AnyHousing
+from .foreign_housing import BoltedJoint as BoltedJoint
 from .foreign_housing import Bolts as Bolts
 from .foreign_housing import CondensedHousing as CondensedHousing
 from .foreign_housing import ForeignFile as ForeignFile

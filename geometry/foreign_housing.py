@@ -187,6 +187,28 @@ class Bolts(Part):
         )
 
 
+class BoltedJoint(Part):
+    """Bolts between two solids: they are joined in the annulus round each hole alone.
+
+    That is where the bolts' preload keeps them pressed on one another; elsewhere the joint is
+    open, and its sides move freely.
+    """
+
+    hole_radius: float = Field(gt=0, description="radius of the holes, in the file's unit")
+    pressed_diameter: float = Field(
+        gt=0, description="outside diameter of the annulus that stays pressed, in that unit"
+    )
+
+    @model_validator(mode="after")
+    def _wider_than_the_hole(self) -> Self:
+        if self.pressed_diameter <= 2 * self.hole_radius:
+            raise InputError(
+                f"bolted: pressed_diameter is {self.pressed_diameter:g} but must be greater than "
+                f"the hole's diameter, {2 * self.hole_radius:g}: enlarge it"
+            )
+        return self
+
+
 class ForeignFile(Part):
     """A part from a STEP file or a mesh file: which solid, of what material, and how it is turned.
 
@@ -274,6 +296,19 @@ class ForeignHousing(ForeignFile):
     seat: Pick
     held: tuple[Pick, ...] = Field(default=(), max_length=100)
     bolts: Bolts | None = None
+    bolted: BoltedJoint | None = Field(
+        default=None, description="of several solids of one STEP file: joined round bolts alone"
+    )
+
+    @model_validator(mode="after")
+    def _has_solids_to_join(self) -> Self:
+        if self.bolted is not None and (self.step is None or self.part is not None):
+            raise InputError(
+                f"bolted is given to {self.what()} from {self.file}, but joins solids of one STEP "
+                "file: "
+                + ("leave out part" if self.part else "give the part as STEP, or leave it out")
+            )
+        return self
 
     @model_validator(mode="after")
     def _tightened(self) -> Self:
@@ -310,7 +345,7 @@ class ForeignHousing(ForeignFile):
 
 
 class Tie(Part):
-    """A face of a further part that is glued to what it lies on: the housing, or another part."""
+    """A face of a further part that is joined to what it lies on: the housing, or another part."""
 
     face: Pick
     to: str = Field(
@@ -319,6 +354,9 @@ class Tie(Part):
         max_length=100,
         description="'housing', the name of another part of the unit, or that of another bearing "
         "unit's housing, as in 'rear.housing'",
+    )
+    bolted: BoltedJoint | None = Field(
+        default=None, description="joined round bolts alone; glued all over where left out"
     )
 
 

@@ -1,5 +1,6 @@
 """What several test modules use: coarse scenes, built once a session, and commands in a folder."""
 
+import gc
 import os
 import shutil
 import signal
@@ -219,6 +220,21 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile:
     """Take the tests in the order of `pytest_collection_modifyitems`."""
     config.option.loadscopereorder = False
     return ByFile(config, log)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Let the collector of garbage pass by what stays to the end: all modules and tests.
+
+    It went through all of them again and again, and in a child that is forked it copied each of
+    their pages. Where one process collects and others run the tests, each does so for itself.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -414,6 +414,20 @@ def test_charts_take_the_colours_of_the_page_and_of_paper(browser: Any, reports:
         opened.page.wait_for_selector(".main-svg[style*='white'], .main-svg[style*='255']")
 
 
+def test_error_bars_are_seen_on_dark(browser: Any, reports: Path, tmp_path: Path) -> None:
+    curve = trace("one", [0.0, 1.0], [0.0, 1.0])
+    curve["error_y"] = {"type": "data", "array": [0.1, 0.2]}
+    items = [chart("Bands", [curve], "x [m]", "y [m]")]
+    content = results("plain", sections=[Section(title="Charts", items=items)])
+    (tmp_path / "results.json").write_text(content.model_dump_json(), "utf-8")
+    write_page(tmp_path)
+    stroke = "getComputedStyle(document.querySelector('path.yerror')).stroke"
+    for scheme, light in (("dark", True), ("light", False)):
+        with Opened(browser, tmp_path / "report.html", scheme=scheme) as opened:
+            parts = [int(x) for x in re.findall(r"\d+", opened.page.evaluate(stroke))[:3]]
+            assert (min(parts) > 200) == light
+
+
 def test_a_page_without_the_program_of_the_charts_says_so(
     browser: Any, reports: Path, tmp_path: Path
 ) -> None:

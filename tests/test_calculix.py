@@ -16,8 +16,8 @@ from fe_drivetrain.export.calculix_deck import write_inp
 from fe_drivetrain.export.calculix_integration import four_point_model
 from fe_drivetrain.export.calculix_results import ROUNDING, read_dat, read_response
 from fe_drivetrain.export.programs.ccx import find_calculix, run_calculix
-from fe_drivetrain.mesh.shapes import is_straight
 from fe_drivetrain.operator.elasticity import assemble
+from fe_drivetrain.operator.element_loops import is_straight
 from fe_drivetrain.response.model import LOADS, Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
 from fe_drivetrain.scene.reading import change_scene

@@ -7,16 +7,20 @@ import numpy as np
 import pytest
 from conftest import coarse_scene
 
+from fe_drivetrain.commands import design_page
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.design_page import what_level_two_lacks, why_solid
+from fe_drivetrain.commands.design_page import compared, what_level_two_lacks, why_solid
 from fe_drivetrain.commands.designs import parse_values
 from fe_drivetrain.commands.studies import run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity import designs as designs_module
 from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import Difference, Value, compare_designs, scene_changes
-from fe_drivetrain.report.results import read_results
+from fe_drivetrain.report.results import Chart, read_results
 from fe_drivetrain.scene.reading import change_scene
+from fe_drivetrain.scene.units import unit_of_key
+from fe_drivetrain.suite.page import Page
+from fe_drivetrain.suite.run import Run
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -163,6 +167,54 @@ def test_the_command_shows_a_sweep(tmp_path: Any, capsys: pytest.CaptureFixture[
     assert ended.value.code == 0
     assert "hub.stiffness.rx of 0.25 against 0.1: -" in capsys.readouterr().out
     assert "what changes with" in (tmp_path / "report.html").read_text()
+    results = read_results(tmp_path / "results.json")
+    (answer,) = results.answers
+    assert (answer.quantity, answer.unit) == (
+        "change of hub.stiffness.rx, 0.25 against 0.1",
+        "%",
+    )
+    assert answer.computed < 0.0
+    assert abs(answer.computed) > (answer.band or 0.0)
+    (chart,) = [i for s in results.sections for i in s.items if isinstance(i, Chart)]
+    assert chart.figure["layout"]["xaxis"]["title"]["text"] == f"{BORE} [m]"
+
+
+@pytest.mark.parametrize(
+    ("key", "unit"),
+    [
+        (BORE, "m"),
+        ("shaft.front", "m"),
+        ("bearing_units.main_bearing.housing.wall", "m"),
+        ("gearbox.weight", "N"),
+        ("gearbox.stiffness.1", "N/m"),
+        ("gearbox.stiffness.5", "N m/rad"),
+        ("materials.steel.youngs_modulus", "Pa"),
+        ("materials.steel.poisson_ratio", ""),
+        ("mesh.elements_per_turn", ""),
+        ("bearing_units.nowhere.housing.wall", ""),
+    ],
+)
+def test_a_value_of_a_scene_has_the_unit_that_it_is_read_in(key: str, unit: str) -> None:
+    steel = {"materials.steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7850}}
+    assert unit_of_key(change_scene(coarse_scene("bonded"), steel), key) == unit
+
+
+def test_what_may_be_no_change_is_named(tmp_path: Path) -> None:
+    def two(name: str, after: float, band: float) -> Difference:
+        values = tuple(Value(np.array([size]), band, 2) for size in (1.0, after))
+        return Difference(Quantity(f"hub.stiffness.{name}"), values)
+
+    known, open_ = two("rx", 0.9, 1e-3), two("ry", 0.97, 0.02)
+    assert known.is_known
+    assert not open_.is_known
+    page = Page()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(design_page, "compare_designs", lambda *_: [known, open_])
+        scenes = dict.fromkeys(("a", "b"), coarse_scene("bonded"))
+        compared(Run({}, True, tmp_path), page, scenes, None, 0.05, None, None)
+    said = " ".join(page.summary)
+    assert "hub.stiffness.rx of b against a: -10 % ± 0.19 %" in said
+    assert "The change of hub.stiffness.ry is smaller than its band: it may be none." in said
 
 
 def test_a_page_names_all_its_scenes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

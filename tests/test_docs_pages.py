@@ -111,6 +111,17 @@ def test_a_housing_from_step_stands_in_a_scene(run_page: Runner, tmp_path: Path)
 def test_reactions_moved_to_the_hub_are_the_hub_loads(run_page: Runner) -> None:
     names = run_page("how-to/hub-loads-to-reactions.md")
     assert np.allclose(names["at_hub"], names["hub_loads"], rtol=1e-9)
+    # the tower carries the air's loads and the rotor's weight, by their levers about its axis
+    tilt, mass = names["tilt"], names["mass"]
+    c, s = np.cos(tilt), np.sin(tilt)
+    level = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    front = np.array([names["scene"].shaft.front, 0, 0]) - names["top"]
+    rotor = front - [names["ahead"], 0, 0]
+    force, weight = level @ names["aero"][:3], 9.81 * mass * np.array([0, 0, -1])
+    moment = level @ names["aero"][3:]
+    moment = moment + np.cross(level @ front, force) + np.cross(level @ rotor, weight)
+    exact = np.concatenate([force + weight, moment])
+    assert np.allclose(names["on_tower"], exact, rtol=1e-9, atol=1e-9 * np.abs(exact).max())
 
 
 def test_openfast_channels_become_turns_loads_and_cycles(run_page: Runner) -> None:

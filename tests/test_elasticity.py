@@ -21,8 +21,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.mesh.facets import face_weights, volume_weights
-from fe_drivetrain.mesh.shapes import element_kind, is_straight
+from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator.elasticity import assemble, sparsity
+from fe_drivetrain.operator.element_loops import is_straight
 from fe_drivetrain.scene.materials import MATERIALS, Material
 
 STEEL = MATERIALS["steel"]

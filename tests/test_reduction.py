@@ -47,6 +47,16 @@ def test_eliminated_degrees_of_freedom_stand_alone(reduced):
     assert abs(K - before).max() == 0.0
 
 
+def test_a_system_in_place_of_its_stiffness_is_the_same(reduced):
+    model, K, elimination, system = reduced
+    mine = K.copy()
+    again = reduce(model.mesh.points, model.mesh.cells, mine, elimination, overwrite=True)
+    assert abs(again.K - system.K).max() == 0.0
+    assert (again.prolongation is None) == (system.prolongation is None)
+    means = any(constraint.is_mean for constraint in elimination.constraints)
+    assert (abs(mine - K).max() == 0.0) == means  # whose joints are taken apart from K
+
+
 def test_indices_are_what_loops_are_compiled_for_whatever_springs_leave(reduced):
     model, K, elimination, _ = reduced
     wide = K.copy()

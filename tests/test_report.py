@@ -371,7 +371,12 @@ def test_plotly_stands_once_beside_the_pages_and_only_for_charts(tmp_path: Path)
 
 def test_a_case_can_be_run_again_from_what_its_page_says(tmp_path: Path) -> None:
     environment = results().environment.model_copy(
-        update={"command": "fe-drivetrain run a/b --set k=-4e5", "code": "c0de" * 16, "quick": True}
+        update={
+            "command": "fe-drivetrain run a/b --set k=-4e5",
+            "code": "c0de" * 16,
+            "commit": "0ff1ce" * 6 + "0000",
+            "quick": True,
+        }
     )
     content = results(environment=environment, scene="shaft:\n  front: -1e-5\n")
     text = Page(page_of(tmp_path, content)).text()
@@ -379,6 +384,7 @@ def test_a_case_can_be_run_again_from_what_its_page_says(tmp_path: Path) -> None
         "fe-drivetrain run a/b --set k=-4e5",
         "front: -1e-5",
         "c0dec0de",
+        "0ff1ce0ff1ce",
         "quick: coarser",
     ):
         assert said in text

@@ -1,5 +1,6 @@
 """Faces that a STEP file has as splines: planes, bores and spheres are known, blends are not."""
 
+import functools
 import json
 import math
 from pathlib import Path
@@ -99,6 +100,7 @@ def files(tmp_path_factory):
     return folder
 
 
+@functools.cache  # a look with its splines takes half a second
 def looked_at(path):
     return read_in_process("look", path, {"smallest_detail": 0.0})
 

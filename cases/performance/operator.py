@@ -23,8 +23,8 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats, Ints, Times, run_python, timed_runs
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.mesh import element_kind, generate, is_straight
-from fe_drivetrain.operator import assemble, kernels, sparsity
+from fe_drivetrain.mesh import element_kind, generate
+from fe_drivetrain.operator import assemble, is_straight, kernels, sparsity
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import factorise, reduce
 from fe_drivetrain.suite import Page, Record, Run, column

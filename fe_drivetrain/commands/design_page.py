@@ -14,6 +14,7 @@ from fe_drivetrain.fidelity.ladder import TITLES
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Cell
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.units import unit_of_key
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
@@ -80,11 +81,14 @@ def compared(
         page.answer(_sentence(one, names))
     if not known:
         page.answer(f"No change from {names[0]} is larger than its band.")
+    elif unknown := [one.quantity.name for one in found if not one.is_known]:
+        page.answer(_within_bands(unknown))
+    _found(page, known, names)
     largest = float(max(one.rank_bands.max() for one in found))
     page.at_most(
-        "largest band of a change",
-        largest,
-        tolerance,
+        "largest band of a change, relative to the larger value [%]",
+        100 * largest,
+        100 * tolerance,
         why="the tolerance that was requested, of both values together, relative to the larger",
         source="the adviser's bands: half of what two bounds of the housings differ by and the "
         "change from beam to meridian; of the assembly, its discretization error",
@@ -93,8 +97,11 @@ def compared(
     if varied is None:
         _show_bars(page, found, names)
     else:
-        _show_sweep(page, found, varied)
-    page.table("Every quantity, the largest change first", _rows(found, names))
+        _show_sweep(page, found, varied, unit_of_key(designs[names[0]], varied.key))
+    page.table(
+        "Every quantity: changes larger than their bands first, the largest before the others",
+        _rows(found, names),
+    )
     solid = [one for one in found if one.values[0].level == _ASSEMBLY]
     if solid:
         page.text(why_solid(solid[0], names, tolerance))
@@ -144,6 +151,23 @@ def _sentence(one: Difference, names: Sequence[str]) -> str:
         f"{one.quantity.name} of {names[k + 1]} against {names[0]}: {text} (level {level}, "
         f"{TITLES[level]})."
     )
+
+
+def _within_bands(names: Sequence[str]) -> str:
+    """What is said of changes that may be none."""
+    if len(names) == 1:
+        return f"The change of {names[0]} is smaller than its band: it may be none."
+    listed = f" ({', '.join(names)})" if len(names) <= _NAMED else ""
+    return f"{len(names)} further changes{listed} are smaller than their bands: they may be none."
+
+
+def _found(page: Page, known: Sequence[Difference], names: Sequence[str]) -> None:
+    """State the largest known change, where it is not next to all of its value."""
+    for one in known[:1]:
+        k = int(np.argmax(one.ranks))
+        if one.ranks[k] <= _FROM_ZERO:
+            what = f"change of {one.quantity.name}, {names[k + 1]} against {names[0]} [%]"
+            page.found(what, 100 * float(one.changes[k]), 100 * float(one.bands[k]))
 
 
 def why_solid(one: Difference, names: Sequence[str], tolerance: float) -> str:
@@ -246,19 +270,21 @@ def _show_bars(page: Page, found: Sequence[Difference], names: Sequence[str]) ->
     page.add(figure)
 
 
-def _show_sweep(page: Page, found: Sequence[Difference], varied: Varied) -> None:
+def _show_sweep(page: Page, found: Sequence[Difference], varied: Varied, unit: str) -> None:
     shown = [one for one in found if (one.ranks <= _FROM_ZERO).all()][:_CURVES]
     rows: list[Record] = []
+    x = f"{varied.key} [{unit}]" if unit else varied.key
     for number, value in enumerate(varied.values):
-        row: Record = {varied.key: value}
+        row: Record = {x: value}
         for one in shown:
             change = 0.0 if number == 0 else 100 * float(one.changes[number - 1])
             row[f"{one.quantity.name}, change [%]"] = change
         rows.append(row)
     curves = {f"{one.quantity.name}, change [%]": one.quantity.name for one in shown}
-    title = f"Largest changes against {varied.key} = {varied.values[0]:g}"
-    rows.sort(key=lambda row: row[varied.key])
-    page.sweep(title, rows, varied.key, curves, axis="change [%]")
+    first = f"{varied.values[0]:g} {unit}".rstrip()
+    title = f"Largest changes against {varied.key} = {first}"
+    rows.sort(key=lambda row: row[x])
+    page.sweep(title, rows, x, curves, axis="change [%]")
 
 
 def _sensible(one: Difference) -> list[float | None]:

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import platform
+import re
 from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cache as once
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from pathlib import Path
 from typing import Any
 
 #: Which choose kernels by the processor. MKL is loaded by a solver, in the course of a process.
@@ -51,6 +53,50 @@ def program_hash() -> str:
     for name in sorted(found):
         code.update(name.encode() + b"\0" + found[name].read_bytes() + b"\0")
     return code.hexdigest()
+
+
+@once
+def program_commit() -> str:
+    """The commit of the clone that the program runs from; empty where it is installed.
+
+    What was changed since is in `program_hash` alone.
+    """
+    return commit_of(Path(str(files("fe_drivetrain"))).parent)
+
+
+def commit_of(clone: Path) -> str:
+    """The commit that is checked out in a clone, or in a worktree of one; empty where none is.
+
+    Parameters
+    ----------
+    clone : Path
+        Its upper folder. Files of git are read; git itself need not be there.
+    """
+    try:
+        folder = clone / ".git"
+        if folder.is_file():  # of a worktree
+            folder = clone / folder.read_text("utf-8").removeprefix("gitdir:").strip()
+        common = folder
+        if (named := folder / "commondir").is_file():
+            common = folder / named.read_text("utf-8").strip()
+        head = (folder / "HEAD").read_text("utf-8").strip()
+        if not head.startswith("ref:"):
+            return _digits(head)
+        name = head.removeprefix("ref:").strip()
+        for at in (folder, common):
+            if (at / name).is_file():
+                return _digits((at / name).read_text("utf-8").strip())
+        for line in (common / "packed-refs").read_text("utf-8").splitlines():
+            digits, _, what = line.partition(" ")
+            if what.strip() == name:
+                return _digits(digits)
+    except (OSError, UnicodeDecodeError):
+        pass
+    return ""
+
+
+def _digits(text: str) -> str:
+    return text if re.fullmatch("[0-9a-f]{40}|[0-9a-f]{64}", text) else ""
 
 
 def _sources(folder: Traversable, name: str) -> Iterator[tuple[str, Traversable]]:

@@ -57,6 +57,6 @@ def four_point_stiffness(
     data = np.zeros((len(pattern.indices), 3, 3))
     nodes = np.ascontiguousarray(cells, dtype=np.int32)
     every = np.arange(len(cells))
-    element_loops.add_curved(points, nodes, every, gradients, weights, *lame, pattern.slots, data)
+    element_loops.add_elements(points, nodes, every, gradients, weights, *lame, pattern.slots, data)
     shape = (n_dofs, n_dofs)
     return sparse.bsr_array((data, pattern.indices, pattern.indptr), shape=shape)

@@ -19,6 +19,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.made_by import machine, source_hash
+from fe_drivetrain.foreign.bolted import MOST_BETWEEN_RIMS, SIDES, joined_between_rims, opened
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.geometry import ForeignFile, Pick
@@ -114,6 +115,13 @@ def kept_part(
             f"{facts['volume after healing [m^3]']:.9g} m^3",
             stacklevel=3,
         )
+    if (share := facts.get("joined between rims", 0.0)) > MOST_BETWEEN_RIMS:
+        warnings.warn(
+            f"{Path(source.file).name}: {100 * share:.2g} % of the joint beside its bolts stays "
+            "joined, where elements reach from one bolt's pressed face to the next: choose smaller "
+            "elements for the housing, or more of them on a turn",
+            stacklevel=3,
+        )
     faces = {
         f"{part}.{key.removeprefix('face ')}": value
         for key, value in arrays.items()
@@ -167,7 +175,7 @@ def meshed_step(
     for _ in range(ATTEMPTS):
         found = read_in_process(action, source.file, request)
         survey: dict[str, Any] = json.loads(str(found["survey"]))
-        mesh = _placed_mesh(found, source, shift(survey))
+        mesh = _placed_mesh(found, source, shift(survey), survey)
         if len(inverted_cells(mesh)) == 0:
             break
         if request["optimise"]:  # in vain: finer, as `fe_drivetrain.mesh.generation.generate`
@@ -204,24 +212,25 @@ def step_facts(survey: Mapping[str, Any], scale: float) -> dict[str, Any]:
         "faces removed": before["faces"] - after["faces"],
         "edges removed": before["edges"] - after["edges"],
         "healing": survey["healing"],
+        "joined between rims": survey.get("joined between rims", 0.0),
     }
 
 
-def _placed_mesh(found: Mapping[str, NDArray[Any]], source: ForeignFile, shift: Floats) -> Mesh:
-    """The mesh of a STEP file's solids in its place."""
+def _placed_mesh(
+    found: Mapping[str, NDArray[Any]], source: ForeignFile, shift: Floats, survey: dict[str, Any]
+) -> Mesh:
+    """The mesh of a STEP file's solids in its place; of a bolted joint the survey says more."""
     cells = found["cells"][:, GMSH_TO_VTK]
     placed = source.scale * (found["points"] @ source.rotation.T) + shift
     renewed = renumbered(placed, cells)
     numbers = renewed.number
-    part = "body"
-    mesh = Mesh(
-        renewed.points,
-        renewed.cells,
-        np.zeros(len(cells), dtype=np.int64),
-        (part,),
-        {key: numbers[value] for key, value in found.items() if key.startswith("body.")},
-        {},
-    )
+    faces = {key: numbers[value] for key, value in found.items() if key.startswith("body.")}
+    pressed, open_ = (faces.pop(f"body.{key}", None) for key in ("pressed", "open"))
+    part = np.zeros(len(cells), dtype=np.int64)
+    mesh = Mesh(renewed.points, renewed.cells, part, ("body",), faces, {})
+    if pressed is not None and open_ is not None:
+        survey["joined between rims"] = joined_between_rims(mesh, open_, pressed)
+        mesh = opened(mesh, open_, pressed)
     return relax_flat_cells(_turned_outward(mesh))
 
 
@@ -314,7 +323,7 @@ def named_arrays(name: str, mesh: Mesh, facts: Mapping[str, Any]) -> dict[str, N
         The mesh has a fault.
     """
     try:
-        refuse_unsound(mesh)
+        refuse_unsound(mesh, joints=[(f"body.{SIDES[0]}", f"body.{SIDES[1]}")])
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     return {

@@ -7,6 +7,7 @@ must be covered whole by the other.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.foreign.bolted import SIDES
 from fe_drivetrain.foreign.from_file import (
     PlacedPart,
     body_of_mesh,
@@ -26,6 +28,7 @@ from fe_drivetrain.foreign.from_file import (
     pick_data,
     step_facts,
 )
+from fe_drivetrain.foreign.holes import pressed_facets
 from fe_drivetrain.geometry import Bearing, FurtherPart, MeshSizes
 from fe_drivetrain.interfaces.constraints import Constraint
 from fe_drivetrain.interfaces.mortar import mortar_tie
@@ -60,7 +63,7 @@ def placed_part(
     -------
     PlacedPart
         In the scene's frame, in m: "BEARING.PART", with the faces "tie 1", "tie 2" ... as picked,
-        and "held".
+        or where they are bolted round their bolts and "open 1" ... elsewhere, and "held".
 
     Raises
     ------
@@ -92,6 +95,7 @@ def _of_step(part: FurtherPart, shift: Floats, sizes: MeshSizes) -> dict[str, ND
         "smallest_detail": part.smallest_detail,
         "tied": [pick_data(tie.face) for tie in part.tied],
         "to": [tie.to for tie in part.tied],
+        "bolted": [t.bolted.model_dump(mode="json") if t.bolted else None for t in part.tied],
         "held": [pick_data(pick) for pick in part.held],
         "size": sizes.housing / part.scale,
         "per_turn": sizes.elements_per_turn,
@@ -117,6 +121,11 @@ def _of_mesh(part: FurtherPart, shift: Floats) -> dict[str, NDArray[Any]]:
         )
     if len(held):
         faces["body.held"] = surface.facets[held]
+    for k, (tie, found) in enumerate(zip(part.tied, picked, strict=True), 1):
+        if tie.bolted is not None:
+            pressed = pressed_facets(surface, found, tie.bolted, part.unit or "")
+            faces[f"body.tie {k}"] = surface.facets[pressed]
+            faces[f"body.open {k}"] = surface.facets[np.setdiff1d(found, pressed)]
     points = np.asarray(part.scale * (body.points @ part.rotation.T) + shift, dtype=np.float64)
     mesh = Mesh(points, body.cells, body.part, ("body",), faces, {})
     return named_arrays(surface.name, mesh, mesh_facts(mesh))
@@ -207,6 +216,40 @@ def tie_faces(unit: BearingUnit) -> list[tuple[str, str]]:
     ]
 
 
+def open_faces(unit: BearingUnit) -> list[tuple[str, str]]:
+    """Names of the faces beside the bolts of bolted ties: of each further part, and opposite.
+
+    Parameters
+    ----------
+    unit : BearingUnit
+        With its parts; where bolts press all of a tied face, a mesh has no such faces.
+    """
+    bolted = [tie.bolted for part in unit.parts for tie in part.tied]
+    pairs = zip(tie_faces(unit), bolted, strict=True)
+    return [
+        (own.replace(".tie ", ".open "), other.replace(".tie ", ".open "))
+        for (own, other), joint in pairs
+        if joint is not None
+    ]
+
+
+def open_sides(units: Iterable[BearingUnit]) -> list[tuple[str, str]]:
+    """Names of faces of a mesh that lie on one another without being joined.
+
+    Parameters
+    ----------
+    units : Iterable[BearingUnit]
+        Of a scene; where bolts press all of a joint, a mesh has no such faces.
+    """
+    found = []
+    for unit in units:
+        if unit.foreign is not None and unit.foreign.bolted is not None:
+            one, two = (f"{unit.bearing.name}.housing.{side}" for side in SIDES)
+            found.append((one, two))
+        found += open_faces(unit)
+    return found
+
+
 def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
     """Name what the further parts of a unit lie on, and where the unit stands.
 
@@ -220,8 +263,8 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
     Returns
     -------
     Mesh
-        With the faces of `tie_faces`; "NAME.housing.base" is all that the ground holds, and there
-        is none where that holds nothing.
+        With the faces of `tie_faces` and `open_faces`; "NAME.housing.base" is all that the ground
+        holds, and there is none where that holds nothing.
 
     Raises
     ------
@@ -235,6 +278,11 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
     for own, other in tie_faces(unit):
         part, target = own.rpartition(".")[0], other.rpartition(".")[0]
         faces[other] = touching(f"{part} tied to {target}", mesh.points, faces[own], sides[target])
+    for own, other in open_faces(unit):
+        if own in faces:
+            opposite = _near(mesh.points, faces[own], sides[other.rpartition(".")[0]])
+            pieces = common_pieces(mesh.points, faces[own], opposite)
+            faces[other] = opposite[np.unique(pieces.master)]
     ground = [faces.pop(f"{name}.housing.base")] if f"{name}.housing.base" in faces else []
     held = [faces.pop(f"{name}.{part.name}.held") for part in unit.parts if part.held]
     none = np.zeros((0, 6), dtype=np.int64)

@@ -13,7 +13,7 @@ from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.fitting import fitted_circle, fitted_cylinder, from_axis
 from fe_drivetrain.foreign.picking import Surface
-from fe_drivetrain.geometry import Bolts
+from fe_drivetrain.geometry import BoltedJoint, Bolts
 from fe_drivetrain.mesh.facets import facet_points
 
 _ON_HOLE = 0.02  # of a radius: corners of the wall of a hole
@@ -151,6 +151,29 @@ def washers(
         heads |= {f"head {number}": head, f"foot {number}": foot}
     stands = held if bolts.hold == "clamped" else np.unique(np.concatenate(feet))
     return stands, heads, len(holes)
+
+
+def pressed_facets(surface: Surface, face: Ints, bolted: BoltedJoint, unit: str) -> Ints:
+    """Facets of a face that bolts press on what it lies on.
+
+    Parameters
+    ----------
+    surface : Surface
+        Of the mesh.
+    face : Ints
+        Numbers of its facets.
+    bolted : BoltedJoint
+        The bolts.
+    unit : str
+        Of the file.
+
+    Raises
+    ------
+    InputError
+        There is no such hole, or facets do not follow the annulus round one.
+    """
+    rings = Bolts(hole_radius=bolted.hole_radius, washer_diameter=bolted.pressed_diameter)
+    return washers(surface, face, rings, unit)[0]
 
 
 def cylinders(surface: Surface) -> list[Cylinder]:

@@ -52,8 +52,8 @@ def placed_housing(
     -------
     PlacedPart
         In the scene's frame, in m: "NAME.housing", with the faces "bore" under the bearing, "seat"
-        all over the seat, "base" where it is held, and "head 1", "foot 1" ... at both ends of bolts
-        as beams.
+        all over the seat, "base" where it is held, "head 1", "foot 1" ... at both ends of bolts as
+        beams, and "joint 1", "joint 2", both sides of a bolted joint where it is open.
 
     Raises
     ------
@@ -92,6 +92,7 @@ def _of_step(
         "seat": pick_data(housing.seat),
         "held": [pick_data(pick) for pick in housing.held],
         "bolts": housing.bolts.model_dump(mode="json") if housing.bolts else None,
+        "bolted": housing.bolted.model_dump(mode="json") if housing.bolted else None,
         "kind": "Sphere" if bearing.kind == "spherical" else "Cylinder",
         "radius": bearing.raceway_diameter / 2 / scale,
         "tolerance": SEAT_TOLERANCE,

@@ -15,13 +15,19 @@ import numpy as np
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_fit import lies_on
 from fe_drivetrain.foreign.step_heal import VOLUME_TOLERANCE, reason, where
+from fe_drivetrain.foreign.step_joint import (
+    annulus,
+    drop_loose_faces,
+    open_joint,
+    rings_round_bolts,
+)
 from fe_drivetrain.foreign.step_solid import (
     distance,
     has_splines,
     picked,
     seat_cylinders,
 )
-from fe_drivetrain.foreign.step_solids import Place, all_placed, became, outside
+from fe_drivetrain.foreign.step_solids import Place, all_placed, became, common, outside
 from fe_drivetrain.foreign.words import nearly
 
 LARGEST_MESH = 400_000
@@ -42,7 +48,8 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
     Returns
     -------
     dict
-        Tags of the faces "bore", "seat" and "base", and of "head 1", "head 2", ... .
+        Tags of the faces "bore", "seat" and "base", of "head 1", "head 2", ..., and of a bolted
+        joint "pressed" and "open".
     """
     occ, name = gmsh.model.occ, survey["name"]
     solids = gmsh.model.getEntities(3)
@@ -73,9 +80,15 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
     rings, groups = [], []
     for hole in holes:
         for which in ("foot", "head") if _has_heads(request) else ("foot",):
-            ring = _annulus(hole[which], hole["axis"], request["bolts"])
+            outer, inner = request["bolts"]["washer_diameter"] / 2, request["bolts"]["hole_radius"]
+            ring = annulus(hole[which], hole["axis"], inner, outer)
             rings.append(ring)
             groups.append(f"{which} {hole['number']}")
+    joint: list[int] = []
+    if request.get("bolted"):
+        joint = rings_round_bolts(survey, request["bolted"], common(), "a face between two solids")
+    n_rings = len(rings)
+    rings += joint
     objects = [(2, t) for t in seat["tags"]] + [(2, t) for t in base_tags]
     heads = [hole["head face"] for hole in holes if _has_heads(request)]
     objects += [(2, t) for t in dict.fromkeys(heads)]
@@ -102,10 +115,11 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
         for tag, piece in zip(cut_faces, pieces[at : at + len(cut_faces)], strict=True)
     ]
     on_seat, on_base = set().union(*after[:n]), set().union(*after[n:])
-    on_ring = [
-        became(ring, piece, survey["size"], now) & surface
+    pieces_of_rings = [
+        became(ring, piece, survey["size"], now)
         for ring, piece in zip(were, pieces[at - len(rings) : at], strict=True)
     ]
+    on_ring = [tags & surface for tags in pieces_of_rings[:n_rings]]
     faces: dict[str, list[int]] = {"seat": sorted(on_seat)}
     bore = []
     for t in on_seat:
@@ -122,8 +136,10 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
                 faces[group] = sorted(under)
     if base_tags:
         faces["base"] = sorted(on_base)
+    if joint:
+        faces |= open_joint(name, set().union(*pieces_of_rings[n_rings:]))
     for key, tags in faces.items():
-        if not tags:
+        if not tags and key != "open":  # where bolts press all of the joint
             raise InputError(
                 f"{name}: nothing is left of the {key} where it is cut at the bearing's sides and "
                 "round the bolts: check the washers' diameter and the placement"
@@ -134,9 +150,11 @@ def cut(survey: dict[str, Any], request: dict[str, Any]) -> dict[str, list[int]]
             f"{name}: its seat covers {length:.6g} mm of the bearing's width of {width:.6g} mm, "
             "but must cover all of it: move the part, or make the bearing narrower"
         )
+    drop_loose_faces()
     gmsh.model.addPhysicalGroup(3, bodies, name="body")
     for key, tags in faces.items():
-        gmsh.model.addPhysicalGroup(2, tags, name=f"body.{key}")
+        if tags:
+            gmsh.model.addPhysicalGroup(2, tags, name=f"body.{key}")
     return faces
 
 
@@ -201,7 +219,10 @@ def _has_heads(request: dict[str, Any]) -> bool:
 
 
 def name_faces(survey: dict[str, Any], request: dict[str, Any]) -> None:
-    """Name the tied and held faces of a part without a seat, "body.tie 1" ... and "body.held"."""
+    """Name the tied and held faces of a part without a seat, "body.tie 1" ... and "body.held".
+
+    Of a tied face round whose bolts alone the part is joined, "body.open 1" ... is the rest.
+    """
     name = survey["name"]
     faces = {
         f"tie {k}": picked(survey, pick, "tied face") for k, pick in enumerate(request["tied"], 1)
@@ -219,9 +240,53 @@ def name_faces(survey: dict[str, Any], request: dict[str, Any]) -> None:
             f"{name}: the face round {_xyz(middle)} mm is picked twice, to be tied or held: pick "
             "each face once"
         )
+    if any(request["bolted"]):
+        faces = _round_bolts(survey, request, faces)
     gmsh.model.addPhysicalGroup(3, [t for _, t in gmsh.model.getEntities(3)], name="body")
     for key, found in faces.items():
-        gmsh.model.addPhysicalGroup(2, found, name=f"body.{key}")
+        if found:
+            gmsh.model.addPhysicalGroup(2, found, name=f"body.{key}")
+
+
+def _round_bolts(
+    survey: dict[str, Any], request: dict[str, Any], faces: dict[str, list[int]]
+) -> dict[str, list[int]]:
+    """Divide tied faces round their bolts: "tie 1" is what is joined, "open 1" the rest."""
+    occ, size, name = gmsh.model.occ, survey["size"], survey["name"]
+    solids, was = gmsh.model.getEntities(3), all_placed()
+    rings = {
+        f"tie {k}": rings_round_bolts(survey, bolted, faces[f"tie {k}"], f"tied face {k}")
+        for k, bolted in enumerate(request["bolted"], 1)
+        if bolted
+    }
+    flat = [ring for made in rings.values() for ring in made]
+    were = {ring: (float(occ.getMass(2, ring)), occ.getCenterOfMass(2, ring)) for ring in flat}
+    old = list(dict.fromkeys(t for tags in faces.values() for t in tags))
+    _, pieces = occ.fragment(solids, [(2, t) for t in [*flat, *old]])
+    occ.synchronize()
+    if len(gmsh.model.getEntities(3)) != len(solids):
+        raise InputError(f"{name}: the solid does not stay whole where it is cut round its bolts")
+    surface, now = set(outside()), all_placed()
+    after = dict(zip([*flat, *old], pieces[len(solids) :], strict=True))
+
+    def left(place: Place, tag: int) -> set[int]:
+        return became(place, after[tag], size, now) & surface
+
+    found = {}
+    for key, tags in faces.items():
+        whole = set().union(*(left(was[t], t) for t in tags))
+        if key in rings:
+            pressed = whole & set().union(*(left(were[r], r) for r in rings[key]))
+            found[key.replace("tie", "open")] = sorted(whole - pressed)
+            whole = pressed
+        if not whole:
+            raise InputError(
+                f"{name}: nothing is left of {key} where it is cut round its bolts: check their "
+                "pressed_diameter and the file"
+            )
+        found[key] = sorted(whole)
+    drop_loose_faces()
+    return found
 
 
 def _check_seat(
@@ -325,17 +390,6 @@ def bolt_holes(
 
 def _xyz(place: Any) -> str:
     return "({:.4g}, {:.4g}, {:.4g})".format(*place)
-
-
-def _annulus(place: Sequence[float], axis: Sequence[float], bolts: dict[str, Any]) -> int:
-    occ = gmsh.model.occ
-    outer, inner = bolts["washer_diameter"] / 2, bolts["hole_radius"]
-    ring, _ = occ.cut(
-        [(2, occ.addDisk(*place, outer, outer, zAxis=list(axis)))],
-        [(2, occ.addDisk(*place, inner, inner, zAxis=list(axis)))],
-    )
-    ((_, tag),) = ring
-    return int(tag)
 
 
 def mesh(survey: dict[str, Any], size: float, per_turn: int, optimise: bool) -> None:

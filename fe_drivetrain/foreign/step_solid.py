@@ -86,7 +86,7 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
     kept = after["faces"] == before["faces"]
     if after["solids"] > 1:
         colours = glue(name, math.dist(_box()[:3], _box()[3:]), colours if kept else {})
-    faces = [_face(t) for t in outside()]
+    faces = [face_data(t) for t in outside()]
     for number, face in enumerate(faces):
         face["colour"] = colours.get(face["tag"], "") if kept else ""
         same = (
@@ -179,7 +179,8 @@ def _labels(path: str) -> list[tuple[str, str]]:
     return [(names[n][0].strip(), kinds.get(names[n][1], "")) for n in found]
 
 
-def _face(tag: int) -> dict[str, Any]:
+def face_data(tag: int) -> dict[str, Any]:
+    """What is known of a face: kind, area and middle, and what describes its surface."""
     kind = gmsh.model.getType(2, tag)
     area, middle = area_and_middle(tag)
     face: dict[str, Any] = {"tag": tag, "kind": kind, "area": area, "middle": middle.tolist()}

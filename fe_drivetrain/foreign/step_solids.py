@@ -151,6 +151,30 @@ def outside() -> list[int]:
     return sorted(t for t, n in count.items() if n == 1)
 
 
+def common() -> list[int]:
+    """Tags of the faces that two solids have in common, ascending."""
+    count = Counter(t for faces in _boundaries().values() for t in faces)
+    return sorted(t for t, n in count.items() if n > 1)
+
+
+def loose_solids(joined: set[int]) -> list[int]:
+    """Tags of the solids that are not joined to the first one, or if that is loose, the others.
+
+    Parameters
+    ----------
+    joined : set of int
+        Tags of faces in which solids are joined.
+    """
+    bounds = {tag: faces & joined for tag, faces in _boundaries().items()}
+    together = {next(iter(bounds))}
+    while more := {
+        t for t in bounds if t not in together and any(bounds[t] & bounds[o] for o in together)
+    }:
+        together |= more
+    loose = [t for t in bounds if t not in together]
+    return loose if 2 * len(loose) <= len(bounds) else [t for t in bounds if t in together]
+
+
 def _boundaries() -> dict[int, set[int]]:
     return {
         tag: {t for _, t in gmsh.model.getBoundary([(3, tag)], combined=False, oriented=False)}
@@ -174,15 +198,8 @@ def _refuse_overlaps(file: str, solids: list[dict[str, Any]], pieces: list[set[i
 
 
 def _refuse_loose(file: str, solids: list[dict[str, Any]], tags: list[int]) -> None:
-    bounds = _boundaries()
-    together = {tags[0]}
-    while more := {
-        t for t in tags if t not in together and any(bounds[t] & bounds[o] for o in together)
-    }:
-        together |= more
-    loose = [s for s, t in zip(solids, tags, strict=True) if t not in together]
-    if 2 * len(loose) > len(solids):  # the first one is loose itself
-        loose = [s for s, t in zip(solids, tags, strict=True) if t in together]
+    apart = loose_solids(set(common()))
+    loose = [s for s, t in zip(solids, tags, strict=True) if t in apart]
     if loose:
         first = loose[0]
         others = f" (and {len(loose) - 1} more)" if len(loose) > 1 else ""

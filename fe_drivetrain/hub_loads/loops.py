@@ -234,6 +234,7 @@ class _Part(NamedTuple):
 
 def _closed_parts(t: Floats, z: Plane, longest: float, excursion: float) -> list[_Part]:
     """Loops that do not overlap."""
+    t = t.copy()  # times that may not be written to would be compiled for once more
     capacity = len(t)
     while True:
         steps = np.empty((capacity, 2), np.int64)

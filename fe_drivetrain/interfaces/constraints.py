@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import linalg, sparse
 from scipy.sparse.linalg import splu
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import rigid_motions
 
@@ -375,23 +375,33 @@ def eliminate(constraints: Sequence[Constraint], n_dofs: int) -> Elimination:
                 "give each interface and support a face of its own"
             )
         owner[constraint.pivots] = number
-    keep = _selection(np.flatnonzero(owner < 0), n_dofs)
-    T = keep
-    if not all(map(_holds_pivots_alone, constraints)):
-        C, pivots = _stack(constraints)
-        free = np.flatnonzero(owner < 0)
-        right = -C[:, free]
-        # Pivots may stand in other rows too, so the (small, sparse) pivot block is solved; only
-        # for the columns that are not empty.
-        columns = np.flatnonzero(np.diff(right.indptr))
-        factor = splu(C[:, pivots])
-        solved = [
-            sparse.csc_array(factor.solve(right[:, some].toarray()))
-            for some in np.array_split(columns, len(columns) // _BLOCK + 1)
-        ]
-        dependent = sparse.hstack(solved, format="csr") @ _selection(columns, free.size).T
-        T = (T + _selection(pivots, n_dofs) @ dependent).tocsr()
-    return Elimination((T @ keep.T).tocsr(), owner < 0, tuple(constraints))
+    left = owner < 0
+    if all(map(_holds_pivots_alone, constraints)):
+        free = np.flatnonzero(left)
+        rows = np.append(0, np.cumsum(left))
+        T = sparse.csr_array((np.ones(free.size), free, rows), shape=(n_dofs, n_dofs))
+    else:
+        T = _with_dependent(constraints, left)
+    return Elimination(T, left, tuple(constraints))
+
+
+def _with_dependent(constraints: Sequence[Constraint], left: Bools) -> sparse.csr_array:
+    """All degrees of freedom from those that are left, where some depend on these."""
+    n_dofs, free = len(left), np.flatnonzero(left)
+    keep = _selection(free, n_dofs)
+    C, pivots = _stack(constraints)
+    right = -C[:, free]
+    # Pivots may stand in other rows too, so the (small, sparse) pivot block is solved; only for the
+    # columns that are not empty.
+    columns = np.flatnonzero(np.diff(right.indptr))
+    factor = splu(C[:, pivots])
+    solved = [
+        sparse.csc_array(factor.solve(right[:, some].toarray()))
+        for some in np.array_split(columns, len(columns) // _BLOCK + 1)
+    ]
+    dependent = sparse.hstack(solved, format="csr") @ _selection(columns, free.size).T
+    T = (keep + _selection(pivots, n_dofs) @ dependent).tocsr()
+    return (T @ keep.T).tocsr()
 
 
 def _holds_pivots_alone(constraint: Constraint) -> bool:

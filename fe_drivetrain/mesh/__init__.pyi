@@ -44,6 +44,5 @@ from .shaft_section import Grading as Grading
 from .shaft_section import shaft_quadrilaterals as shaft_quadrilaterals
 from .shapes import TETRAHEDRON_EDGES as TETRAHEDRON_EDGES
 from .shapes import element_kind as element_kind
-from .shapes import is_straight as is_straight
 from .shapes import shape_functions as shape_functions
 from .symmetry import turns as turns

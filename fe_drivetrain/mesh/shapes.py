@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import (
     ElementHex1,
     ElementHex2,
@@ -17,8 +16,6 @@ from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
-
-_STRAIGHT = 2e-13  # an edge node this close to the middle of its edge (per edge length) is on it
 
 #: Corners of a tetrahedron's edges, whose middles are local nodes 4 to 9 in VTK's order.
 TETRAHEDRON_EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
@@ -148,12 +145,3 @@ def shape_functions(element: Element, points: Floats) -> tuple[Floats, Floats]:
     values = np.stack([np.broadcast_to(value, points.shape[1]) for value, _ in tables], axis=-1)
     gradients = np.stack([gradient for _, gradient in tables], axis=-1).transpose(1, 0, 2)
     return values, gradients
-
-
-def is_straight(points: Floats, cells: Ints) -> NDArray[np.bool_]:
-    """Which ten-node tetrahedra have only straight edges, and so an affine map; (n_cells,)."""
-    ends = cells[:, TETRAHEDRON_EDGES]
-    one, other = points[ends[:, :, 0]], points[ends[:, :, 1]]
-    along, off = other - one, points[cells[:, 4:]] - 0.5 * (one + other)
-    length, offset = (np.sqrt(np.einsum("nei,nei->ne", v, v)) for v in (along, off))
-    return np.asarray((offset <= _STRAIGHT * length).all(axis=1))

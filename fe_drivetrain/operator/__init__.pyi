@@ -1,6 +1,7 @@
 from .elasticity import Pattern as Pattern
 from .elasticity import assemble as assemble
 from .elasticity import sparsity as sparsity
+from .element_loops import is_straight as is_straight
 from .loads import Traction as Traction
 from .loads import body_loads as body_loads
 from .loads import pressure as pressure

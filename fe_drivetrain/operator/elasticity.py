@@ -15,7 +15,7 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.mesh.numbering import check_nodes
-from fe_drivetrain.mesh.shapes import element_kind, is_straight
+from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import element_loops
 from fe_drivetrain.operator.slabs import slabs
 
@@ -98,29 +98,25 @@ def assemble(
     nodes = np.ascontiguousarray(cells, dtype=np.int32)
     # NumPy asks for large pages for `empty`, not for `zeros`, whose small ones cost a third of all
     data = np.empty((len(pattern.indices), 3, 3))
-    data.fill(0.0)
-    if kind.n_corners == 4:
-        affine = is_straight(points, cells) if kind.name == "tetra10" else np.full(len(cells), True)
-        # The gradients of straight elements are linear at most: a rule of degree 2 is exact.
-        gradients, weights = kind.table(2)
-        reference = np.einsum("q,qpa,qrb->abpr", weights, gradients, gradients)
-    else:
-        affine, reference = np.full(len(cells), False), np.zeros((0, 0, 3, 3))
-    gradients, weights = kind.table(kind.degree)
+    # Gradients of straight tetrahedra are linear at most: a rule of degree 2 is exact.
+    affine = np.full(len(cells), kind.name == "tetra")
+    if kind.name == "tetra10":
+        affine = element_loops.is_straight(points, nodes)
+    rules = ((affine, kind.table(2)), (~affine, kind.table(kind.degree)))
+
+    def clear(some: Floats) -> None:
+        some.fill(0.0)
 
     def add(some: Ints) -> None:
-        straight, curved = some[affine[some]], some[~affine[some]]
-        if len(straight):  # a loop that is not needed is not compiled either
-            element_loops.add_affine(points, nodes, straight, reference, *lame, pattern.slots, data)
-        if len(curved):
-            element_loops.add_curved(
-                points, nodes, curved, gradients, weights, *lame, pattern.slots, data
+        for of, rule in rules:
+            element_loops.add_elements(
+                points, nodes, some[of[some]], *rule, *lame, pattern.slots, data
             )
 
-    apart, between = slabs(points, cells[:, : kind.n_corners])
     with ThreadPoolExecutor(get_num_threads()) as pool:
-        list(pool.map(add, apart))
-    add(between)
+        list(pool.map(clear, np.array_split(data, get_num_threads())))
+        for parts in slabs(points, cells[:, : kind.n_corners]):
+            list(pool.map(add, parts))
     return sparse.bsr_array(
         (data, pattern.indices, pattern.indptr), shape=(3 * n_blocks, 3 * n_blocks)
     )

@@ -7,11 +7,39 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.operator.kernels import Index, inverse_transposed
+from fe_drivetrain.operator.vectors import LANES, fetch, load, plus, store, times
 
 # Rows that a thread takes at once have a marker for each node.
 _PIECES = 8
+
+
+#: An edge node this close to the middle of its edge, per length of the edge, is on it.
+_STRAIGHT = 2e-13
+
+
+def is_straight(points: Floats, cells: Index) -> Bools:
+    """Which ten-node tetrahedra have only straight edges, and so an affine map; (n_cells,)."""
+    found = np.empty(len(cells), dtype=np.bool_)
+    _find_straight(points, cells, TETRAHEDRON_EDGES, found)
+    return found
+
+
+@njit(cache=True, parallel=True)
+def _find_straight(points: Floats, cells: Index, edges: NDArray[np.int64], found: Bools) -> None:
+    for e in prange(len(cells)):
+        found[e] = True
+        for edge in range(len(edges)):
+            length = off = 0.0
+            a, b = cells[e, edges[edge, 0]], cells[e, edges[edge, 1]]
+            for i in range(3):
+                one, other = points[a, i], points[b, i]
+                length += (other - one) ** 2
+                off += (points[cells[e, 4 + edge], i] - 0.5 * (one + other)) ** 2
+            if off > _STRAIGHT**2 * length:
+                found[e] = False
 
 
 def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
@@ -117,66 +145,29 @@ def _place_pairs(
                     slots[c, a, b] = place[cells[c, b]]
 
 
-@njit(cache=True)
-def _add_pair(H: Floats, lam: float, mu: float, data: Floats, ab: int, ba: int) -> None:
-    """Add lam H + mu H^T + mu tr(H) I at (a, b), and its transpose at (b, a)."""
-    trace = mu * (H[0, 0] + H[1, 1] + H[2, 2])
-    for i in range(3):
-        for j in range(3):
-            value = lam * H[i, j] + mu * H[j, i]
+@njit(inline="always")
+def _add_pair(
+    S: Floats, b: int, width: int, lam: float, mu: float, data: Floats, ab: int, ba: int
+) -> None:
+    """Add lam H + mu H^T + mu tr(H) I at (a, b), and its transpose at (b, a).
+
+    H is column b of a's three rows in S; indices cannot be negative.
+    """
+    three, wide, first = np.uint64(3), np.uint64(width), np.uint64(3 * b)
+    t, back = np.uint64(9 * ab), np.uint64(9 * ba)
+    one = np.uint64(1)
+    trace = mu * (S[first] + S[wide + first + one] + S[wide + wide + first + one + one])
+    for i in range(three):
+        for j in range(three):
+            value = lam * S[wide * i + first + j] + mu * S[wide * j + first + i]
             if i == j:
                 value += trace
-            data[ab, i, j] += value
+            data[t + three * i + j] += value
             if ab != ba:
-                data[ba, j, i] += value
+                data[back + three * j + i] += value
 
 
-@njit(cache=True, fastmath=True, nogil=True)
-def add_affine(
-    points: Floats,
-    cells: Index,
-    chosen: NDArray[np.int64],
-    reference: Floats,
-    lam: float,
-    mu: float,
-    slots: Index,
-    data: Floats,
-) -> None:
-    """Add the stiffness of tetrahedra with straight edges: one reference tensor for all.
-
-    Parameters
-    ----------
-    chosen : NDArray[np.int64]
-        Which cells.
-    reference : Floats
-        (k, k, 3, 3) integrals of dN_a/dxi_p dN_b/dxi_q over the reference element.
-    lam, mu : float
-        Lame's constants [Pa].
-    slots, data : Index, Floats
-        From `sparsity`, and the blocks to add to.
-    """
-    k = cells.shape[1]
-    J, A, M, H = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    for e in chosen:
-        for i in range(3):
-            origin = points[cells[e, 0], i]
-            for p in range(3):
-                J[i, p] = points[cells[e, p + 1], i] - origin
-        size = abs(inverse_transposed(J, A))
-        for a in range(k):
-            for b in range(a, k):
-                R = reference[a, b]
-                for i in range(3):
-                    for q in range(3):
-                        M[i, q] = size * (A[i, 0] * R[0, q] + A[i, 1] * R[1, q] + A[i, 2] * R[2, q])
-                for i in range(3):
-                    for j in range(3):
-                        H[i, j] = M[i, 0] * A[j, 0] + M[i, 1] * A[j, 1] + M[i, 2] * A[j, 2]
-                _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
-
-
-@njit(cache=True, fastmath=True, nogil=True)
-def add_curved(
+def add_elements(
     points: Floats,
     cells: Index,
     chosen: NDArray[np.int64],
@@ -200,10 +191,38 @@ def add_curved(
     slots, data : Index, Floats
         From `sparsity`, and the blocks to add to.
     """
+    n_q, _, k = gradients.shape
+    # rows are read eight numbers at once, beyond the last one, too
+    width = 3 * k + LANES
+    G, W, S = np.zeros((n_q, width)), np.empty((n_q, 3 * k)), np.empty((3, width))
+    flat = G.reshape(-1), W.reshape(-1), S.reshape(-1), data.reshape(-1)
+    _add_elements(points, cells, chosen, gradients, weights, lam, mu, slots, *flat)
+
+
+@njit(cache=True, fastmath=True, nogil=True)
+def _add_elements(
+    points: Floats,
+    cells: Index,
+    chosen: NDArray[np.int64],
+    gradients: Floats,
+    weights: Floats,
+    lam: float,
+    mu: float,
+    slots: Index,
+    G: Floats,
+    W: Floats,
+    S: Floats,
+    data: Floats,
+) -> None:
+    """With room for gradients, those times their weight, and integrals of their products."""
     k, n_q = cells.shape[1], len(weights)
-    J, A, H = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    G, WG = np.empty((k, 3, n_q)), np.empty((k, 3, n_q))
+    rows, width = 3 * k, 3 * k + LANES
+    J, A = np.empty((3, 3)), np.empty((3, 3))
     for e in chosen:
+        for a in range(k):  # blocks come while gradients are multiplied
+            for b in range(k):
+                fetch(data, 9 * slots[e, a, b])
+                fetch(data, 9 * slots[e, a, b] + 8)
         for q in range(n_q):
             J[:] = 0.0
             for a in range(k):
@@ -217,14 +236,18 @@ def add_curved(
                     g = 0.0
                     for p in range(3):
                         g += A[i, p] * gradients[q, p, a]
-                    G[a, i, q] = g
-                    WG[a, i, q] = size * g
+                    G[q * width + 3 * a + i] = g
+                    W[q * rows + 3 * a + i] = size * g
         for a in range(k):
+            for c in range(3 * a, rows, LANES):
+                v = load(G, c)
+                f, g, h = times(W[3 * a], v), times(W[3 * a + 1], v), times(W[3 * a + 2], v)
+                for q in range(1, n_q):
+                    v = load(G, q * width + c)
+                    r = q * rows + 3 * a
+                    f, g, h = plus(f, W[r], v), plus(g, W[r + 1], v), plus(h, W[r + 2], v)
+                store(f, S, c)
+                store(g, S, width + c)
+                store(h, S, 2 * width + c)
             for b in range(a, k):
-                for i in range(3):
-                    for j in range(3):
-                        h = 0.0
-                        for q in range(n_q):
-                            h += WG[a, i, q] * G[b, j, q]
-                        H[i, j] = h
-                _add_pair(H, lam, mu, data, slots[e, a, b], slots[e, b, a])
+                _add_pair(S, b, width, lam, mu, data, slots[e, a, b], slots[e, b, a])

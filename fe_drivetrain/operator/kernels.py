@@ -1,11 +1,10 @@
 """Compiled loops over node blocks: what NumPy cannot say without large copies.
 
 Matrices are block CSR with 3x3 blocks, one block row a node (``indptr``, ``indices``, ``data`` as
-in ``scipy.sparse.bsr_array``); or ``data`` is flat, and has each node's three rows one after the
-other, see `by_rows`. Right-hand sides are the columns of C-ordered (n, m) arrays, and every loop
-takes all of them in one pass over the matrix. Compiled by numba at the first call (seconds), then
-kept in its cache on disk. With the import, memory of freed arrays stays for the next ones, see
-`keep_freed_memory`.
+in ``scipy.sparse.bsr_array``), in double or single precision. Right-hand sides are the columns of
+C-ordered (n, m) arrays, and every loop takes all of them in one pass over the matrix. Compiled by
+numba at the first call (seconds), then kept in its cache on disk. With the import, memory of freed
+arrays stays for the next ones, see `keep_freed_memory`.
 """
 
 from typing import Any
@@ -17,46 +16,32 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.memory import keep_freed_memory
-from fe_drivetrain.operator.vectors import LANES, load, plus, store, times
+from fe_drivetrain.operator.vectors import (
+    LANES,
+    fetch,
+    load,
+    plus,
+    plus_each,
+    row_sums,
+    store,
+    thrice,
+    times,
+    zeros,
+)
 
 Index = NDArray[np.int32]
 
 # Nodes that a thread takes at once have one place for what their neighbours do.
 _PIECES = 32
 
+#: How far ahead of what it takes a loop asks memory for the blocks that come [bytes]. Without it,
+#: matrices larger than caches take twice as long; from 2 to 8 KiB on it makes no difference.
+AHEAD = 4096
+
+# Bytes that come at once.
+_LINE = 64
+
 keep_freed_memory()
-
-
-@njit(cache=True)
-def distances(indptr: Index, indices: Index, start: int) -> Index:
-    """Steps from one node to each other one along the graph of a matrix; -1 where none lead."""
-    n = len(indptr) - 1
-    steps, queue = np.full(n, -1, np.int32), np.empty(n, np.int32)
-    steps[start], queue[0] = 0, start
-    first, last = 0, 1
-    while first < last:
-        i = queue[first]
-        first += 1
-        for p in range(indptr[i], indptr[i + 1]):
-            j = indices[p]
-            if steps[j] < 0:
-                steps[j] = steps[i] + 1
-                queue[last] = j
-                last += 1
-    return steps
-
-
-@njit(cache=True)
-def places(
-    indptr: Index, indices: Index, rows: NDArray[np.int64], columns: NDArray[np.int64]
-) -> NDArray[np.int64]:
-    """Where the blocks of some rows and columns stand in ``data``; -1 where there are none."""
-    found = np.full(len(rows), -1, np.int64)
-    for k in range(len(rows)):
-        for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
-            if indices[p] == columns[k]:
-                found[k] = p
-    return found
 
 
 @njit(cache=True, error_model="numpy")
@@ -81,27 +66,15 @@ def invert(blocks: Floats, out: Floats) -> None:
         inverse_transposed(blocks[i], out[i])
 
 
-def by_rows(indptr: Index, blocks: Floats, out: Floats) -> None:
-    """Put the three rows of each node one after the other into the flat ``out``.
-
-    In single precision blocks take a loop over one column a fifth longer than in double precision,
-    for each of nine entries is converted by itself; of rows, eight at once, two thirds of that.
-    """
-    _put_by_rows(indptr, blocks.reshape(-1), out)
+def rounded(blocks: Floats, out: Floats) -> None:
+    """Put the entries of blocks into ``out``, which may be of single precision, on all cores."""
+    _round(blocks.reshape(-1), out.reshape(-1))
 
 
 @njit(cache=True, parallel=True)
-def _put_by_rows(indptr: Index, blocks: Floats, out: Floats) -> None:
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    for i in prange(len(indptr) - 1):
-        first, end = np.uint64(indptr[i]), np.uint64(indptr[i + 1])
-        t = np.uint64(9) * first
-        for r in range(three):
-            q = np.uint64(9) * first + three * r
-            for _ in range(first, end):
-                out[t], out[t + one], out[t + two] = blocks[q], blocks[q + one], blocks[q + two]
-                t += three
-                q += np.uint64(9)
+def _round(numbers: Floats, out: Floats) -> None:
+    for i in prange(len(numbers)):
+        out[i] = numbers[i]
 
 
 @njit(inline="always")
@@ -111,32 +84,29 @@ def _node_residual(
     indptr: Index,
     indices: Index,
     data: Floats,
-    rowwise: bool,
+    start: Any,
     x: Floats,
     b: Floats,
     columns: int,
 ) -> tuple[Any, Any, Any]:
     """``B - K X`` of node i in each direction, of eight columns, all arrays flat.
 
-    Indices that cannot be negative: half the time of the same loop without `vectors`.
+    Its blocks are in ``data`` from ``start`` on. Indices that cannot be negative: half the time of
+    the same loop without `vectors`.
     """
     m, one, two, three = np.uint64(columns), np.uint64(1), np.uint64(2), np.uint64(3)
-    first, end = np.uint64(indptr[i]), np.uint64(indptr[i + 1])
-    q = np.uint64(9) * first
-    along, across = np.uint64(9), three
-    if rowwise:
-        along, across = three, three * (end - first)
+    q = start
     t = three * np.uint64(i) * m + np.uint64(first_column)
     f, g, h = load(b, t), load(b, t + m), load(b, t + m + m)
-    for p in range(first, end):
+    for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
         s = three * np.uint64(indices[p]) * m + np.uint64(first_column)
         u, v, w = load(x, s), load(x, s + m), load(x, s + m + m)
         f = plus(plus(plus(f, -data[q], u), -data[q + one], v), -data[q + two], w)
-        r = q + across
-        g = plus(plus(plus(g, -data[r], u), -data[r + one], v), -data[r + two], w)
-        r += across
-        h = plus(plus(plus(h, -data[r], u), -data[r + one], v), -data[r + two], w)
-        q += along
+        q += three
+        g = plus(plus(plus(g, -data[q], u), -data[q + one], v), -data[q + two], w)
+        q += three
+        h = plus(plus(plus(h, -data[q], u), -data[q + one], v), -data[q + two], w)
+        q += three
     return f, g, h
 
 
@@ -174,59 +144,29 @@ def residual(
         out[:] = wide[:, :m]
         return
     assert out.flags.c_contiguous  # else what is flat would be a copy
-    rowwise = data.ndim == 1
     flat, x, b, y = (array.reshape(-1) for array in (data, X, B, out))
-    if m > 1:
-        _residual_of_many(indptr, indices, flat, rowwise, x, b, y, m)
-    elif rowwise:
-        _residual_of_rows(indptr, indices, flat, x, b, y)
-    else:
+    if m == 1:
         _residual_of_one(indptr, indices, flat, x, b, y)
+    elif data.dtype == np.float64:
+        _residual_of_many(indptr, indices, flat, x, b, y, m)
+    else:
+        _residual_of_many_rounded(indptr, indices, flat, x, b, y, m)
 
 
 @njit(cache=True, parallel=True)
 def _residual_of_many(
-    indptr: Index,
-    indices: Index,
-    data: Floats,
-    rowwise: bool,
-    x: Floats,
-    b: Floats,
-    out: Floats,
-    columns: int,
+    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats, columns: int
 ) -> None:
     for i in prange(len(indptr) - 1):
+        start, end = np.uint64(9) * np.uint64(indptr[i]), np.uint64(9) * np.uint64(indptr[i + 1])
+        for k in range(start, end, np.uint64(_LINE // data.itemsize)):
+            fetch(data, k + np.uint64(AHEAD // data.itemsize))
         for k in range(0, columns, LANES):
-            f, g, h = _node_residual(i, k, indptr, indices, data, rowwise, x, b, columns)
+            f, g, h = _node_residual(i, k, indptr, indices, data, start, x, b, columns)
             t = 3 * i * columns + k
             store(f, out, t)
             store(g, out, t + columns)
             store(h, out, t + 2 * columns)
-
-
-@njit(cache=True, parallel=True, fastmath={"contract"})
-def _residual_of_one(
-    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
-) -> None:
-    """Three sums in registers, at indices that cannot be negative.
-
-    Twice as fast as the loop over columns. With additions reordered (`fastmath`) it would be slower
-    than that.
-    """
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    for i in prange(len(indptr) - 1):
-        f = g = h = 0.0
-        for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
-            c, q = three * np.uint64(indices[p]), np.uint64(9) * p
-            u, v, w = x[c], x[c + one], x[c + two]
-            f += data[q] * u + data[q + one] * v + data[q + two] * w
-            q += three
-            g += data[q] * u + data[q + one] * v + data[q + two] * w
-            q += three
-            h += data[q] * u + data[q + one] * v + data[q + two] * w
-        out[3 * i] = b[3 * i] - f
-        out[3 * i + 1] = b[3 * i + 1] - g
-        out[3 * i + 2] = b[3 * i + 2] - h
 
 
 @njit(cache=True)
@@ -239,40 +179,72 @@ def _most(indptr: Index, first: int, end: int) -> int:
 
 
 @njit(inline="always")
-def _node_rows(
-    i: int, indptr: Index, indices: Index, data: Floats, x: Floats, near: Floats
-) -> tuple[float, float, float]:
-    """``K x`` of node i for one column, by rows; its neighbours' values come to ``near``."""
-    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    first = np.uint64(indptr[i])
-    length = np.uint64(0)
-    for p in range(first, np.uint64(indptr[i + 1])):
-        c = three * np.uint64(indices[p])
-        near[length], near[length + one], near[length + two] = x[c], x[c + one], x[c + two]
-        length += three
-    f = g = h = 0.0
-    q = np.uint64(9) * first
-    q1, q2 = q + length, q + length + length
-    for k in range(length):
-        f += data[q + k] * near[k]
-        g += data[q1 + k] * near[k]
-        h += data[q2 + k] * near[k]
-    return f, g, h
+def _own(i: int, indptr: Index, data: Floats, own: Floats) -> None:
+    """The blocks of node i in double precision.
+
+    Converted one by one for each column's sums they would take twice the time of all else.
+    """
+    first, count = np.uint64(9 * indptr[i]), np.uint64(9 * (indptr[i + 1] - indptr[i]))
+    for k in range(np.uint64(0), count, np.uint64(_LINE // data.itemsize)):
+        fetch(data, first + k + np.uint64(AHEAD // data.itemsize))
+    for k in range(count):
+        own[k] = data[first + k]
 
 
-@njit(cache=True, parallel=True, fastmath=True)
-def _residual_of_rows(
-    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
+@njit(cache=True, parallel=True)
+def _residual_of_many_rounded(
+    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats, columns: int
 ) -> None:
     n = len(indptr) - 1
     for piece in prange(_PIECES):
         low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
-        near = np.empty(3 * _most(indptr, low, high))
+        own = np.empty(9 * _most(indptr, low, high))
         for i in range(low, high):
-            f, g, h = _node_rows(i, indptr, indices, data, x, near)
-            out[3 * i] = b[3 * i] - f
-            out[3 * i + 1] = b[3 * i + 1] - g
-            out[3 * i + 2] = b[3 * i + 2] - h
+            _own(i, indptr, data, own)
+            for k in range(0, columns, LANES):
+                f, g, h = _node_residual(i, k, indptr, indices, own, np.uint64(0), x, b, columns)
+                t = 3 * i * columns + k
+                store(f, out, t)
+                store(g, out, t + columns)
+                store(h, out, t + 2 * columns)
+
+
+@njit(inline="always")
+def _node_product(
+    i: int, indptr: Index, indices: Index, data: Floats, x: Floats
+) -> tuple[float, float, float]:
+    """``K x`` of node i for one column: eight of a block's nine entries at once.
+
+    Two sums take turns, so that one need not wait for the other.
+    """
+    two, three, eight, nine = np.uint64(2), np.uint64(3), np.uint64(8), np.uint64(9)
+    most, ahead = np.uint64(len(x)), np.uint64(AHEAD // data.itemsize)
+    this, that, last = zeros(), zeros(), 0.0
+    f = g = h = 0.0
+    for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+        c, q = three * np.uint64(indices[p]), nine * p
+        fetch(data, q + ahead)
+        if c + eight <= most:
+            this, that = that, plus_each(this, load(data, q), thrice(load(x, c)))
+            last += data[q + eight] * x[c + two]
+        else:  # beyond the last nodes there is nothing to load
+            for k in range(three):
+                f += data[q + k] * x[c + k]
+                g += data[q + three + k] * x[c + k]
+                h += data[q + three + three + k] * x[c + k]
+    one, other = row_sums(this), row_sums(that)
+    return f + (one[0] + other[0]), g + (one[1] + other[1]), h + (one[2] + other[2]) + last
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"})
+def _residual_of_one(
+    indptr: Index, indices: Index, data: Floats, x: Floats, b: Floats, out: Floats
+) -> None:
+    for i in prange(len(indptr) - 1):
+        f, g, h = _node_product(i, indptr, indices, data, x)
+        out[3 * i] = b[3 * i] - f
+        out[3 * i + 1] = b[3 * i + 1] - g
+        out[3 * i + 2] = b[3 * i + 2] - h
 
 
 def chebyshev_step(
@@ -293,8 +265,6 @@ def chebyshev_step(
 
     Parameters
     ----------
-    data : Floats
-        By rows.
     inverse : Floats
         (n_nodes, 3, 3) inverses of the diagonal blocks.
     """
@@ -308,7 +278,7 @@ def chebyshev_step(
         return
     assert D.flags.c_contiguous
     assert out.flags.c_contiguous
-    x, b, d, y = (array.reshape(-1) for array in (X, B, D, out))
+    data, x, b, d, y = (array.reshape(-1) for array in (data, X, B, D, out))
     if m > 1:
         _step_of_many(indptr, indices, data, inverse, x, b, d, y, momentum, step, m)
     else:
@@ -329,18 +299,23 @@ def _step_of_many(
     step: float,
     columns: int,
 ) -> None:
-    for i in prange(len(indptr) - 1):
-        for k in range(0, columns, LANES):
-            f, g, h = _node_residual(i, k, indptr, indices, data, True, x, b, columns)
-            for r in range(3):
-                t = (3 * i + r) * columns + k
-                change = times(step * inverse[i, r, 0], f)
-                if momentum != 0.0:
-                    change = plus(change, momentum, load(d, t))
-                change = plus(change, step * inverse[i, r, 1], g)
-                change = plus(change, step * inverse[i, r, 2], h)
-                store(change, d, t)
-                store(plus(load(x, t), 1.0, change), out, t)
+    n = len(indptr) - 1
+    for piece in prange(_PIECES):
+        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
+        own = np.empty(9 * _most(indptr, low, high))
+        for i in range(low, high):
+            _own(i, indptr, data, own)
+            for k in range(0, columns, LANES):
+                f, g, h = _node_residual(i, k, indptr, indices, own, np.uint64(0), x, b, columns)
+                for r in range(3):
+                    t = (3 * i + r) * columns + k
+                    change = times(step * inverse[i, r, 0], f)
+                    if momentum != 0.0:
+                        change = plus(change, momentum, load(d, t))
+                    change = plus(change, step * inverse[i, r, 1], g)
+                    change = plus(change, step * inverse[i, r, 2], h)
+                    store(change, d, t)
+                    store(plus(load(x, t), 1.0, change), out, t)
 
 
 @njit(cache=True, parallel=True, fastmath=True)
@@ -356,21 +331,17 @@ def _step_of_one(
     momentum: float,
     step: float,
 ) -> None:
-    n = len(indptr) - 1
-    for piece in prange(_PIECES):
-        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
-        near = np.empty(3 * _most(indptr, low, high))
-        for i in range(low, high):
-            f, g, h = _node_rows(i, indptr, indices, data, x, near)
-            f, g, h = b[3 * i] - f, b[3 * i + 1] - g, b[3 * i + 2] - h
-            for r in range(3):
-                row = 3 * i + r
-                change = inverse[i, r, 0] * f + inverse[i, r, 1] * g + inverse[i, r, 2] * h
-                change *= step
-                if momentum != 0.0:
-                    change += momentum * d[row]
-                d[row] = change
-                out[row] = x[row] + change
+    for i in prange(len(indptr) - 1):
+        f, g, h = _node_product(i, indptr, indices, data, x)
+        f, g, h = b[3 * i] - f, b[3 * i + 1] - g, b[3 * i + 2] - h
+        for r in range(3):
+            row = 3 * i + r
+            change = inverse[i, r, 0] * f + inverse[i, r, 1] * g + inverse[i, r, 2] * h
+            change *= step
+            if momentum != 0.0:
+                change += momentum * d[row]
+            d[row] = change
+            out[row] = x[row] + change
 
 
 def add_product(A: sparse.csr_array, X: Floats, out: Floats) -> None:
@@ -403,26 +374,33 @@ def _add_product_of_many(
 
 
 def kept_blocks(indptr: Index, indices: Index, data: Floats, kept: Floats, out: Floats) -> None:
-    """Blocks with rows and columns of degrees of freedom zeroed where (n_nodes, 3) ``kept`` is."""
+    """Blocks with rows and columns of degrees of freedom zeroed where (n_nodes, 3) ``kept`` is.
+
+    Where ``out`` is ``data``, little is read and written.
+    """
     whole = np.asarray(kept.all(axis=1))
-    _keep_blocks(indptr, indices, data.reshape(-1), kept, whole, out.reshape(-1))
+    flat = data.reshape(-1), out.reshape(-1)
+    _keep_blocks(indptr, indices, kept, whole, *flat, out is not data)
 
 
 @njit(cache=True, parallel=True)
 def _keep_blocks(
     indptr: Index,
     indices: Index,
-    data: Floats,
     kept: Floats,
     whole: NDArray[np.bool_],
+    data: Floats,
     out: Floats,
+    copies: bool,
 ) -> None:
     three, nine = np.uint64(3), np.uint64(9)
     for i in prange(len(indptr) - 1):
         for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
             j, q = np.uint64(indices[p]), nine * p
-            for k in range(nine):
-                out[q + k] = data[q + k]
+            if copies:
+                fetch(data, q + np.uint64(AHEAD // data.itemsize))
+                for k in range(nine):
+                    out[q + k] = data[q + k]
             if not (whole[i] and whole[j]):
                 for k in range(nine):
                     out[q + k] *= kept[i, k // three] * kept[j, k % three]

@@ -2,18 +2,20 @@
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
 
 # Fewer elements take less time than threads to start. Each cut leaves three layers of elements to
-# one thread: so two slabs first, and more where they are large.
+# a second round: so two slabs first, and more where they are large; an even number, so that two
+# threads end together.
 _LEAST, _LARGE, _MOST = 800, 3000, 8
 
 
-def slabs(points: Floats, corners: Ints) -> tuple[list[Ints], Ints]:
-    """Elements in slabs across the longest side of their bounding box, and those between two.
+def slabs(points: Floats, corners: Ints) -> list[list[Ints]]:
+    """Elements in rounds: in each, parts that share no node with one another.
 
-    The same on every machine, whatever threads there are: so are the last digits of what is added
-    up, slab by slab.
+    First slabs across the longest side of the bounding box, then what lies around the cuts between
+    them, last what is left. The same on every machine, whatever threads there are: so are the last
+    digits of what is added up, part by part.
 
     Parameters
     ----------
@@ -24,21 +26,33 @@ def slabs(points: Floats, corners: Ints) -> tuple[list[Ints], Ints]:
 
     Returns
     -------
-    apart : list of Ints
-        Elements of each slab that share no node with other slabs; none of a small mesh.
-    between : Ints
-        The others.
+    rounds : list of list of Ints
+        Every element once; a small mesh is one part.
     """
-    if len(corners) < _LEAST:
-        return [], np.arange(len(corners))
-    count = min(max(2, len(corners) // _LARGE), _MOST)
-    axis = int(np.ptp(points, axis=0).argmax())
-    order = np.argsort(points[corners, axis].sum(axis=1), kind="stable")
-    parts = np.array_split(order, count)
-    first, last = np.zeros((2, len(points)), dtype=np.int64)
-    for number, part in enumerate(parts):
-        last[corners[part]] = number
-    for number in reversed(range(count)):
-        first[corners[parts[number]]] = number
-    alone = (first == last)[corners].all(axis=1)
-    return [np.sort(part[alone[part]]) for part in parts], np.flatnonzero(~alone)
+    n = len(corners)
+    if n < _LEAST:
+        return [[np.arange(n)]]
+    count = 2 * min(max(1, n // (2 * _LARGE)), _MOST // 2)
+    along = points[:, int(np.ptp(points, axis=0).argmax())]
+    place = np.add.reduce([along[corner] for corner in corners.T])
+    # every second number is a cut of the first round, the others are in the midst of its slabs
+    cuts = [k * n // (2 * count) for k in range(1, 2 * count)]
+    number = np.searchsorted(np.partition(place, cuts)[cuts], place, side="right")
+    rounds, rest = [], np.arange(n)
+    for shift in (0, 1):
+        slab = (number[rest] + shift) // 2
+        alone = _alone(corners[rest], slab, len(points))
+        rounds.append([rest[alone & (slab == k)] for k in range(count + shift)])
+        rest = rest[~alone]
+    return [*rounds, [rest]]
+
+
+def _alone(corners: Ints, slab: Ints, n_points: int) -> Bools:
+    """Which elements share no node with those of another slab."""
+    parts = [corners[slab == k] for k in range(int(slab.max(initial=0)) + 1)]
+    first, last = np.zeros((2, n_points), dtype=np.int64)
+    for k, part in enumerate(parts):
+        last[part] = k
+    for k, part in reversed(list(enumerate(parts))):
+        first[part] = k
+    return np.asarray((first == last)[corners].all(axis=1))

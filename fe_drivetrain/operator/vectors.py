@@ -21,7 +21,7 @@ LANES = 8
 """Numbers in a vector."""
 
 _NUMBER, _PLACE = ir.DoubleType(), ir.IntType(32)
-_LANES = ir.VectorType(_NUMBER, LANES)
+_LANES, _SINGLE = ir.VectorType(_NUMBER, LANES), ir.VectorType(ir.FloatType(), LANES)
 
 
 class Vector(types.Type):  # type: ignore[misc]
@@ -40,9 +40,9 @@ class _Registers(models.PrimitiveModel):  # type: ignore[misc]
         super().__init__(manager, kind, _LANES)  # type: ignore[no-untyped-call]
 
 
-def _address(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:
+def _address(context: Any, builder: Any, kind: Any, array: Any, index: Any, vector: Any) -> Any:
     data = context.make_array(kind)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), _LANES.as_pointer())
+    return builder.bitcast(builder.gep(data, [index]), vector.as_pointer())
 
 
 def _spread(builder: Any, kind: Any, number: Any) -> Any:
@@ -58,10 +58,14 @@ def _spread(builder: Any, kind: Any, number: Any) -> Any:
 
 @_in_loops
 def load(typing: Any, array: Any, index: Any) -> Any:
-    """The numbers of a flat array from an index on."""
+    """The numbers of a flat array from an index on, in double precision."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        return builder.load(_address(context, builder, signature.args[0], *given), align=8)
+        kind = signature.args[0]
+        if kind.dtype.bitwidth == 64:
+            return builder.load(_address(context, builder, kind, *given, _LANES), align=8)
+        numbers = builder.load(_address(context, builder, kind, *given, _SINGLE), align=4)
+        return builder.fpext(numbers, _LANES)
 
     return _VECTOR(array, index), generate
 
@@ -71,7 +75,7 @@ def store(typing: Any, vector: Any, array: Any, index: Any) -> Any:
     """Put a vector into a flat array from an index on."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        address = _address(context, builder, signature.args[1], *given[1:])
+        address = _address(context, builder, signature.args[1], *given[1:], _LANES)
         builder.store(given[0], address, align=8)
         return context.get_dummy_value()
 
@@ -101,3 +105,70 @@ def plus(typing: Any, vector: Any, number: Any, other: Any) -> Any:
         return builder.fadd(vector, product, flags=("contract",))
 
     return _VECTOR(vector, number, other), generate
+
+
+@_in_loops
+def zeros(typing: Any) -> Any:
+    """A vector of zeros."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return ir.Constant(_LANES, [0.0] * LANES)
+
+    return _VECTOR(), generate
+
+
+@_in_loops
+def plus_each(typing: Any, vector: Any, one: Any, other: Any) -> Any:
+    """The sum of a vector and the products of the numbers of two others."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        vector, one, other = given
+        product = builder.fmul(one, other, flags=("contract",))
+        return builder.fadd(vector, product, flags=("contract",))
+
+    return _VECTOR(vector, one, other), generate
+
+
+@_in_loops
+def thrice(typing: Any, vector: Any) -> Any:
+    """The first three numbers of a vector for each row of a 3x3 block, but for the last entry."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        places = ir.Constant(ir.VectorType(_PLACE, LANES), [k % 3 for k in range(LANES)])
+        return builder.shuffle_vector(given[0], ir.Constant(_LANES, ir.Undefined), places)
+
+    return _VECTOR(vector), generate
+
+
+@_in_loops
+def row_sums(typing: Any, vector: Any) -> Any:
+    """Sums over the rows of a 3x3 block, without its last entry."""
+    sums = types.UniTuple(types.float64, 3)
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        found: list[Any] = [None, None, None]
+        for k in range(LANES):
+            number = builder.extract_element(given[0], ir.Constant(_PLACE, k))
+            before = found[k // 3]
+            found[k // 3] = number if before is None else builder.fadd(before, number)
+        return context.make_tuple(builder, sums, found)
+
+    return sums(vector), generate
+
+
+@_in_loops
+def fetch(typing: Any, array: Any, index: Any) -> Any:
+    """Ask memory for what a loop will read at an index of a flat array, within it or beyond."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        array, index = given
+        data = context.make_array(signature.args[0])(context, builder, array).data
+        byte = ir.IntType(8).as_pointer()
+        address = builder.bitcast(builder.gep(data, [index]), byte)
+        kind = ir.FunctionType(ir.VoidType(), [byte, _PLACE, _PLACE, _PLACE])
+        prefetch = builder.module.declare_intrinsic("llvm.prefetch", [byte], kind)
+        # to read, for several times, as data
+        builder.call(prefetch, [address, _PLACE(0), _PLACE(3), _PLACE(1)])
+        return context.get_dummy_value()
+
+    return types.void(array, index), generate

@@ -65,11 +65,14 @@ def solve(problem: Problem, variant: str, clock: Clock) -> list[float]:
             nodes, values = problem.prescribed(k)
             column.reshape(-1, 3)[nodes] = values
         elimination = eliminate([fixed("prescribed", nodes, 3 * n)], 3 * n)
-        system = reduce(problem.points, problem.cells, K, elimination)
-        F = np.where(elimination.free[:, None], -product(K, given), 0.0)
+        forces = product(K, given)
+        energy = (given * forces).sum(axis=0)
+        F = np.where(elimination.free[:, None], -forces, 0.0)
+        system = reduce(problem.points, problem.cells, K, elimination, overwrite=True)
     with clock.step("solve"):
         solution = solve_system(system, F, variant, TOLERANCE)
-        moved = given + np.where(elimination.free[:, None], solution.x, 0.0)
+        x = np.where(elimination.free[:, None], solution.x, 0.0)
+        energy += (x * (product(system.K, x) - 2.0 * F)).sum(axis=0)
     clock.iterations = solution.diagnostics.iterations or None
     clock.notes = {"method": solution.diagnostics.method, "reason": solution.diagnostics.reason}
-    return [float(stiffness) for stiffness in (moved * product(K, moved)).sum(axis=0)]
+    return [float(stiffness) for stiffness in energy]

@@ -313,6 +313,7 @@ class Environment(_Result):
     seed: int | None = None
     quick: bool = Field(default=False, description="whether the run was coarser and smaller")
     code: str = Field(default="", description="SHA-256 of the program's sources")
+    commit: str = Field(default="", description="of the clone that it ran from, if from one")
     command: str = Field(default="", description="what to type to run it again")
 
 

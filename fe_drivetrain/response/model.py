@@ -11,7 +11,7 @@ from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.assembly import base_centre, bolt_springs, mesh_parts, tied
-from fe_drivetrain.foreign.further_parts import tie_faces
+from fe_drivetrain.foreign.further_parts import open_sides, tie_faces
 from fe_drivetrain.geometry import Band
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
@@ -206,7 +206,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     units = scene.bearing_units
     apart = [u.bearing.name for u in units if u.interface != "bonded" or u.foreign is not None]
     ties = [pair for unit in units for pair in tie_faces(unit)]
-    refuse_unsound(mesh, needed_faces(scene), [*apart, *ties])
+    refuse_unsound(mesh, needed_faces(scene), [*apart, *ties, *open_sides(units)])
     n = len(mesh.points)
     extra: dict[str, int] = {}  # degrees of freedom beside the nodes' own
     for name, coupling in (("hub", scene.hub.coupling), ("gearbox", scene.gearbox.coupling)):

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.operator.kernels import Index
+from fe_drivetrain.operator.kernels import AHEAD, Index, pattern_of
+from fe_drivetrain.operator.vectors import LANES, fetch, load, plus, store
 
 # Rows that a thread takes at once have a marker for each coarse node.
 _PIECES = 16
@@ -34,9 +35,7 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     """
     n = prolongation.shape[1]
     P = prolongation.tobsr((3, 3))
-    R = prolongation.T.tobsr((3, 3))
-    forwards = _Blocks(P.indptr.astype(np.int32), P.indices.astype(np.int32), P.data)
-    back = _Blocks(R.indptr.astype(np.int32), R.indices.astype(np.int32), R.data)
+    forwards, back = _Blocks(P), _Blocks(P.T)
     pieces = np.linspace(0, n // 3, _PIECES + 1).astype(np.int64)
     indptr = np.zeros(n // 3 + 1, dtype=np.int32)
     patterns = back.indptr, back.indices, K.indptr, K.indices, forwards.indptr, forwards.indices
@@ -54,11 +53,14 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
 class _Blocks:
     """A block matrix, and which factor times the identity each block is: NaN of the others."""
 
-    def __init__(self, indptr: Index, indices: Index, data: Floats) -> None:
-        self.indptr, self.indices, self.data = indptr, indices, data
-        factors = data[:, 0, 0].copy()
-        plain = (data == factors[:, None, None] * np.eye(3)).all(axis=(1, 2))
-        self.factors = np.where(plain, factors, np.nan)
+    def __init__(self, P: sparse.bsr_array) -> None:
+        self.indptr, self.indices = pattern_of(P)
+        self.data = P.data
+        first, *others, last = P.data.reshape(-1, 9).T
+        plain = (first == others[3]) & (first == last)
+        for place in (0, 1, 2, 4, 5, 6):
+            plain &= others[place] == 0.0
+        self.factors = np.where(plain, first, np.nan)
 
 
 @njit(cache=True, parallel=True)
@@ -115,6 +117,7 @@ def _fill(
                 i, weight = Rind[s], to[s]
                 for p in range(Kptr[i], Kptr[i + 1]):
                     j = Kind[p]
+                    fetch(K, 9 * p + AHEAD // K.itemsize)
                     for q in range(Pptr[j], Pptr[j + 1]):
                         b = Pind[q]
                         t = place[b]
@@ -132,8 +135,8 @@ def _fill(
 @njit(inline="always")
 def _add(data: Floats, t: np.uint64, factor: float, K: Floats, p: np.uint64) -> None:
     """Add a factor times a block; at indices that cannot be negative."""
-    for k in range(np.uint64(9)):
-        data[t + k] += factor * K[p + k]
+    store(plus(load(data, t), factor, load(K, p)), data, t)
+    data[t + np.uint64(LANES)] += factor * K[p + np.uint64(LANES)]
 
 
 @njit(cache=True)

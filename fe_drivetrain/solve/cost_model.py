@@ -18,9 +18,8 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.mesh.facets import local_facets
-from fe_drivetrain.mesh.mapping import jacobian
 from fe_drivetrain.mesh.shapes import element_kind
-from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator import graph
 from fe_drivetrain.solve import direct_solvers
 from fe_drivetrain.solve.reduction import Elements, System
 
@@ -157,17 +156,15 @@ def thinness(elements: Elements) -> float:
     """
     kind = element_kind(elements.cells.shape[1])
     corners = elements.cells[:, : kind.n_corners]
-    # straight tetrahedra have one Jacobian
-    gradients, weights = element_kind(kind.n_corners).table(1 if kind.n_corners == 4 else 2)
-    volume = np.abs(jacobian(elements.points, corners, gradients)[1]) @ weights
     local = local_facets(kind.n_corners)
     facets = corners[:, local].reshape(-1, local.shape[1])
     outer = elements.points[facets[_alone(facets)]]
     diagonal = outer[:, 2] - outer[:, 0]
     # of a triangle half the product of two sides, of a quadrilateral that of its diagonals
     beside = outer[:, 1] - outer[:, 0] if outer.shape[1] == 3 else outer[:, 3] - outer[:, 1]
-    area = 0.5 * np.linalg.norm(np.cross(diagonal, beside), axis=1)
-    wall = 2.0 * volume.sum() / area.sum()
+    normals = 0.5 * np.cross(diagonal, beside)  # all outwards, or all inwards
+    volume = abs(float(np.einsum("fci,fi->", outer, normals))) / (3 * outer.shape[1])
+    wall = 2.0 * volume / float(np.linalg.norm(normals, axis=1).sum())
     each = [elements.points[column] for column in corners.T]
     spans = np.maximum.reduce(each) - np.minimum.reduce(each)
     longest = float(np.median(spans.max(axis=1)))
@@ -190,8 +187,8 @@ def _alone(facets: Ints) -> Ints:
 def width(K: sparse.bsr_array) -> float:
     """Mean number of nodes in a cross-section, of the levels of a breadth-first search."""
     start = int(np.argmax(np.diff(K.indptr)))  # not one that stands alone
-    far = int(np.argmax(kernels.distances(K.indptr, K.indices, start)))
-    level = kernels.distances(K.indptr, K.indices, far)
+    far = int(np.argmax(graph.distances(K.indptr, K.indices, start)))
+    level = graph.distances(K.indptr, K.indices, far)
     size = np.bincount(level[level >= 0]).astype(float)
     return float((size**2).sum() / size.sum())
 

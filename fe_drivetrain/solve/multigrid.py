@@ -20,7 +20,7 @@ from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.operator.vectors import LANES
-from fe_drivetrain.solve.aggregates import coarsened
+from fe_drivetrain.solve.aggregates import between_aggregates, coarsened
 from fe_drivetrain.solve.coarse_product import coarse_product
 from fe_drivetrain.solve.reduction import Joints, System, diagonal_blocks, in_blocks
 from fe_drivetrain.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
@@ -69,12 +69,12 @@ class Options:
     strength: float = 0.0
     prolongation_smoother: str | None = "jacobi"
     apart: bool = True
-    coarsest: int = 300
+    coarsest: int = 100
     single: bool = True
 
 
-class ByRows(NamedTuple):
-    """A matrix in 3x3 blocks, its entries flat and each node's three rows one after the other."""
+class Rounded(NamedTuple):
+    """A matrix in 3x3 blocks, (n, 3, 3), which may be of single precision."""
 
     indptr: NDArray[np.int32]
     indices: NDArray[np.int32]
@@ -87,7 +87,7 @@ class Level:
 
     Attributes
     ----------
-    K : ByRows
+    K : Rounded
         Stiffness; in single precision where that has the range: half the bytes for a smoother to
         read. Conjugate gradients have the finest one in double precision, so answers are as exact.
         Rounding is symmetric, and so is the hierarchy.
@@ -101,7 +101,7 @@ class Level:
         To and from the next level.
     """
 
-    K: ByRows
+    K: Rounded
     inverse: Floats
     largest: float
     degree: int
@@ -255,7 +255,7 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         degree = options.coarse_degree if levels else options.degree
         P, motions = coarsened(K, motions, connected, options.prolongation_smoother, *smoothing[1:])
         levels.append(Level(*smoothing, degree, _in_rows(P), _in_rows(P.T)))
-        K, connected = P.T @ K @ P, None
+        K, connected = between_aggregates(K, P), None
     last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)
@@ -273,7 +273,7 @@ def _in_rows(P: sparse.sparray) -> sparse.csr_array:
     return sparse.csr_array((P.data, indices, indptr), shape=P.shape)
 
 
-def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[ByRows, Floats, float]:
+def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[Rounded, Floats, float]:
     """Stiffness, inverse blocks and largest eigenvalue of a level."""
     diagonal = diagonal_blocks(K)
     sizes = np.einsum("nii->ni", diagonal)  # a view
@@ -281,12 +281,14 @@ def _smoothing(K: sparse.bsr_array, options: Options) -> tuple[ByRows, Floats, f
     inverse = np.empty_like(diagonal)
     kernels.invert(diagonal, inverse)
     single = options.single and sizes.min() > _SMALLEST and sizes.max() < _LARGEST
-    rows = ByRows(K.indptr, K.indices, np.empty(K.data.size, np.float32 if single else np.float64))
-    kernels.by_rows(K.indptr, K.data, rows.data)
-    return rows, inverse, largest_eigenvalue(rows, inverse)
+    data = np.empty(K.data.shape, np.float32) if single else K.data
+    if single:
+        kernels.rounded(K.data, data)
+    blocks = Rounded(K.indptr, K.indices, data)
+    return blocks, inverse, largest_eigenvalue(blocks, inverse)
 
 
-def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
+def largest_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
     """An upper bound of the eigenvalues of diag^-1 K, by a few steps of Lanczos.
 
     A single flat element has an eigenvalue far above the others, that a power method hardly sees;
@@ -295,7 +297,7 @@ def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
 
     Parameters
     ----------
-    K : ByRows or sparse.bsr_array
+    K : Rounded or sparse.bsr_array
         (n, n) symmetric positive semi-definite, 3x3 blocks.
     inverse : Floats
         (n / 3, 3, 3) inverses of its diagonal blocks.
@@ -303,22 +305,22 @@ def largest_eigenvalue(K: ByRows | sparse.bsr_array, inverse: Floats) -> float:
     r = np.random.default_rng(0).standard_normal((3 * len(inverse), 1))
     zero, Kp, z = np.zeros_like(r), np.empty_like(r), np.empty_like(r)
     kernels.times_blocks(inverse, r, 1.0, z)
-    p, rz = z.copy(), float(r.ravel() @ z.ravel())
+    x, p, rz = np.zeros_like(r), z.copy(), float(kernels.dots(r, z)[0])
     diagonal, beside = [], []
     alpha, beta = 1.0, 0.0
     for _ in range(LANCZOS_STEPS):
-        kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)  # either form of K
-        curvature = -float(p.ravel() @ Kp.ravel())
+        kernels.residual(K.indptr, K.indices, K.data, p, zero, Kp)
+        curvature = -float(kernels.dots(p, Kp)[0])
         if curvature <= 0.0 or rz <= 0.0:
             break
         before, alpha = alpha, rz / curvature
         diagonal.append(1.0 / alpha + beta / before)
-        r += alpha * Kp
+        kernels.advance(x, r, p, Kp, np.array([alpha]))
         kernels.times_blocks(inverse, r, 1.0, z)
-        new = float(r.ravel() @ z.ravel())
+        new = float(kernels.dots(r, z)[0])
         beta, rz = new / rz, new
         beside.append(math.sqrt(max(beta, 0.0)) / alpha)
-        p = z + beta * p
+        kernels.redirect(p, z, np.array([beta]))
     values, vectors = linalg.eigh_tridiagonal(diagonal, beside[:-1])
     return float(values[-1] + beside[-1] * abs(vectors[-1, -1]))
 
@@ -422,7 +424,7 @@ def iterates(
     """
     R = np.array(F, order="C")
     X = np.zeros_like(R)
-    P = precondition(R)
+    P = np.ascontiguousarray(precondition(R))  # for others each loop would be compiled once more
     rz = kernels.dots(R, P)
     start = rz
     KP, zero = np.empty_like(R), np.zeros_like(R)
@@ -440,7 +442,7 @@ def iterates(
         kernels.advance(X, R, P, KP, alpha)
         terms.append(alpha * rz)
         yield Iteration(X, len(terms), energy_error(np.array(terms)))
-        Z = precondition(R)
+        Z = np.ascontiguousarray(precondition(R))
         new = kernels.dots(R, Z)
         kernels.redirect(P, Z, np.divide(new, rz, out=np.zeros_like(rz), where=alive))
         rz = new

@@ -18,7 +18,7 @@ from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.mesh.bodies import connected_bodies
 from fe_drivetrain.mesh.shapes import element_kind
-from fe_drivetrain.operator import kernels
+from fe_drivetrain.operator import graph, kernels
 from fe_drivetrain.solve.own_rows import passed_on
 from fe_drivetrain.solve.sums import Sums, sums_of
 
@@ -111,6 +111,7 @@ def reduce(
     K: sparse.bsr_array,
     elimination: Elimination,
     springs: Sequence[tuple[ReferencePoint, Floats]] = (),
+    overwrite: bool = False,
 ) -> System:
     """Eliminate the constraints from a stiffness.
 
@@ -127,12 +128,16 @@ def reduce(
         The constraints.
     springs : sequence of (ReferencePoint, ndarray (6, 6))
         Those of K's springs that may be between means of faces: multigrid takes them apart again.
+    overwrite : bool
+        Whether the system may take the place of K where nothing else needs it: K is lost, and half
+        of the memory saved.
     """
     elements = Elements(
         points, cells, diagonal_blocks(K)[: len(points)], elimination.T, elimination.free
     )
-    system = _system(points, cells, reduced_stiffness(K, elimination), elimination)
     means = [c.is_mean for c in elimination.constraints] + [point.is_mean for point, _ in springs]
+    reduced = reduced_stiffness(K, elimination, overwrite and not any(means))
+    system = _system(points, cells, reduced, elimination)
     joints = partial(_joints, points, cells, K, elimination, springs) if any(means) else None
     return replace(system, elements=elements, joints=joints)
 
@@ -177,17 +182,19 @@ def diagonal_blocks(K: sparse.bsr_array) -> Floats:
 def _diagonal_places(K: sparse.bsr_array) -> Ints:
     """Where the diagonal blocks stand; -1 where there are none."""
     nodes = np.arange(len(K.indptr) - 1)
-    return np.asarray(kernels.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
+    return np.asarray(graph.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
 
 
-def reduced_stiffness(K: sparse.bsr_array, elimination: Elimination) -> sparse.bsr_array:
-    """T^T K T, with the mean diagonal at eliminated degrees of freedom; K is left as it is."""
+def reduced_stiffness(
+    K: sparse.bsr_array, elimination: Elimination, overwrite: bool = False
+) -> sparse.bsr_array:
+    """T^T K T, with the mean diagonal at eliminated degrees of freedom; K may be overwritten."""
     T, free = elimination.T, elimination.free
     diagonal = _diagonal_places(K)
     mean = float(np.einsum("nii->", K.data[diagonal[diagonal >= 0]])) / len(free)
     passed = passed_on(K, T, free)
     indptr, indices = kernels.pattern_of(K)
-    data = np.empty_like(K.data)
+    data = K.data if overwrite else np.empty_like(K.data)
     kernels.kept_blocks(indptr, indices, K.data, free.astype(float).reshape(-1, 3), data)
     kept = sparse.bsr_array((data, indices, indptr), shape=K.shape)
     gone = np.flatnonzero(~free)
@@ -208,7 +215,7 @@ def _added(K: sparse.bsr_array, few: sparse.csr_array) -> sparse.bsr_array:
     blocks = few.tobsr((3, 3))
     rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
     columns = blocks.indices.astype(np.int64)
-    places = kernels.places(*kernels.pattern_of(K), rows, columns)
+    places = graph.places(*kernels.pattern_of(K), rows, columns)
     if (places < 0).any():
         return in_blocks(K + blocks)
     K.data[places] += blocks.data
@@ -249,35 +256,35 @@ def _prolongation(
         (n, n_corner), and which degrees of freedom the columns are.
     """
     kind = element_kind(cells.shape[1])
-    weights = kind.corner_weights()
+    corners = cells[:, : kind.n_corners]
     # Any cell that has the node will do: on shared nodes all agree.
     place = np.zeros(n_nodes, dtype=np.int64)
     place[cells.ravel()] = np.arange(cells.size)
     cell, local = np.divmod(place, cells.shape[1])
+    weights = kind.corner_weights()[local]
+    has = weights != 0.0
+    is_corner = np.zeros(n_nodes, dtype=bool)
+    is_corner[corners] = True
+    corner, number = np.flatnonzero(is_corner), np.cumsum(is_corner) - 1
     from_corners = sparse.csr_array(
-        (
-            weights[local].ravel(),
-            (
-                np.repeat(np.arange(n_nodes), kind.n_corners),
-                cells[cell, : kind.n_corners].ravel(),
-            ),
-        ),
-        shape=(n_nodes, n_nodes),
+        (weights[has], number[corners[cell][has]], np.append(0, np.cumsum(has.sum(axis=1)))),
+        shape=(n_nodes, len(corner)),
     )
-    from_corners.eliminate_zeros()
-    corner = np.unique(cells[:, : kind.n_corners])
     n = T.shape[0]
     columns = np.concatenate(
         [(3 * corner[:, None] + np.arange(3)).ravel(), np.arange(3 * n_nodes, n)]
     )
-    spread = _for_each_axis(from_corners[:, corner], n - 3 * n_nodes)
-    constrained = T[columns][:, columns]
-    keep = sparse.diags_array(free.astype(float))
-    eliminated = np.flatnonzero(~free[columns])
-    diagonal = sparse.csr_array(
-        (np.ones(len(eliminated)), (columns[eliminated], eliminated)), shape=spread.shape
-    )
-    return (keep @ spread @ constrained + diagonal).tocsr(), columns
+    spread = _for_each_axis(from_corners, n - 3 * n_nodes)
+    if T.nnz > np.count_nonzero(free):  # some follow others
+        keeps = sparse.csr_array(
+            (np.ones(len(columns)), (columns, np.arange(len(columns)))), shape=spread.shape
+        )
+        spread = (spread @ T[columns][:, columns] + keeps).tocsr()
+    row, column = np.repeat(np.arange(n), np.diff(spread.indptr)), columns[spread.indices]
+    spread.data *= free[row] & free[column]
+    spread.data[row == column] = 1.0
+    spread.eliminate_zeros()
+    return spread, columns
 
 
 def _for_each_axis(weights: sparse.csr_array, others: int) -> sparse.csr_array:

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.operator.kernels import AHEAD
+from fe_drivetrain.operator.vectors import fetch
 
 # An entry is a sum over a handful of elements and the points of their quadrature.
 _EPS = 4.0 * float(np.finfo(float).eps)
@@ -101,12 +103,13 @@ def _add_sums_of_one(
     square: Floats,
 ) -> None:
     """As `_add_sums_of_many` for one column, all arrays flat."""
-    three = np.uint64(3)
+    three, ahead = np.uint64(3), np.uint64(AHEAD // data.itemsize)
     for i in prange(len(indptr) - 1):
         for r in range(3):
             force = largest = 0.0
             for p in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
                 q = np.uint64(9) * p + three * np.uint64(r)
+                fetch(data, q + ahead)
                 c = three * np.uint64(indices[p])
                 for s in range(three):
                     term = data[q + s] * x[c + s]

@@ -207,7 +207,7 @@ class CutOut:
         points = self._elements.points[nodes]
         for lam, mu in np.unique(lame, axis=0):
             some = np.flatnonzero((lame == (lam, mu)).all(axis=1))
-            element_loops.add_curved(points, cells32, some, *self._table, lam, mu, slots, data)
+            element_loops.add_elements(points, cells32, some, *self._table, lam, mu, slots, data)
         return data.reshape(n, n, 3, 3).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
 
 

@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -18,8 +18,10 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import arithmetic, program_hash
 from fe_drivetrain.common.progress import Progress, silent
-from fe_drivetrain.geometry.shaft import Shaft
-from fe_drivetrain.report.pictures.sketch import Body, Faces, sketch
+
+if TYPE_CHECKING:
+    from fe_drivetrain.geometry.shaft import Shaft
+    from fe_drivetrain.report.pictures.sketch import Body, Faces
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -139,6 +141,9 @@ class Run:
 
     def sketch(self, *bodies: Body | Shaft | list[Faces], file: str = "model.png") -> str:
         """Write a small picture of bodies, as meshed, shafts or surfaces; its name for a page."""
+        # with its meshes come scikit-fem and SciPy, for which every process of cases would wait
+        from fe_drivetrain.report.pictures.sketch import sketch
+
         (self.folder / file).write_bytes(sketch(*bodies))
         return file
 

@@ -113,9 +113,10 @@ class Resolver:
             for content, scene in zip(contents, scenes, strict=True)
             if f"{self.coupling} {content}" not in self.springs
         }
-        # side by side, since most of the time goes into meshes, which take one core each
+        # side by side, since most of the time goes into meshes, which take one core each; a process
+        # for a single one would take longer to start
         items = ((scene, name) for scene in missing.values())
-        solved = mapped(_unit_bounds, items, cores())
+        solved = mapped(_unit_bounds, items, min(cores(), len(missing)))
         for number, content in enumerate(contents, 1):
             report(number)
             if f"{self.coupling} {content}" not in self.springs:

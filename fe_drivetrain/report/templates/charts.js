@@ -27,6 +27,10 @@
     const look = layout.template.layout;
     Object.assign(look, { paper_bgcolor: "#14191f", plot_bgcolor: "#14191f" });
     look.font = { ...look.font, color: "#e6eaef" };
+    // without a colour of their own they are as dark as the page
+    for (const trace of data)
+      for (const bars of [trace.error_x, trace.error_y])
+        if (bars && !bars.color) bars.color = "#e6eaef";
     for (const [key, inner] of Object.entries(look)) if (axes.test(key)) Object.assign(inner, axis);
     return { data, layout };
   }

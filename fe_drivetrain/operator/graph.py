@@ -1,0 +1,42 @@
+"""Compiled loops over the graph of a matrix: its nodes, and which of them its blocks connect.
+
+Compiled by numba at the first call (seconds), then kept in its cache on disk.
+"""
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from fe_drivetrain.operator.kernels import Index
+
+
+@njit(cache=True)
+def distances(indptr: Index, indices: Index, start: int) -> Index:
+    """Steps from one node to each other one along the graph of a matrix; -1 where none lead."""
+    n = len(indptr) - 1
+    steps, queue = np.full(n, -1, np.int32), np.empty(n, np.int32)
+    steps[start], queue[0] = 0, start
+    first, last = 0, 1
+    while first < last:
+        i = queue[first]
+        first += 1
+        for p in range(indptr[i], indptr[i + 1]):
+            j = indices[p]
+            if steps[j] < 0:
+                steps[j] = steps[i] + 1
+                queue[last] = j
+                last += 1
+    return steps
+
+
+@njit(cache=True, parallel=True)
+def places(
+    indptr: Index, indices: Index, rows: NDArray[np.int64], columns: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Where the blocks of some rows and columns stand in ``data``; -1 where there are none."""
+    found = np.full(len(rows), -1, np.int64)
+    for k in prange(len(rows)):
+        for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
+            if indices[p] == columns[k]:
+                found[k] = p
+    return found
