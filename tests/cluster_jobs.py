@@ -11,6 +11,8 @@ from fe_drivetrain.commands.loads_page import kept_digest
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress
+from fe_drivetrain.fidelity import beam_shaft
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.run import Run
 
@@ -44,6 +46,38 @@ def samples_with_death(folder: Path, number: int) -> Floats:
     if number == 5:
         await_kill(folder / "mark")
     return np.random.default_rng(number).standard_normal(300)
+
+
+def shaft_with_death(folder: Path, widest: float, scene: Scene) -> dict[str, float]:
+    """Stiffness of a scene's shaft as beams; whoever first has a wider one than that, dies."""
+    diameter = scene.shaft.pieces[0].outer_diameter
+    with (folder / "log").open("a") as log:
+        log.write(f"{diameter.hex()}\n")
+    if diameter > widest:
+        await_kill(folder / "mark")
+    stiffness = beam_shaft(scene).stiffness
+    return {f"{k}": float(stiffness[k, k]) for k in range(6)}
+
+
+def case_with_death(run: Run, page: Page) -> None:
+    """Whoever runs it first, dies half-way, and leaves a file."""
+    shared = Path(run.settings["mark"]).parent
+    with (shared / "log").open("a") as log:
+        log.write("begun\n")
+    assert not (run.folder / "half.txt").exists()
+    (run.folder / "half.txt").write_text("half")
+    await_kill(shared / "mark")
+    numbers(run, page)
+
+
+def numbers(run: Run, page: Page) -> None:
+    values = np.sin(np.random.default_rng(1).standard_normal(50))
+    page.data("values", values.tolist())
+    page.equals("sum", float(values.sum()), float(values.sum()), within=0.0, why="r", source="s")
+
+
+def seeded(_report: Progress, number: int) -> Floats:
+    return np.random.default_rng([7, number]).standard_normal(10)
 
 
 def wait(report: Progress, mark: Path) -> None:

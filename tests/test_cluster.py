@@ -3,11 +3,13 @@
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import cluster_jobs
@@ -16,6 +18,8 @@ import pytest
 from cluster_jobs import WAIT
 from conftest import coarse_scene
 from test_commands_life import write_history
+from test_docs_blocks import blocks
+from test_docs_pages import DOCS
 from tiny_case import Result
 
 from fe_drivetrain.commands.loads_digest import Options
@@ -29,9 +33,11 @@ from fe_drivetrain.fidelity.adviser import Quantity
 from fe_drivetrain.fidelity.designs import compare_designs
 from fe_drivetrain.histories.farm import Counting, counted_histories, piece
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.scene.reading import scene_text
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.suite import _run, run_cases
 from fe_drivetrain.uncertainty.input_study import study
+from fe_drivetrain.uncertainty.sampling import sample
 
 pytestmark = pytest.mark.needs("distributed")
 
@@ -290,6 +296,135 @@ def test_a_farm_is_counted_the_same_when_a_worker_is_killed(
             assert found[name].damage == other.damage
             assert found[name].cycles.amount.tobytes() == other.cycles.amount.tobytes()
             assert found[name].levels.amount.tobytes() == other.levels.amount.tobytes()
+
+
+def test_samples_are_the_same_when_a_worker_is_killed(
+    cluster: Cluster, killed: Path, tmp_path: Path
+) -> None:
+    """In chunks of eight, in the middle of one of which a worker dies: none is lost or doubled."""
+    cluster.add_worker()
+    key = "shaft.sections.0.outer_diameter"
+    scene = coarse_scene("bonded", uncertainty={key: {"uniform": 0.01}})
+    widest = scene.shaft.pieces[0].outer_diameter
+    evaluate = partial(cluster_jobs.shaft_with_death, tmp_path, widest)
+    steps: list[str] = []
+    with scheduled_by(cluster.address):
+        found = sample(scene, evaluate, 40, report=steps.append)
+    assert killed.exists()
+    assert steps == [f"samples ({number} of 40)" for number in range(1, 41)]
+    log = (tmp_path / "log").read_text().split()
+    deadly = next(line for line in log if float.fromhex(line) > widest)
+    # begun by the worker that died and by another; the nominal scene stands once beside the samples
+    assert log.count(deadly) == 2
+    assert len(set(log)) == 41
+    here = sample(scene, evaluate, 40)
+    assert found.keys() == here.keys()
+    for name, samples in here.items():
+        assert np.ptp(samples.values) > 0.0
+        assert samples.values.tobytes() == found[name].values.tobytes()
+        assert samples.inputs.tobytes() == found[name].inputs.tobytes()
+
+
+def test_cases_are_the_same_when_a_worker_is_killed(
+    cluster: Cluster, killed: Path, tmp_path: Path
+) -> None:
+    """One of two cases begins again, in an empty folder; each counts once."""
+    cluster.add_worker()
+    cases = [
+        Case("group/one", "T", "s", cluster_jobs.case_with_death, settings=("mark",)),
+        Case("group/other", "T", "s", cluster_jobs.numbers),
+    ]
+    there, here = tmp_path / "there", tmp_path / "here"
+    with scheduled_by(cluster.address):
+        assert run_cases(cases, there, {"mark": str(killed)}) == {}
+    assert killed.exists()
+    assert (tmp_path / "log").read_text().split() == ["begun"] * 2
+    assert run_cases(cases, here, {"mark": str(killed)}) == {}
+    for case in cases:
+        one, other = (
+            read_results(out / case.name / "results.json").figures["values"]
+            for out in (there, here)
+        )
+        assert one == other
+    with sqlite3.connect(there / "history.sqlite") as history:
+        assert history.execute("select count(*) from runs").fetchone() == (2,)
+
+
+def test_a_study_has_the_same_results_to_the_last_digit(
+    cluster: Cluster,
+    invoke: Callable[..., Result],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    keys = ("gearbox.stiffness.2", "shaft.front")
+    scene = coarse_scene("bonded", uncertainty={key: {"uniform": 0.01} for key in keys})
+    file = tmp_path / "own.yaml"
+    file.write_text(scene_text(scene))
+    found = []
+    for where in ((), ("--scheduler", cluster.address)):
+        monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / f"cache{len(where)}"))
+        out = tmp_path / f"out{len(where)}"
+        status, printed, error = invoke("study", str(file), "--quick", "--out", str(out), *where)
+        assert status == 0, printed + error
+        found.append(read_results(out / "results.json"))
+    assert found[0].figures == found[1].figures
+    assert len(found[0].figures) > 2
+
+
+@pytest.mark.needs("submitit")
+def test_workers_that_submitit_starts_do_the_jobs(tmp_path: Path) -> None:
+    """The block of the page, on this machine in place of Slurm: four workers of two jobs."""
+    from distributed import Client
+
+    (block,) = (b for b in blocks(DOCS / "clusters.md", "python") if "import submitit" in b)
+    (tmp_path / "workers.py").write_text(block)
+    file = tmp_path / "scheduler.json"
+    address = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    scheduler = _python("distributed.cli.dask_scheduler", *address, "--scheduler-file", str(file))
+    pids: list[int] = []
+    try:
+        until(file.exists)
+        folders = [str(Path(__file__).parent), *(folder for folder in sys.path if folder)]
+        # into files: workers hold what they inherit, and go on when this has ended
+        with (tmp_path / "pids").open("w") as pids_file, (tmp_path / "errors").open("w") as errors:
+            found = subprocess.run(
+                [sys.executable, "workers.py", "local"],
+                cwd=tmp_path,
+                env={
+                    **os.environ,
+                    "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
+                    "PYTHONPATH": os.pathsep.join(folders),
+                },
+                stdout=pids_file,
+                stderr=errors,
+                timeout=WAIT,
+            )
+        pids = [int(word) for word in (tmp_path / "pids").read_text().split()]
+        assert found.returncode == 0, (tmp_path / "errors").read_text()
+        assert len(pids) == 2
+        items = [(k,) for k in range(8)]
+        with Client(scheduler_file=str(file)) as client:
+            client.wait_for_workers(4, timeout=WAIT)
+            with scheduled_by(client.scheduler.address):
+                there = list(mapped(cluster_jobs.seeded, items, 1))
+            client.shutdown()
+        here = list(mapped(cluster_jobs.seeded, items, 1))
+        assert [one.tobytes() for one in there] == [one.tobytes() for one in here]
+        until(lambda: not any(is_running(pid) for pid in pids))
+    finally:
+        for pid in pids:
+            if is_running(pid):
+                os.kill(pid, signal.SIGTERM)
+        scheduler.kill()
+        scheduler.wait()
+
+
+def is_running(pid: int) -> bool:
+    """Whether there is such a process, other than one that has ended."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_the_end_of_the_scheduler_is_said_at_once(cluster: Cluster, tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ REFERENCE |= {"turbine"}
 ELSEWHERE = {"../README": "test_docs.py", "gear_rating": "test_docs.py", "loads": "test_docs.py"}
 #: What a block needs that no machine of the tests has; its words are compiled all the same.
 NEEDS = {
-    "import submitit": "a cluster's queue",
+    "import submitit": "a scheduler beside it: test_cluster.py runs it",
     'read_bts("wind.bts")': "a wind of TurbSim",
 }
 

@@ -26,7 +26,18 @@ def test_the_next_measurement_is_in_the_band_as_often_as_it_says(rng):
     assert abs(inside / 2000 - 0.95) < 3 * np.sqrt(0.95 * 0.05 / 2000)
 
 
+def test_the_exponent_is_in_its_band_as_often_as_it_says(rng):
+    """Four points that scatter by 10 %: 2000 times, to 3 standard errors."""
+    x, inside = np.geomspace(1e5, 2e6, 4), 0
+    for _ in range(2000):
+        y = 2.0 * x**1.1 * np.exp(0.1 * rng.standard_normal(4))
+        low, high = power_law(x, y).exponent_band()
+        inside += low < 1.1 < high
+    assert abs(inside / 2000 - 0.95) < 3 * np.sqrt(0.95 * 0.05 / 2000)
+
+
 def test_two_points_say_nothing_of_their_scatter():
+    assert power_law([1.0, 2.0], [1.0, 3.0]).exponent_band() == (-np.inf, np.inf)
     assert power_law([1.0, 2.0], [1.0, 3.0]).band(4.0) == (0.0, np.inf)
 
 

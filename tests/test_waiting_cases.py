@@ -29,6 +29,10 @@ def test_gmsh_repeats_a_mesh_and_every_stage_takes_time(quick_run: QuickRun) -> 
     (row,) = results.figures["over_sizes"]
     stages = sum(row[f"{stage} [s]"] for stage in ("surfaces", "volumes", "curved", "read"))
     assert stages == pytest.approx(row["median [s]"])
+    # side by side the volumes take no less than the longest of them
+    parts = results.figures["parts"]
+    best = parts["meshing, volumes side by side, at best [s]"]
+    assert 0 < parts["longest volume alone [s]"] < best
 
 
 @pytest.mark.quick("performance/start_to_answer")

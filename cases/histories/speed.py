@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.commands import Options, digest
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, timed_runs
 from fe_drivetrain.histories import (
     even_levels,
     rainflow_cycles,
@@ -34,16 +34,17 @@ FILE = 120_000  # samples of a history that goes through the whole of 'loads'
 @case(
     "Speed of statistics, counting, spectra and loops, in samples per second",
     source="measured on this machine; rainflow 3, rfcnt 0.6, pylife 2 where they are installed",
-    settings={"samples": "20000000 (quick 1000000; from 524288)"},
+    settings={
+        "samples": "20000000 (quick 1000000; from 524288)",
+        "repeats": "5 (quick 1; from 1)",
+    },
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Stream a long history; time each step on coloured noise with 3P, at several lengths."""
-    stream(
-        run,
-        page,
-        run.count("samples", 1_000_000 if run.quick else STREAMED, least=PIECE // 2),
-    )
+    repeats = run.count("repeats", 1 if run.quick else 5)
+    samples = run.count("samples", 1_000_000 if run.quick else STREAMED, least=PIECE // 2)
+    stream(run, page, samples, repeats)
     sizes = SIZES[: 1 if run.quick else 3]
     rows: list[Record] = []
     for size in sizes:
@@ -54,19 +55,25 @@ def run(run: Run, page: Page) -> None:
             if size > SIZES[1] and name in ("load loops", PACKAGE):
                 continue
             with run.step(name):
-                rows.append(
-                    {"step": name, "samples": size, "samples per second": size / seconds(task)}
-                )
+                _, times = timed_runs(task, max(repeats, 3), time.process_time)
+            rows.append(
+                {
+                    "step": name,
+                    "samples": size,
+                    **times.columns("", "ms"),
+                    "samples per second": size / max(times.median, 1e-6),
+                }
+            )
     page.section("Speed of each step")
     page.sweep(
-        "Samples of one channel per second of processor time",
+        "Samples of one channel per second of processor time, at the median of all runs",
         rows,
         "samples",
         "samples per second",
         by="step",
         log="xy",
     )
-    cores(run, page)
+    cores(run, page, repeats)
     last = {row["step"]: row["samples per second"] for row in rows if row["samples"] == sizes[-1]}
     first = {row["step"]: row["samples per second"] for row in rows if row["samples"] == sizes[0]}
     counted, looped = (1e3 * 12_000 / first[name] for name in ("rainflow", "load loops"))
@@ -147,7 +154,7 @@ def peers(load: Floats) -> dict[str, Callable[[], Any]]:
     return found
 
 
-def stream(run: Run, page: Page, samples: int) -> None:
+def stream(run: Run, page: Page, samples: int, repeats: int) -> None:
     """Count a history that would not fit into memory; what that takes."""
     low, high = np.inf, -np.inf
 
@@ -163,15 +170,20 @@ def stream(run: Run, page: Page, samples: int) -> None:
             yield part
 
     rainflow_cycles(noise(1000, 0))  # compiled code is loaded
-    damage, cycles, largest = 0.0, 0.0, 0.0
-    tracemalloc.start()
-    start, worked = time.perf_counter(), time.process_time()
-    with run.step("streamed"):
+
+    def counted() -> tuple[float, float, float]:
+        damage, cycles, largest = 0.0, 0.0, 0.0
         for block in streamed_cycles(pieces()):
             damage += float(block.counts @ block.ranges**4)
             cycles += float(block.counts.sum())
             largest = max(largest, float(block.ranges.max()))
-    took, worked = time.perf_counter() - start, time.process_time() - worked
+        return damage, cycles, largest
+
+    with run.step("streamed"):
+        _, worked = timed_runs(counted, repeats, time.process_time)
+    tracemalloc.start()
+    with run.step("streamed, memory watched"):
+        damage, cycles, largest = counted()
     peak = tracemalloc.get_traced_memory()[1] / 1e6
     tracemalloc.stop()
     page.section("A history beyond memory")
@@ -180,15 +192,14 @@ def stream(run: Run, page: Page, samples: int) -> None:
         "of 8 bytes [MB]": 8e-6 * samples,
         "cycles": cycles,
         "sum of n r^4 [-]": damage,
-        "time [s]": took,
-        "of processor [s]": worked,
+        **worked.columns("of processor"),
         "most memory [MB]": peak,
     }
     page.table(f"One channel, counted in pieces of {PIECE:,}; --set samples=1e9 for more", [row])
     page.data("streamed", row)
     page.answer(
-        f"{samples:,} samples in pieces take {worked:.3g} s of processor time ({took:.3g} s in "
-        f"all) and {peak:.3g} MB, made noise included."
+        f"{samples:,} samples in pieces take {worked.median:.3g} s of processor time "
+        f"and {peak:.3g} MB, made noise included."
     )
     page.equals(
         "streamed: largest range less the range of all samples",
@@ -209,21 +220,24 @@ def stream(run: Run, page: Page, samples: int) -> None:
     )
 
 
-def cores(run: Run, page: Page) -> None:
+def cores(run: Run, page: Page, repeats: int) -> None:
     """The whole of `loads` on one core and two, by threads and by processes."""
-    files = 2 if run.quick else 16
+    files = 2 if run.quick else 8
     size = FILE // 20 if run.quick else FILE
     rows: list[Record] = []
     whole(0, size)  # compiled code is loaded
     with run.step("one core"):
-        alone = timed(lambda: [whole(k, size) for k in range(files)])
+        _, alone = timed_runs(lambda: [whole(k, size) for k in range(files)], repeats)
     with run.step("two threads"), ThreadPoolExecutor(2) as pool:
-        threads = timed(lambda: list(pool.map(lambda k: whole(k, size), range(files))))
+        _, threads = timed_runs(
+            lambda: list(pool.map(lambda k: whole(k, size), range(files))), repeats
+        )
     with run.step("two processes"), run.side_by_side(2) as jobs:
         for job in [jobs.start(in_process, 0, size) for _ in range(2)]:
             job.result()  # both have started
-        processes = timed(
-            lambda: [j.result() for j in [jobs.start(in_process, k, size) for k in range(files)]]
+        _, processes = timed_runs(
+            lambda: [j.result() for j in [jobs.start(in_process, k, size) for k in range(files)]],
+            repeats,
         )
     for name, took in (
         ("one core", alone),
@@ -233,8 +247,9 @@ def cores(run: Run, page: Page) -> None:
         rows.append(
             {
                 "on": name,
-                "samples of six loads per second": files * size / took,
-                "over one core": alone / took,
+                **took.columns(),
+                "samples of six loads per second": files * size / took.median,
+                "over one core": alone.median / took.median,
             }
         )
     page.section("One core and two")
@@ -261,20 +276,3 @@ def whole(seed: int, size: int) -> int:
 def in_process(_report: object, seed: int, size: int) -> int:
     """The same as a job."""
     return whole(seed, size)
-
-
-def timed(task: Callable[[], Any]) -> float:
-    """Of one run [s]."""
-    start = time.perf_counter()
-    task()
-    return time.perf_counter() - start
-
-
-def seconds(task: Callable[[], Any]) -> float:
-    """Processor time of one run, the shortest of three [s]: other programs do not count."""
-    found = []
-    for _ in range(3):
-        start = time.process_time()
-        task()
-        found.append(time.process_time() - start)
-    return max(min(found), 1e-6)

@@ -1,10 +1,8 @@
 """The elastic operator beside scikit-fem's generic form: same matrix, other time."""
 
 import tempfile
-import time
-from collections.abc import Callable
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from skfem import (
@@ -22,7 +20,7 @@ from skfem import (
 from skfem.models.elasticity import linear_elasticity
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, Ints, run_python
+from fe_drivetrain.common import Floats, Ints, Times, run_python, timed_runs
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces import eliminate, fixed
 from fe_drivetrain.mesh import element_kind, generate
@@ -63,12 +61,11 @@ print(imported - start, assembled - imported, time.perf_counter() - assembled)
 #: Columns that the stiffness is multiplied with at once.
 COLUMNS = (1, 4, 6, 8, 10, 12, 16, 24)
 
-_Made = TypeVar("_Made")
-
 
 @case(
     "The elastic operator against scikit-fem's generic assembly",
     source="scikit-fem (Gustafsson, McBain 2020), measured in one run",
+    settings={"repeats": "5 (quick 2; from 1)"},
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
@@ -79,40 +76,42 @@ def run(run: Run, page: Page) -> None:
     mesh = generate(Shaft(sections=(section,), front=0.0), [], {}, sizes)
     points, cells, n = mesh.points, mesh.cells, mesh.points.size
     with run.step("compile"):
-        first, later = (None, None) if run.quick else compile_seconds()
+        first, later = (None, None) if run.quick else compile_times(5)
         for n_nodes in (4, 10, 8):
             assemble(*box(n_nodes, 1), lame)
 
     with run.step("shaft of curved tetrahedra"):
-        own, ours = best(partial(assemble, points, cells, lame), 5)
+        repeats = run.count("repeats", 2 if run.quick else 5)
+        ours, own = timed_runs(partial(assemble, points, cells, lame), repeats)
         pattern = sparsity(cells, len(points))
-        reused, _ = best(partial(assemble, points, cells, lame, pattern=pattern), 5)
-        generic, theirs = best(partial(generic_form, points, cells, lame), 1 if run.quick else 2)
+        _, reused = timed_runs(partial(assemble, points, cells, lame, pattern=pattern), repeats)
+        theirs, generic = timed_runs(partial(generic_form, points, cells, lame), repeats)
         apart = difference(ours, *theirs, points)
     with run.step("solve"):
         elimination = eliminate([fixed("rear", mesh.face_nodes("shaft.rear"), n)], n)
         system = reduce(points, cells, ours, elimination)
         F = np.zeros((n, 1))
         F[3 * mesh.face_nodes("shaft.front") + 2] = 1.0
-        solved, solution = best(lambda: factorise(system).solve(F), 3)
+        solution, solved = timed_runs(lambda: factorise(system).solve(F), repeats)
     with run.step("products"):
-        products = [product_time(ours, count) for count in COLUMNS]
+        products = [product_time(ours, count, 2 * repeats) for count in COLUMNS]
     rows = []
     with run.step("other elements"):
         for n_nodes, cuts in CUTS.items():
             cube = box(n_nodes, cuts // (3 if run.quick else 1))
-            mine, K = best(partial(assemble, *cube, lame), 3)
-            other, matched = best(partial(generic_form, *cube, lame), 1)
+            K, mine = timed_runs(partial(assemble, *cube, lame), repeats)
+            matched, other = timed_runs(partial(generic_form, *cube, lame), repeats)
             rows.append(
                 {
                     "element": element_kind(n_nodes).name,
                     "unknowns": f"{cube[0].size:,}",
-                    "ours [ms]": 1e3 * mine,
-                    "scikit-fem [ms]": 1e3 * other,
-                    "ratio": other / mine,
+                    **mine.columns("ours", "ms"),
+                    **other.columns("scikit-fem", "ms"),
+                    "ratio of medians": other.median / mine.median,
                     "difference": difference(K, *matched, cube[0]),
                 }
             )
+    ratio, share = generic.median / own.median, own.median / solved.median
     straight = float(is_straight(points, cells).mean())
     page.vanishes(
         "largest difference from scikit-fem's matrix, relative to its largest entry",
@@ -123,16 +122,16 @@ def run(run: Run, page: Page) -> None:
     )
     page.answer(
         f"The stiffness of {n:,} unknowns of curved tetrahedra ({100 * straight:.0f} % of them "
-        f"straight) is assembled in {own:.2f} s, {generic / own:.0f} times faster than by "
+        f"straight) is assembled in {own.median:.2f} s, {ratio:.0f} times faster than by "
         f"scikit-fem's generic form, and equal to it within {apart:.1e}.",
-        f"That is {100 * own / solved:.0f} % of the {solved:.2f} s of the solve.",
+        f"That is {100 * share:.0f} % of the {solved.median:.2f} s of the solve.",
     )
     page.section("Assembly")
     page.table(
-        f"Hollow shaft, curved ten-node tetrahedra, {n:,} unknowns",
+        f"Hollow shaft, curved ten-node tetrahedra, {n:,} unknowns, runs of each: {repeats}",
         [
-            {"what": what, "time [s]": seconds}
-            for what, seconds in (
+            {"what": what, **times.columns()}
+            for what, times in (
                 ("scikit-fem: basis and linear_elasticity", generic),
                 ("ours, sparsity and values", own),
                 ("ours, values with the sparsity kept", reused),
@@ -144,8 +143,8 @@ def run(run: Run, page: Page) -> None:
         "Goals of this project: compiled kernels for one form against a form of any kind, pass by "
         "pass over memory; and assembly is not what a user waits for",
         [
-            goal("scikit-fem's generic assembly over ours [x]", generic / own, least=FASTER),
-            goal("assembly over set-up and solve of one load [-]", own / solved, most=SHARE),
+            goal("scikit-fem's generic assembly over ours [x]", ratio, least=FASTER),
+            goal("assembly over set-up and solve of one load [-]", share, most=SHARE),
         ],
     )
     page.table(
@@ -154,7 +153,7 @@ def run(run: Run, page: Page) -> None:
         rows,
     )
     page.table(
-        "Stiffness of the shaft times several columns at once, shortest of ten: part of a vector "
+        "Stiffness of the shaft times several columns at once: part of a vector takes "
         "takes longer than a whole one, so that the solver fills blocks up",
         products,
     )
@@ -165,56 +164,51 @@ def run(run: Run, page: Page) -> None:
     )
     for name, value in {
         "unknowns": n,
-        "ratio": generic / own,
-        "own_seconds": own,
-        "generic_seconds": generic,
-        "reused_seconds": reused,
-        "solve_seconds": solved,
+        "ratio": ratio,
+        "own_seconds": own.seconds,
+        "generic_seconds": generic.seconds,
+        "reused_seconds": reused.seconds,
+        "solve_seconds": solved.seconds,
         "straight_share": straight,
-        "compile_seconds": first,
-        "load_seconds": later,
+        "compile_seconds": first and first.seconds,
+        "load_seconds": later and later.seconds,
         "products": products,
     }.items():
         page.data(name, value)
 
 
-def best(work: Callable[[], _Made], repetitions: int) -> tuple[float, _Made]:
-    """Shortest time of several runs [s], and the last result."""
-    seconds = []
-    for _ in range(repetitions):
-        start = time.perf_counter()
-        result = work()
-        seconds.append(time.perf_counter() - start)
-    return min(seconds), result
-
-
-def product_time(K: Any, columns: int) -> Record:
+def product_time(K: Any, columns: int, repeats: int) -> Record:
     """Time of a product with so many columns; K as of `assemble`."""
     X = np.random.default_rng(0).standard_normal((K.shape[0], columns))
     zero, out = np.zeros_like(X), np.empty_like(X)
-    seconds, _ = best(lambda: kernels.residual(K.indptr, K.indices, K.data, X, zero, out), 10)
+    _, times = timed_runs(
+        lambda: kernels.residual(K.indptr, K.indices, K.data, X, zero, out), repeats
+    )
     return {
         "columns": columns,
-        "time [ms]": 1e3 * seconds,
-        "time a column [ms]": 1e3 * seconds / columns,
+        **times.columns("", "ms"),
+        "median a column [ms]": 1e3 * times.median / columns,
     }
 
 
-def in_words(seconds: float | None) -> str:
-    """A time, or that there is none."""
-    return "some time (not measured in a quick run)" if seconds is None else f"{seconds:.1f} s"
+def in_words(times: Times | None) -> str:
+    """What a process took, or that it was not measured."""
+    if times is None:
+        return "some time (not measured in a quick run)"
+    return f"{times.median:.1f} s ({times.least:.1f} to {times.most:.1f} s)"
 
 
-def compile_seconds() -> tuple[float, float]:
-    """First calls of all kernels in a new process, with an empty cache and with a full one [s]."""
-    found = []
-    with tempfile.TemporaryDirectory() as folder:
-        for _ in range(2):
-            result = run_python("-c", COMPILE, environment={"NUMBA_CACHE_DIR": folder})
-            result.check_returncode()
-            _, assembly, solve = map(float, result.stdout.split())
-            found.append(assembly + solve)
-    return found[0], found[1]
+def compile_times(repeats: int) -> tuple[Times, Times]:
+    """First calls of all kernels in a new process, with an empty cache and with a full one."""
+    found: tuple[list[float], list[float]] = [], []
+    for _ in range(repeats):
+        with tempfile.TemporaryDirectory() as folder:
+            for seconds in found:
+                result = run_python("-c", COMPILE, environment={"NUMBA_CACHE_DIR": folder})
+                result.check_returncode()
+                _, assembly, solve = map(float, result.stdout.split())
+                seconds.append(assembly + solve)
+    return Times(tuple(found[0])), Times(tuple(found[1]))
 
 
 def box(n_nodes: int, cuts: int) -> tuple[Floats, Ints]:

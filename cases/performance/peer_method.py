@@ -28,10 +28,11 @@ def method(plan: Plan) -> list[str]:
         "assembly, boundary conditions, solver, energy. Imports and taking the mesh in, shown "
         "beside it, are left out for all. CalculiX reads a deck instead; its clock starts "
         "when it says that its step begins, so reading is left out for it too.",
-        f"Each run is a fresh process, which first solves a small problem. Tools take turns, so "
-        f"that what else the machine does hits all equally. Up to {plan.repetitions} runs, fewer "
-        f"where they would take over {plan.budget:g} s together; medians are shown. A run over "
-        f"{limits.seconds:g} s or {limits.bytes / 2**30:g} GiB is ended, and larger meshes are not "
+        "Each run is a fresh process, which first solves a small problem. Tools take turns, so "
+        f"that what else the machine does hits all equally; runs of each: {plan.repetitions}, "
+        "however long they take. Tables of a mesh have the least, the median and the most of them; "
+        f"elsewhere the median stands. A run over {limits.seconds:g} s or "
+        f"{limits.bytes / 2**30:g} GiB is ended and the row left, and larger meshes are not "
         "begun where a power law through the last two, at least linear, says that they would be.",
         f"Every tool is given {limits.threads} threads, dolfinx as many MPI processes of one "
         "thread each.",

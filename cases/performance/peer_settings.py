@@ -28,7 +28,6 @@ DEFAULTS: dict[str, Any] = {
     "problems": ["shaft", "assembly"],
     "sizes": list(SIZES),
     "repetitions": 5,
-    "budget": 6.0,
     "time_limit": 30.0,
     "memory_limit": 12.0,
     "threads": 2,
@@ -45,7 +44,6 @@ QUICK: dict[str, Any] = {
 #: Of a number: its range, and whether it is a whole one.
 RANGES = {
     "repetitions": (1, 100, True),
-    "budget": (0.0, 3600.0, False),
     "time_limit": (1.0, 86400.0, False),
     "memory_limit": (0.5, 4096.0, False),
     "threads": (1, 256, True),
@@ -63,11 +61,7 @@ def settings_of(run: Run) -> dict[str, Any]:
     """
     quick = QUICK if run.quick else {}
     settings = DEFAULTS | quick | dict(run.settings)
-    for key in ("tools", "problems", "sizes"):
-        value = settings[key]
-        settings[key] = list(value) if isinstance(value, list | tuple) else [value]
-        if not settings[key]:
-            raise InputError(f"{key} is empty: name at least one")
+    settings["tools"] = _listed("tools", settings["tools"])
     try:
         parse(list(map(str, settings["tools"])))
     except KeyError as error:
@@ -75,13 +69,8 @@ def settings_of(run: Run) -> dict[str, Any]:
             f"tools: {error.args[0]!r} is unknown: use some of {', '.join(TOOLS)}, all solvers of "
             "a tool, or one as in ngsolve.multigrid"
         ) from error
-    for name in settings["problems"]:
-        if name not in BENCHMARKS:
-            raise InputError(f"problems: {name!r} is unknown: use some of {', '.join(BENCHMARKS)}")
-    for size in settings["sizes"]:
-        if isinstance(size, bool) or not isinstance(size, int) or not 1000 <= size <= 5_000_000:
-            raise InputError(f"sizes: {size!r} must be a whole number from 1000 to 5000000")
-    settings["sizes"] = sorted(set(settings["sizes"]))
+    settings["problems"] = problems_of(settings["problems"])
+    settings["sizes"] = sizes_of(settings["sizes"])
     for key, (low, high, whole) in RANGES.items():
         value = settings[key]
         kind = int if whole else int | float
@@ -93,9 +82,47 @@ def settings_of(run: Run) -> dict[str, Any]:
     return settings
 
 
+def _listed(key: str, value: Any) -> list[Any]:
+    found = list(value) if isinstance(value, list | tuple) else [value]
+    if not found:
+        raise InputError(f"{key} is empty: name at least one")
+    return found
+
+
+def problems_of(value: Any) -> list[str]:
+    """Names of benchmarks.
+
+    Raises
+    ------
+    InputError
+        One is unknown, or there is none.
+    """
+    names = _listed("problems", value)
+    for name in names:
+        if name not in BENCHMARKS:
+            raise InputError(f"problems: {name!r} is unknown: use some of {', '.join(BENCHMARKS)}")
+    return names
+
+
+def sizes_of(value: Any) -> list[int]:
+    """Numbers of unknowns, each once, ascending.
+
+    Raises
+    ------
+    InputError
+        One is no whole number in their range, or there is none.
+    """
+    sizes = _listed("sizes", value)
+    for size in sizes:
+        number = isinstance(size, int | float) and not isinstance(size, bool)
+        if not number or not 1000 <= size <= 5_000_000 or size != int(size):
+            raise InputError(f"sizes: {size!r} must be a whole number from 1000 to 5000000")
+    return sorted({int(size) for size in sizes})
+
+
 def plan_of(settings: dict[str, Any]) -> Plan:
     """Repetitions and limits."""
     limits = Limits(
         float(settings["time_limit"]), settings["memory_limit"] * 2.0**30, settings["threads"]
     )
-    return Plan(settings["repetitions"], float(settings["budget"]), limits)
+    return Plan(settings["repetitions"], limits)

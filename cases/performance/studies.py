@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.beam import Beam, BeamSection, Support, unit_load_response
-from fe_drivetrain.common import Floats
+from fe_drivetrain.common import Floats, Times, timed_runs
 from fe_drivetrain.compare import GridConvergence, cheapest_within, grid_convergence, richardson
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.mesh import Grading
@@ -82,7 +82,7 @@ QUICK_GROWTH = ((0.28, 6), (0.2, 8))
 
 
 def repeats(run: Run) -> int:
-    """How often what takes little time is done, for a median."""
+    """How often what takes little time is done."""
     return 1 if run.quick else REPEATS
 
 
@@ -290,18 +290,16 @@ def uniform_study(run: Run) -> Study:
     )
 
 
-def median_again(
-    shaft: Shaft, levels: Sequence[Level], outcome: Outcome, repeats: int = 5
-) -> float:
-    """Median wall time of one choice from the geometry to the stiffness, done again [s]."""
+def times_again(shaft: Shaft, levels: Sequence[Level], outcome: Outcome) -> Times:
+    """Wall times of one choice from the geometry to the stiffness, done again."""
     level = next(x for x in levels if (x.element, x.name) == (outcome.element, outcome.mesh))
-    seconds = []
-    for _ in range(repeats):
-        start = time.perf_counter()
+
+    def whole() -> Floats:
         assembled = assemble_shaft(shaft, MATERIAL, mesh_shaft(shaft, level))
-        assembled.quantities(solvers.solve(assembled.system, assembled.loads, *outcome.solve).x)
-        seconds.append(time.perf_counter() - start)
-    return statistics.median(seconds)
+        found = solvers.solve(assembled.system, assembled.loads, *outcome.solve)
+        return assembled.quantities(found.x)
+
+    return timed_runs(whole)[1]
 
 
 def bonded_scene() -> Scene:
@@ -390,14 +388,14 @@ def tilt_settings(run: Run) -> list[Setting]:
     return settings
 
 
-def setting_again(run: Run, setting: Setting, repeats: int = 3) -> float:
-    """Median wall time of a setting, done again [s]; what was measured counts as one."""
+def setting_again(run: Run, setting: Setting) -> Times:
+    """Wall times of a setting, done again; what was measured counts as one."""
     scene = bonded_scene()
     seconds = [setting.seconds]
     with run.step("housing: the chosen setting again"):
-        for _ in range(repeats - 1):
+        for _ in range(REPEATS - 1):
             seconds.append(sum(tilt.ten_unit_loads(scene, s).total for s in setting.sizes))
-    return statistics.median(seconds)
+    return Times(tuple(seconds))
 
 
 def growth_study(run: Run) -> list[Grown]:
@@ -406,7 +404,7 @@ def growth_study(run: Run) -> list[Grown]:
     with run.step("growth with the number of unknowns"):
         for size, turn in QUICK_GROWTH if run.quick else GROWTH:
             run.report(f"growth: {1000 * size:g} mm")
-            one = grown(size, turn)
+            one = grown(size, turn, repeats=repeats(run))
             if one is not None:
                 found.append(one)
     return found

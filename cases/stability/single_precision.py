@@ -1,17 +1,32 @@
 """A hierarchy in single precision beside one in double: where does it fail, what protects?"""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import FOUR_DIGITS, safe_range
+from fe_drivetrain.geometry import MeshSizes
+from fe_drivetrain.interfaces import eliminate, fixed, rigid_face, rigid_point
+from fe_drivetrain.mesh import FLATTEST, generate
+from fe_drivetrain.operator import assemble
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import System, multigrid, solvers
+from fe_drivetrain.response import build_model, mesh_scene
+from fe_drivetrain.scene import (
+    HIGHEST_POISSON_RATIO,
+    change_scene,
+    coarser_scene,
+    library_scene,
+)
+from fe_drivetrain.solve import System, multigrid, reduce, solvers
 from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.validation import layers
+from fe_drivetrain.validation import layers, slivers
+from fe_drivetrain.validation import solver_trials as trials
 from fe_drivetrain.validation import thin_bodies as bodies
 
 Solid = tuple[System, Floats]
@@ -22,6 +37,14 @@ OPTIONS = multigrid.Options(coarsest=50)
 SLENDERNESS, QUICK_SLENDERNESS = (5, 10, 20, 50, 100, 200), (5, 20)
 CONTRAST, QUICK_CONTRAST = np.logspace(-6, 10, 17), np.logspace(-2, 4, 3)
 UNITS, QUICK_UNITS = np.logspace(-60, 60, 13), np.logspace(-60, 60, 3)
+THINNESS, QUICK_THINNESS = (2, 3, 5, 7, 10, 20, 40, 75, 150, 400, 2000), (3, 40)
+#: Tubes in elements round, and along.
+TUBE, QUICK_TUBE = (14, 4), (8, 3)
+HEIGHTS, QUICK_HEIGHTS = np.append(np.logspace(-14, -1, 14), 0.5), (1e-6, 1e-2)
+DISTANCES, QUICK_DISTANCES = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.2), (1e-4, 0.2)
+FACTORS, QUICK_FACTORS = (1.5, 2.0, 3.0, 4.0), (4.0, 5.0)
+#: Eigenvalues over the bound beyond which a smoother of degree one makes errors larger.
+SMOOTHED = 1.0 + OPTIONS.smoothed
 
 
 @dataclass(frozen=True)
@@ -38,6 +61,15 @@ class Trial:
         Largest relative one of the loads' work, where both arrive; otherwise 0.
     stored : str
         Type of the numbers of the finest level, of which single precision was asked.
+    beyond : float
+        The largest eigenvalue that the finest smoother meets over the bound that Lanczos gave it.
+    answered : str
+        The solver that answers where multigrid was asked for and does not converge, or that the
+        program refuses; empty where it converges.
+    error : float
+        Of the work in that answer, against a direct factor, refined; NaN where there is none.
+    round_off : float
+        What the program says that round-off may have done to it.
     """
 
     value: float
@@ -45,6 +77,10 @@ class Trial:
     single: int
     difference: float
     stored: str
+    beyond: float
+    answered: str = ""
+    error: float = np.nan
+    round_off: float = np.nan
 
 
 def tried(solid: Callable[[float], Solid], value: float) -> Trial:
@@ -59,9 +95,39 @@ def tried(solid: Callable[[float], Solid], value: float) -> Trial:
         work.append(np.einsum("nm,nm->m", F, found.x))
         bodies_alone = made.hierarchy if isinstance(made, multigrid.Joined) else made
         stored = str(bodies_alone.levels[0].K.data.dtype)
-    both = min(iterations) >= 0
-    difference = float(np.abs(work[1] / work[0] - 1.0).max()) if both else 0.0
-    return Trial(value, iterations[0], iterations[1], difference, stored)
+    K = made.joints.bodies.K if isinstance(made, multigrid.Joined) else system.K
+    beyond = beyond_bound(K, bodies_alone.levels[0])
+    by_double, by_single = iterations
+    if min(iterations) >= 0:
+        difference = float(np.abs(work[1] / work[0] - 1.0).max())
+        return Trial(value, by_double, by_single, difference, stored, beyond)
+    instead = trials.answered(system, F, "multigrid")
+    if instead.compliance is None:
+        return Trial(value, by_double, by_single, 0.0, stored, beyond, "refused")
+    exact = trials.factored(system, F, "superlu").refined
+    error = float(np.abs(instead.compliance / exact - 1.0).max())
+    return Trial(
+        value, by_double, by_single, 0.0, stored, beyond, instead.method, error, instead.round_off
+    )
+
+
+def beyond_bound(K: sparse.bsr_array, level: multigrid.Level) -> float:
+    """The largest eigenvalue of diag^-1 K over the bound of it that a level has."""
+    count = len(level.inverse)
+    pointers, columns = np.arange(count + 1), np.arange(count)
+    inverse = sparse.bsr_array((level.inverse, columns, pointers), shape=K.shape)
+    diagonal = sparse.bsr_array((np.linalg.inv(level.inverse), columns, pointers), shape=K.shape)
+    largest = eigsh(
+        LinearOperator(K.shape, matvec=lambda x: K @ x, dtype=float),
+        1,
+        diagonal,
+        which="LA",
+        Minv=LinearOperator(K.shape, matvec=lambda x: inverse @ x, dtype=float),
+        v0=np.random.default_rng(1).standard_normal(K.shape[0]),
+        tol=1e-3,
+        return_eigenvectors=False,
+    )
+    return float(largest[0] / level.largest)
 
 
 def slender(slenderness: float) -> Solid:
@@ -82,11 +148,94 @@ def in_units(factor: float) -> Solid:
     return replace(system, K=system.K * factor), F * factor**0.5
 
 
-SWEEPS: dict[str, tuple[Callable[[float], Solid], Sequence[float], Sequence[float]]] = {
-    "L/D of a shaft": (slender, SLENDERNESS, QUICK_SLENDERNESS),
-    "modulus of a ring over that of its shaft": (ring, CONTRAST.tolist(), QUICK_CONTRAST.tolist()),
-    "stiffness in other units, factor": (in_units, UNITS.tolist(), QUICK_UNITS.tolist()),
-}
+def thin(thinness: float, mesh: tuple[int, int]) -> Solid:
+    """A tube with a free end, twisted, and under a pressure that makes it oval."""
+    shaft = bodies.uniform(3.0, 1.5 / thinness, 3.0)
+    turn, along = mesh
+    problem = bodies.cantilever(shaft, 3.0 / along * (1.0 + 1e-9), turn, rigid=False)
+    return problem.system, problem.F
+
+
+def flat(height: float) -> Solid:
+    """A bar with a layer of slivers, bent."""
+    return slivers.loaded(slivers.bar(height, 2))
+
+
+def nearly_incompressible(distance: float) -> Solid:
+    """A tube of two diameters in curved tetrahedra, Poisson's ratio so far from one half."""
+    nu, shaft = 0.5 - distance, bodies.uniform(0.7, 0.175, 1.4)
+    mesh = generate(shaft, sizes=MeshSizes(shaft=0.3, elements_per_turn=6))
+    n = mesh.points.size
+    front = rigid_point("front", np.zeros(3), n, n + 6)
+    elimination = eliminate(
+        [
+            fixed("rear", mesh.face_nodes("shaft.rear"), n + 6),
+            rigid_face("front", mesh.face_nodes("shaft.front"), mesh.points, front),
+        ],
+        n + 6,
+    )
+    modulus = bodies.STEEL.youngs_modulus
+    lame = modulus * nu / ((1 + nu) * (1 - 2 * nu)), modulus / (2 * (1 + nu))
+    K = assemble(mesh.points, mesh.cells, lame, n + 6)
+    F = np.zeros((n + 6, 2))
+    F[[n + 3, n + 4], [0, 1]] = 1.0
+    system = reduce(mesh.points, mesh.cells, K, elimination)
+    return system, np.asarray(elimination.T.T @ F)
+
+
+def averaged(factor: float) -> Solid:
+    """The library's main bearing with an averaged joint, and its unit loads."""
+    scene = coarser_scene(library_scene("main_bearing_spherical"), factor, 6)
+    scene = change_scene(scene, {"bearing_units.0.interface": "averaged"})
+    model = build_model(scene, mesh_scene(scene))
+    elimination = eliminate(model.constraints, model.n_dofs)
+    system = reduce(model.mesh.points, model.mesh.cells, model.stiffness, elimination)
+    return system, np.asarray(elimination.T.T @ model.unit_loads())
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Solids over a parameter, and what protects where it goes too far, beside another solver."""
+
+    solid: Callable[[float], Solid]
+    values: Sequence[float]
+    protects: str = ""
+
+
+def sweeps(quick: bool) -> dict[str, Sweep]:
+    """All of them, in short where the run is quick."""
+
+    def of(full: Iterable[float], short: Iterable[float]) -> list[float]:
+        return [float(x) for x in (short if quick else full)]
+
+    return {
+        "L/D of a shaft": Sweep(slender, of(SLENDERNESS, QUICK_SLENDERNESS)),
+        "modulus of a ring over that of its shaft": Sweep(ring, of(CONTRAST, QUICK_CONTRAST)),
+        IN_UNITS: Sweep(
+            in_units,
+            of(UNITS, QUICK_UNITS),
+            "keeps double precision where single precision lacks the range",
+        ),
+        "radius over wall of a tube": Sweep(
+            partial(thin, mesh=QUICK_TUBE if quick else TUBE), of(THINNESS, QUICK_THINNESS)
+        ),
+        "height of slivers over the size of their cubes": Sweep(
+            flat,
+            of(HEIGHTS, QUICK_HEIGHTS),
+            f"refuses meshes with elements flatter than {FLATTEST:g}",
+        ),
+        "distance of Poisson's ratio from 1/2": Sweep(
+            nearly_incompressible,
+            of(DISTANCES, QUICK_DISTANCES),
+            f"refuses ratios above {HIGHEST_POISSON_RATIO:g} in a scene",
+        ),
+        "mesh sizes of a main bearing with an averaged joint, factor": Sweep(
+            averaged, of(FACTORS, QUICK_FACTORS)
+        ),
+    }
+
+
+IN_UNITS = "stiffness in other units, factor"
 
 
 @case(
@@ -95,13 +244,13 @@ SWEEPS: dict[str, tuple[Callable[[float], Solid], Sequence[float], Sequence[floa
     "the root of the condition number; measured against a hierarchy in double precision",
 )
 def run(run: Run, page: Page) -> None:
-    """Sweep slenderness, contrast and units; count iterations with either precision."""
-    trials = {
-        name: [run.timed(f"{name}: {x:.3g}", tried, solid, x) for x in values]
-        for name, (solid, full, quick) in SWEEPS.items()
-        for values in [quick if run.quick else full]
+    """Sweep shape, mesh, material, joint and units; count iterations with either precision."""
+    asked = sweeps(run.quick)
+    found = {
+        name: [run.timed(f"{name}: {x:.3g}", tried, sweep.solid, x) for x in sweep.values]
+        for name, sweep in asked.items()
     }
-    every = [trial for swept in trials.values() for trial in swept]
+    every = [trial for swept in found.values() for trial in swept]
     page.vanishes(
         "solids on which the double-precision hierarchy converges and the single one does not",
         sum(t.double >= 0 > t.single for t in every),
@@ -125,7 +274,17 @@ def run(run: Run, page: Page) -> None:
         "the work; the rest is round-off of the slenderest solid, in either",
         source="conjugate gradients have the stiffness in double precision",
     )
-    beyond = [t for t in trials["stiffness in other units, factor"] if not 1e-45 < t.value < 1e28]
+    answers = [t for t in every if not np.isnan(t.error)]
+    if answers:
+        page.at_most(
+            "answers of the program where neither converges: error over what is stated, worst",
+            max(t.error / (t.round_off + solvers.TOLERANCE) for t in answers),
+            1.0,
+            why="another solver takes over, and says what round-off may have done; beyond that the "
+            "tolerance of iterations",
+            source="a direct factor, refined",
+        )
+    beyond = [t for t in found[IN_UNITS] if not 1e-45 < t.value < 1e28]
     page.holds(
         "stiffnesses beyond the range of single precision stay in double precision",
         all(t.stored == "float64" for t in beyond),
@@ -136,10 +295,16 @@ def run(run: Run, page: Page) -> None:
         f"On {len(every)} solids the hierarchy in single precision takes at most "
         f"{max(t.single - t.double for t in every)} iterations more than one in double precision, "
         "and gives the same answers; where the range of single precision ends, the program keeps "
-        "double precision."
+        "double precision.",
+        *in_their_place(every),
     )
-    for name, swept in trials.items():
-        limit_of(page, name, swept)
+    sentences = beyond_bounds(found)
+    if sentences:
+        page.section("Bounds of the largest eigenvalue")
+    for sentence in sentences:
+        page.text(sentence)
+    for name, swept in found.items():
+        limit_of(page, name, swept, asked[name].protects)
         page.section(name)
         at = [t.value for t in swept if t.double >= 0], [t.value for t in swept if t.single >= 0]
         page.chart(
@@ -156,7 +321,39 @@ def run(run: Run, page: Page) -> None:
     page.image("A shaft of five diameters", run.sketch(bodies.uniform(0.7, 0.175, 3.5)))
 
 
-def limit_of(page: Page, name: str, swept: list[Trial]) -> None:
+def in_their_place(every: list[Trial]) -> list[str]:
+    """Who answers where neither converges, in a sentence."""
+    lost = [t for t in every if t.answered]
+    if not lost:
+        return []
+    names = ", ".join(
+        f"{name} {sum(t.answered == name for t in lost)}"
+        for name in sorted({t.answered for t in lost})
+    )
+    return [
+        f"On {len(lost)} neither converges. Asked for multigrid, whose coarsest level is larger in "
+        f"the program, these answer: {names}."
+    ]
+
+
+def beyond_bounds(found: dict[str, list[Trial]]) -> list[str]:
+    """Where the smoother's bound of the largest eigenvalue is none, and what that does."""
+    sentences = []
+    for name, swept in found.items():
+        over = [t for t in swept if t.beyond > SMOOTHED]
+        if over:
+            lost = sum(t.double < 0 for t in over)
+            values = ", ".join(f"{t.value:.0e}" for t in over)
+            sentences.append(
+                f"{multigrid.LANCZOS_STEPS} steps of Lanczos miss the largest eigenvalue, which "
+                f"is up to {max(t.beyond for t in over):.2f} times their bound, where {name} is "
+                f"{values}. On {lost} of these {len(over)} solids iterations do not converge, "
+                "with either precision."
+            )
+    return sentences
+
+
+def limit_of(page: Page, name: str, swept: list[Trial], protects: str) -> None:
     """Over which values both hierarchies converge; beyond, neither does."""
     low, high = safe_range(
         [t.value for t in swept], [0.0 if t.single >= 0 else np.inf for t in swept], 0.5
@@ -168,8 +365,8 @@ def limit_of(page: Page, name: str, swept: list[Trial]) -> None:
         high=high,
         criterion=f"reaches the solvers' tolerance within {multigrid.MAX_ITERATIONS} iterations",
         beyond="neither precision converges" if (low, high) != (None, None) else "no limit found",
-        program="keeps double precision where single precision lacks the range; takes a direct "
-        "factor or patches where iterations do not converge",
+        program="takes a direct factor or patches where iterations do not converge"
+        + (f"; {protects}" if protects else ""),
         remedy="none needed",
     )
 
@@ -182,4 +379,8 @@ def row_of(trial: Trial) -> Record:
         "single: iterations": trial.single if trial.single >= 0 else "not reached",
         "difference of the work": trial.difference if trial.single >= 0 else None,
         "numbers of the finest level": trial.stored,
+        "largest eigenvalue over its bound": trial.beyond,
+        "answered by": trial.answered or None,
+        "error of the answer": None if np.isnan(trial.error) else trial.error,
+        "round-off, as stated": None if np.isnan(trial.round_off) else trial.round_off,
     }

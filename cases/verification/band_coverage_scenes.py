@@ -128,6 +128,13 @@ def judged(run: Run, seed: int, scene: Scene) -> list[Record]:
     return rows
 
 
+def kept(run: Run, seed: int) -> list[Record]:
+    """As `judged`, or what an earlier run found."""
+    scene = random_scene(seed)
+    content = {"case": "band_coverage_scenes", "scene": scene.model_dump(mode="json")}
+    return run.kept(content, partial(judged, run, seed, scene))
+
+
 @case(
     "Coverage: how often the bands of an assembly hold",
     source="the same scenes in much finer meshes; Becker and Rannacher 2001, Acta Numerica 10, "
@@ -138,10 +145,12 @@ def run(run: Run, page: Page) -> None:
     """Random scenes on every interface, each figure with its band, against the reference."""
     count = run.count("scenes", QUICK if run.quick else SCENES)
     rows: list[Record] = []
-    for number, (seed, scene) in enumerate(drawn(run, count), 1):
-        run.report(f"scenes ({number} of {count})")
-        content = {"case": "band_coverage_scenes", "scene": scene.model_dump(mode="json")}
-        rows += run.kept(content, partial(judged, run, seed, scene))
+    with run.side_by_side(1 if run.quick else count) as jobs:
+        # the first are at work while others are meshed
+        started = [(scene, jobs.start(kept, seed)) for seed, scene in drawn(run, count)]
+        for number, (_, job) in enumerate(started, 1):
+            run.report(f"scenes ({number} of {count})")
+            rows += job.result()
     kinds = grouped(rows, "kind")
     found: list[Record] = [
         {
@@ -196,7 +205,7 @@ def run(run: Run, page: Page) -> None:
     )
     page.image(
         "The last of the random shafts, with the rings of its bearings",
-        run.sketch(*shaft_with_rings(scene)),
+        run.sketch(*shaft_with_rings(started[-1][0])),
     )
     page.data("coverage", found)
     page.data("figures", rows)

@@ -82,6 +82,7 @@ def study_command(
         ),
     ] = True,
     quick: Quick = False,
+    scheduler: Scheduler = None,
     out: OutFolder = None,
     set_: SceneSettings = None,
 ) -> None:
@@ -122,6 +123,7 @@ def study_command(
             out,
             lambda run, page: studied(run, page, found, own, slope or SLOPES, weight),
             quick,
+            scheduler,
         )
 
     raise typer.Exit(guarded(work))

@@ -37,3 +37,6 @@ from .spatial import wrench_transport as wrench_transport
 from .threads import CORES_VARIABLE as CORES_VARIABLE
 from .threads import cores as cores
 from .threads import held_to_one_thread as held_to_one_thread
+from .timing import RUNS as RUNS
+from .timing import Times as Times
+from .timing import timed_runs as timed_runs

@@ -37,6 +37,43 @@ class PowerLaw:
         """Largest relative difference of the points from the line."""
         return float(max(abs(self(x) / y - 1.0) for x, y in zip(self.x, self.y, strict=True)))
 
+    def exponent_band(self, level: float = 0.95) -> tuple[float, float]:
+        """Between what the exponent is found, from points that scatter normally in logarithms.
+
+        Student's confidence interval of the slope of a straight line; endless from two points.
+
+        Parameters
+        ----------
+        level : float
+            Chance that it is in between.
+
+        Returns
+        -------
+        low, high
+            Of the exponent.
+        """
+        from scipy.stats import t  # slow to load
+
+        n = len(self.x)
+        if n < 3:
+            return -float("inf"), float("inf")
+        half = float(t.ppf(0.5 + 0.5 * level, n - 2)) * float(
+            np.sqrt(self._variance / self._spread)
+        )
+        return self.exponent - half, self.exponent + half
+
+    @property
+    def _variance(self) -> float:
+        """Of the points about the line, in logarithms."""
+        left = [np.log(y / self(at)) for at, y in zip(self.x, self.y, strict=True)]
+        return float(np.sum(np.square(left))) / (len(self.x) - 2)
+
+    @property
+    def _spread(self) -> float:
+        """Sum of squares of the distances of log x from their mean."""
+        log_x = np.log(self.x)
+        return float(((log_x - log_x.mean()) ** 2).sum())
+
     def band(self, x: float, level: float = 0.95) -> tuple[float, float]:
         """Between what a further measurement at x would be found.
 
@@ -59,13 +96,10 @@ class PowerLaw:
 
         log_x = np.log(self.x)
         n, middle = len(log_x), float(log_x.mean())
-        spread = float(((log_x - middle) ** 2).sum())
         if n < 3:
             return 0.0, float("inf")
-        left = [np.log(y / self(at)) for at, y in zip(self.x, self.y, strict=True)]
-        variance = float(np.sum(np.square(left))) / (n - 2)
-        leverage = 1.0 + 1.0 / n + (np.log(x) - middle) ** 2 / spread
-        half = float(t.ppf(0.5 + 0.5 * level, n - 2)) * float(np.sqrt(variance * leverage))
+        leverage = 1.0 + 1.0 / n + (np.log(x) - middle) ** 2 / self._spread
+        half = float(t.ppf(0.5 + 0.5 * level, n - 2)) * float(np.sqrt(self._variance * leverage))
         return self(x) * float(np.exp(-half)), self(x) * float(np.exp(half))
 
 

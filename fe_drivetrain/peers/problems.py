@@ -1,4 +1,4 @@
-"""The two problems that all tools solve: one face held, another moved."""
+"""The problems that all tools solve: one face held, another moved."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -16,13 +16,11 @@ from fe_drivetrain.response.model import mesh_scene
 from fe_drivetrain.scene.materials import MATERIALS, Material
 from fe_drivetrain.scene.reading import library_scene
 
-OUTER, INNER, LENGTH = 0.7, 0.3, 2.0
-"""Diameters and length of the hollow shaft [m]."""
-
 DEGREE = 4
 """Of the common quadrature: scikit-fem's eleven points, exact where the edges are straight."""
 
 _ELEMENTS_PER_TURN = 6  # so that the size alone decides, on coarse meshes too
+_WALLS = 2.99  # the largest size beside the wall; three are refused
 _TRIES = 4
 _NEAR = 0.05
 
@@ -51,10 +49,10 @@ class Benchmark:
     guess: float
 
 
-def torsional_stiffness(material: Material) -> float:
-    """G J / L of the hollow shaft [N m/rad]: exact, as its cross-sections stay plane."""
-    polar = np.pi / 32 * (OUTER**4 - INNER**4)
-    return float(material.shear_modulus * polar / LENGTH)
+def torsional_stiffness(material: Material, section: Section) -> float:
+    """G J / L of a round shaft [N m/rad]: exact, as its cross-sections stay plane."""
+    polar = np.pi / 32 * (section.outer_diameter**4 - section.inner_diameter**4)
+    return float(material.shear_modulus * polar / section.length)
 
 
 def of_size(benchmark: Benchmark, unknowns: int, motions: int = 1) -> Problem:
@@ -122,23 +120,41 @@ MOST_MOTIONS = len(_MOTIONS) + 1
 
 def hollow_shaft() -> Benchmark:
     """Rear end held, front end turned about the axis."""
+    section = Section(length=2.0, outer_diameter=0.7, inner_diameter=0.3)
+    return _twisted("Hollow shaft in torsion", section, size=0.1, guess=20_500)
+
+
+def thin_tube() -> Benchmark:
+    """A wall of a fiftieth of the radius; no element of any mesh is larger than three walls."""
+    section = Section(length=1.0, outer_diameter=2.0, inner_diameter=1.96)
+    return _twisted("Thin tube in torsion, R/t = 50", section, size=0.04, guess=167_000)
+
+
+def slender_shaft() -> Benchmark:
+    """Two hundred diameters long: its softest motion is far from the stiffest."""
+    section = Section(length=140.0, outer_diameter=0.7)
+    return _twisted("Slender shaft in torsion, L/D = 200", section, size=0.2, guess=220_000)
+
+
+def _twisted(title: str, section: Section, size: float, guess: float) -> Benchmark:
+    """A round shaft with its rear end held, and its front end turned about the axis."""
     steel = MATERIALS["steel"]
-    section = Section(length=LENGTH, outer_diameter=OUTER, inner_diameter=INNER)
     shaft = Shaft(front=0.0, sections=(section,))
+    largest = _WALLS * (section.outer_diameter - section.inner_diameter) / 2.0
 
     def at(factor: float) -> Problem:
-        sizes = MeshSizes(shaft=0.1 * factor, elements_per_turn=_ELEMENTS_PER_TURN)
+        sizes = MeshSizes(shaft=min(size * factor, largest), elements_per_turn=_ELEMENTS_PER_TURN)
         mesh = cached_mesh(shaft, [], {}, sizes, frozenset())
         faces = mesh.faces["shaft.rear"], mesh.faces["shaft.front"]
         return _problem(mesh, [steel], faces, _TWIST)
 
     return Benchmark(
-        title="Hollow shaft in torsion",
+        title=title,
         quantity="torsional stiffness",
         unit="N m/rad",
-        exact=torsional_stiffness(steel),
+        exact=torsional_stiffness(steel, section),
         at=at,
-        guess=20_500,
+        guess=guess,
     )
 
 
@@ -164,7 +180,12 @@ def main_bearing() -> Benchmark:
     )
 
 
-BENCHMARKS: dict[str, Callable[[], Benchmark]] = {"shaft": hollow_shaft, "assembly": main_bearing}
+BENCHMARKS: dict[str, Callable[[], Benchmark]] = {
+    "shaft": hollow_shaft,
+    "assembly": main_bearing,
+    "tube": thin_tube,
+    "slender": slender_shaft,
+}
 
 
 def _problem(

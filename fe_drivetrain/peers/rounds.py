@@ -88,20 +88,13 @@ class Plan:
     Attributes
     ----------
     repetitions : int
-        Most runs of each row.
-    budget : float
-        Seconds of solving after which a row is run no more.
+        Runs of each row that stays within its limits.
     limits : Limits
         Of each run.
     """
 
     repetitions: int
-    budget: float
     limits: Limits
-
-    def runs(self, first: float) -> int:
-        """How many runs for a row whose first took so long [s]."""
-        return max(1, min(self.repetitions, int(self.budget / first)))
 
 
 Launch = Callable[[Variant, Path, Path, Limits, str], Outcome]
@@ -148,7 +141,7 @@ def run_rounds(
         order = [*variants[turn:], *variants[:turn]][:: -1 if number % 2 else 1]
         for variant, interpreter in order:
             row = rows[variant]
-            if row.trouble or (row.found and number >= plan.runs(row.found[0]["seconds"])):
+            if row.trouble:
                 continue
             report(variant.name)
             outcome = start(variant, problem, warm_up, plan.limits, interpreter)

@@ -1,7 +1,7 @@
 """One shaft of one size in a process of its own: what it takes in time and, at its peak, memory.
 
-Run as a module with the size of the elements, the elements a turn and the solver; the answer is a
-line of JSON.
+Run as a module with the size of the elements, the elements a turn, the solver and how often each
+step is done; the answer is a line of JSON.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
-from fe_drivetrain.common import peak_memory, run_python
+from fe_drivetrain.common import Times, peak_memory, run_python
 from fe_drivetrain.geometry import Section, Shaft
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.validation import stiffness_choices as choices
@@ -25,7 +25,10 @@ STEPPED = Shaft(
 )
 MATERIAL = MATERIALS["steel"]
 
-MOST_SECONDS = 600.0
+MOST_SECONDS = 1800.0
+
+#: Steps that take less than this are done several times [s].
+SHORT_SECONDS = 60.0
 
 
 @dataclass(frozen=True)
@@ -38,24 +41,31 @@ class Grown:
         Of the system.
     used : str
         The solver.
-    seconds : dict of str to float
-        Wall time of each step.
+    seconds : dict of str to list of float
+        Wall times of each step.
     peak_bytes : int
         Largest resident memory of the process, interpreter and libraries included.
     """
 
     unknowns: int
     used: str
-    seconds: dict[str, float]
+    seconds: dict[str, list[float]]
     peak_bytes: int
 
     @property
+    def times(self) -> dict[str, Times]:
+        """Of each step."""
+        return {step: Times(tuple(seconds)) for step, seconds in self.seconds.items()}
+
+    @property
     def total(self) -> float:
-        """Wall time of all steps [s]."""
-        return sum(self.seconds.values())
+        """Wall time of all steps, each the median of its runs [s]."""
+        return sum(times.median for times in self.times.values())
 
 
-def grown(size: float, turn: int, method: str = "auto") -> Grown | None:
+def grown(
+    size: float, turn: int, method: str = "auto", repeats: int = choices.REPEATS
+) -> Grown | None:
     """Mesh, assemble and solve the stepped shaft in a process of its own.
 
     Parameters
@@ -66,13 +76,15 @@ def grown(size: float, turn: int, method: str = "auto") -> Grown | None:
         Elements round any cylinder.
     method : str, optional
         Of `fe_drivetrain.solve.solvers`.
+    repeats : int, optional
+        How often each step is done that takes less than `SHORT_SECONDS`.
 
     Returns
     -------
     Grown or None
         None where the process failed or took too long: no time is made up for it.
     """
-    command = ["-m", __name__, str(size), str(turn), method]
+    command = ["-m", __name__, str(size), str(turn), method, str(repeats)]
     try:
         done = run_python(*command, timeout=MOST_SECONDS)
         done.check_returncode()
@@ -81,15 +93,17 @@ def grown(size: float, turn: int, method: str = "auto") -> Grown | None:
     return Grown(**json.loads(done.stdout.splitlines()[-1]))
 
 
-def _measure(size: float, turn: int, method: str) -> Grown:
+def _measure(size: float, turn: int, method: str, repeats: int) -> Grown:
     choices.warm_up(STEPPED, MATERIAL, [choices.CURVED])
     level = choices.Level(choices.CURVED, size, turn)
     solve = choices.Solve(method)  # type: ignore[arg-type]
-    (outcome,) = choices.shaft_outcomes(STEPPED, MATERIAL, level, [solve])
-    return Grown(outcome.unknowns, outcome.used, outcome.seconds, peak_memory() or 0)
+    (outcome,) = choices.shaft_outcomes(STEPPED, MATERIAL, level, [solve], repeats, SHORT_SECONDS)
+    seconds = {step: list(times.seconds) for step, times in outcome.times.items()}
+    return Grown(outcome.unknowns, outcome.used, seconds, peak_memory() or 0)
 
 
 if __name__ == "__main__":
     from dataclasses import asdict
 
-    print(json.dumps(asdict(_measure(float(sys.argv[1]), int(sys.argv[2]), sys.argv[3]))))
+    _size, _turn, _method, _repeats = sys.argv[1:]
+    print(json.dumps(asdict(_measure(float(_size), int(_turn), _method, int(_repeats)))))

@@ -163,8 +163,32 @@ def bent(mesh: Mesh, method: str, condition: bool = False) -> Bent:
     condition : bool
         Whether to estimate the condition number.
     """
+    inertia, area = SIDE**4 / 12.0, SIDE**2
+    exact = FORCE**2 * np.array(
+        [LENGTH**3 / (E * inertia), LENGTH**3 / (3 * E * inertia) + 2.4 * LENGTH / (E * area)]
+    )
+    number = np.nan
+    try:
+        system, right = loaded(mesh)
+        number = _condition(system) if condition else np.nan
+        found = solve(system, right, method)
+    except (InputError, ValueError, RuntimeError) as error:
+        return Bent(np.nan, np.nan, 0, f"{type(error).__name__}: {error}", number)
+    # stiffness as load squared over twice the energy
+    bending, by_shear = exact / np.einsum("nm,nm->m", right, found.x) - 1.0
+    return Bent(
+        float(bending),
+        float(by_shear),
+        found.diagnostics.iterations,
+        found.diagnostics.method,
+        number,
+    )
+
+
+def loaded(mesh: Mesh) -> tuple[System, Floats]:
+    """The bar's system, and its loads (n, 2): couples at its ends, and a shear force."""
     points = mesh.points
-    inertia, area, c = SIDE**4 / 12.0, SIDE**2, SIDE / 2.0
+    inertia, c = SIDE**4 / 12.0, SIDE / 2.0
 
     def couples(positions: Floats, normals: Floats) -> Floats:
         out = np.zeros_like(positions)
@@ -190,26 +214,8 @@ def bent(mesh: Mesh, method: str, condition: bool = False) -> Bent:
             (((0, -c, -c), (0, 1, 2)), ((LENGTH, -c, -c), (1, 2)), ((0, c, -c), (2,)))
         )
     ]
-    exact = FORCE**2 * np.array(
-        [LENGTH**3 / (E * inertia), LENGTH**3 / (3 * E * inertia) + 2.4 * LENGTH / (E * area)]
-    )
-    number = np.nan
-    try:
-        system, T = _system(mesh, held)
-        number = _condition(system) if condition else np.nan
-        right = T.T @ F
-        found = solve(system, right, method)
-    except (InputError, ValueError, RuntimeError) as error:
-        return Bent(np.nan, np.nan, 0, f"{type(error).__name__}: {error}", number)
-    # stiffness as load squared over twice the energy
-    bending, by_shear = exact / np.einsum("nm,nm->m", right, found.x) - 1.0
-    return Bent(
-        float(bending),
-        float(by_shear),
-        found.diagnostics.iterations,
-        found.diagnostics.method,
-        number,
-    )
+    system, T = _system(mesh, held)
+    return system, np.asarray(T.T @ F)
 
 
 def _end_facets(mesh: Mesh, x: float) -> Ints:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -10,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.common import RUNS, Floats, Ints, Times, timed_runs
 from fe_drivetrain.geometry import MeshSizes, Shaft
 from fe_drivetrain.interfaces import ReferencePoint, constraints
 from fe_drivetrain.mesh import (
@@ -33,9 +32,9 @@ P1, STRAIGHT, CURVED = "P1", "P2 straight", "P2 curved"
 HEXAHEDRA: dict[str, Nodes] = {"hex 8": 8, "hex 20": 20, "hex 27": 27}
 ELEMENTS = (P1, STRAIGHT, CURVED, *HEXAHEDRA)
 
-#: What takes less than this in all is measured so often, and the median taken.
+#: What takes less than this is measured so often, anything else once.
 SHORT_SECONDS = 2.0
-REPEATS = 3
+REPEATS = RUNS
 
 #: Largest systems that each direct solver is tried on, unknowns.
 MOST_UNKNOWNS = {"superlu": 12_000, "cholmod": 70_000, "pardiso": 70_000}
@@ -67,8 +66,8 @@ class Outcome:
         Solver that gave the solution: another than the one asked for where that fell back.
     unknowns, iterations, bytes : int
         Of the system, of the iteration, and held by factor or hierarchy.
-    seconds : dict of str to float
-        Wall time of each of `STEPS`, the median where it was repeated.
+    times : dict of str to Times
+        Wall times of each of `STEPS`.
     values : ndarray
         (q,) the quantities that were computed.
     volume_error : float
@@ -82,14 +81,34 @@ class Outcome:
     unknowns: int
     iterations: int
     bytes: int
-    seconds: dict[str, float]
+    times: dict[str, Times]
     values: Floats
     volume_error: float = 0.0
 
     @property
+    def seconds(self) -> dict[str, float]:
+        """Median wall time of each step [s]."""
+        return {step: times.median for step, times in self.times.items()}
+
+    @property
     def total(self) -> float:
-        """Wall time of all steps [s]."""
+        """Wall time of all steps, each the median of its runs [s]."""
         return sum(self.seconds.values())
+
+    @property
+    def least(self) -> float:
+        """The same of the quickest runs [s]."""
+        return sum(times.least for times in self.times.values())
+
+    @property
+    def most(self) -> float:
+        """And of the slowest [s]."""
+        return sum(times.most for times in self.times.values())
+
+    @property
+    def runs(self) -> int:
+        """Of the step with the fewest."""
+        return min(len(times.seconds) for times in self.times.values())
 
     @property
     def solver(self) -> str:
@@ -216,6 +235,7 @@ def shaft_outcomes(
     level: Level,
     solves: Iterable[Solve],
     repeats: int = REPEATS,
+    short: float = SHORT_SECONDS,
 ) -> Iterator[Outcome]:
     """Mesh and assemble once, then solve in each way.
 
@@ -224,13 +244,15 @@ def shaft_outcomes(
     solves : iterable of Solve
         Those that need not be tried on a system of this size are left out.
     repeats : int, optional
-        How often what takes little time is done, for a median.
+        How often what takes little time is done.
+    short : float, optional
+        What takes longer is done once [s].
     """
-    mesh, meshing = timed(lambda: mesh_shaft(shaft, level), repeats)
-    assembled, assembling = timed(lambda: assemble_shaft(shaft, material, mesh), repeats)
+    mesh, meshing = timed(lambda: mesh_shaft(shaft, level), repeats, short)
+    assembled, assembling = timed(lambda: assemble_shaft(shaft, material, mesh), repeats, short)
     volume_error = abs(volume(mesh) / exact_volume(shaft) - 1.0)
     steps = meshing, assembling
-    for outcome in solved(level.element, level.name, assembled, steps, solves, repeats):
+    for outcome in solved(level.element, level.name, assembled, steps, solves, repeats, short):
         yield replace(outcome, volume_error=volume_error)
 
 
@@ -257,9 +279,10 @@ def solved(
     element: str,
     mesh: str,
     assembled: Assembled,
-    before: tuple[float, float],
+    before: tuple[Times, Times],
     solves: Iterable[Solve],
     repeats: int = REPEATS,
+    short: float = SHORT_SECONDS,
 ) -> Iterator[Outcome]:
     """Solve one system in several ways.
 
@@ -267,23 +290,23 @@ def solved(
     ----------
     element, mesh : str
         What it is a system of.
-    before : tuple of two floats
-        Wall time of mesh and of assembly [s].
+    before : tuple of two Times
+        Wall times of mesh and of assembly.
     solves : iterable of Solve
         As for `shaft_outcomes`.
-    repeats : int, optional
+    repeats, short : optional
         As for `shaft_outcomes`.
     """
     system, loads, quantities = assembled
     for how in solves:
         if not _worth_a_try(system.n_free, how):
             continue
-        runs = list(repeated(partial(solvers.solve, system, loads, *how), repeats))
+        runs = list(repeated(partial(solvers.solve, system, loads, *how), repeats, short))
         solution = runs[0]
         steps = (
             *before,
-            float(np.median([s.diagnostics.setup_seconds for s in runs])),
-            float(np.median([s.diagnostics.solve_seconds for s in runs])),
+            Times(tuple(s.diagnostics.setup_seconds for s in runs)),
+            Times(tuple(s.diagnostics.solve_seconds for s in runs)),
         )
         yield Outcome(
             element=element,
@@ -293,7 +316,7 @@ def solved(
             unknowns=system.n_free,
             iterations=solution.diagnostics.iterations,
             bytes=solution.diagnostics.bytes,
-            seconds=dict(zip(STEPS, steps, strict=True)),
+            times=dict(zip(STEPS, steps, strict=True)),
             values=quantities(solution.x),
         )
 
@@ -304,25 +327,23 @@ def _worth_a_try(unknowns: int, how: Solve) -> bool:
     return unknowns <= MOST_UNKNOWNS.get(how.method, np.inf)
 
 
-def repeated(work: Callable[[], _Made], repeats: int) -> Iterator[_Made]:
+def repeated(
+    work: Callable[[], _Made], repeats: int, short: float = SHORT_SECONDS
+) -> Iterator[_Made]:
     """Do something that takes little time several times, anything else once."""
-    start = time.perf_counter()
-    yield work()
-    if time.perf_counter() - start < SHORT_SECONDS / repeats:
+    made, first = timed_runs(work, 1)
+    yield made
+    if first.most < short:
         for _ in range(repeats - 1):
             yield work()
 
 
-def timed(work: Callable[[], _Made], repeats: int = REPEATS) -> tuple[_Made, float]:
-    """What something makes, and the wall time it takes [s]: the median of several, if short."""
-
-    def once() -> tuple[_Made, float]:
-        start = time.perf_counter()
-        made = work()
-        return made, time.perf_counter() - start
-
-    runs = list(repeated(once, repeats))
-    return runs[-1][0], float(np.median([seconds for _, seconds in runs]))
+def timed(
+    work: Callable[[], _Made], repeats: int = REPEATS, short: float = SHORT_SECONDS
+) -> tuple[_Made, Times]:
+    """What something makes, and the wall times it takes: of several runs, if short."""
+    runs = list(repeated(partial(timed_runs, work, 1), repeats, short))
+    return runs[-1][0], Times(tuple(times.most for _, times in runs))
 
 
 def available() -> list[str]:

@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from fe_drivetrain.common import Floats, Ints
+from fe_drivetrain.common import Floats, Ints, Times
 from fe_drivetrain.geometry import MeshSizes
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.mesh import MEANS, Mesh, face_weights, first_order, straightened
@@ -176,7 +176,8 @@ def tilt_outcomes(
     for element in elements:
         made, converting = timed(partial(in_element, mesh, bearing, element), repeats)
         assembled, assembling = timed(partial(assemble_tilt, scene, made), repeats)
-        steps = meshing + converting, assembling
+        both = Times(tuple(seconds + converting.median for seconds in meshing.seconds))
+        steps = both, assembling
         yield from solved(element, sizes_in_words(sizes), assembled, steps, solves, repeats)
 
 
@@ -214,6 +215,6 @@ def ten_unit_loads(scene: Scene, sizes: MeshSizes) -> Outcome:
         unknowns=response.diagnostics.n_unknowns,
         iterations=0,
         bytes=0,
-        seconds=seconds,
+        times={step: Times((float(s),)) for step, s in seconds.items()},
         values=np.array([found[key] for key in QUANTITIES]),
     )
