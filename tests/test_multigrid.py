@@ -18,6 +18,7 @@ from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.solve import direct_solvers, multigrid, solvers
 from fe_drivetrain.solve.reduction import reduce
 from fe_drivetrain.solve.stopping import energy_error
+from fe_drivetrain.validation import layers
 
 ROWS = [{"x": -0.05, "contact_angle": -20.0}, {"x": 0.05, "contact_angle": 20.0}]
 
@@ -228,3 +229,21 @@ def test_a_hierarchy_that_is_not_positive_is_found_out(monkeypatch):
     assert solution.diagnostics.method != "multigrid"
     assert "multigrid stopped" in solution.diagnostics.reason
     assert solution.diagnostics.residual < 1e-9
+
+
+@pytest.mark.parametrize("contrast", [1e-6, 1e-4, 1e5])
+def test_the_smoother_knows_the_largest_eigenvalue_where_a_ring_is_soft_or_stiff(contrast):
+    """Few nodes have it, and eight steps of Lanczos fell short of it: multigrid did not converge."""
+    system, F = layers.ring().system((contrast, 1.0))
+    hierarchy = multigrid.build(system)
+    finest = hierarchy.levels[0]
+    blocks = linalg.block_diag(*np.linalg.inv(finest.inverse))
+    last = len(blocks) - 1
+    (largest,) = linalg.eigh(
+        system.K.toarray(), blocks, eigvals_only=True, subset_by_index=[last, last]
+    )
+    # beyond this a smoother of degree one makes errors larger
+    assert largest < (1.0 + multigrid.DEFAULTS.smoothed) * finest.largest
+    found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-9)
+    assert found.energy_error <= 1e-9
+    assert found.iterations < 30

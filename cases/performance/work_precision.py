@@ -99,10 +99,10 @@ def parts_of(run: Run) -> list[str]:
 def timed_goal(what: str, times: Times | None, most: float) -> Record:
     """A row of the goals, which the median reaches, and how far the runs differ."""
     return {
-        **goal(f"{what}, median [s]", times and times.median, most=most),
+        **goal(f"{what}, median [s]", times.median if times else None, most=most),
         "runs": len(times.seconds) if times else 0,
-        "least [s]": times and times.least,
-        "most [s]": times and times.most,
+        "least [s]": times.least if times else None,
+        "most [s]": times.most if times else None,
     }
 
 

@@ -27,7 +27,7 @@ from fe_drivetrain.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
 
 MAX_ITERATIONS = 150
 
-LANCZOS_STEPS, _MOST_LEVELS = 8, 10
+LANCZOS_STEPS, _MOST_LEVELS = 12, 10
 
 # Diagonals whose rows single precision has the range for; no entry is larger than the diagonal's.
 _SINGLE = np.finfo(np.float32)
