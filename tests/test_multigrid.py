@@ -233,7 +233,7 @@ def test_a_hierarchy_that_is_not_positive_is_found_out(monkeypatch):
 
 @pytest.mark.parametrize("contrast", [1e-6, 1e-4, 1e5])
 def test_the_smoother_knows_the_largest_eigenvalue_where_a_ring_is_soft_or_stiff(contrast):
-    """Few nodes have it, and eight steps of Lanczos fell short of it: multigrid did not converge."""
+    """Few nodes have it; with eight steps of Lanczos, which missed it, nothing converged."""
     system, F = layers.ring().system((contrast, 1.0))
     hierarchy = multigrid.build(system)
     finest = hierarchy.levels[0]
