@@ -12,6 +12,7 @@ from fe_drivetrain.export.craig_bampton import craig_bampton_shaft
 from fe_drivetrain.export.from_scene import unit_superelement
 from fe_drivetrain.export.lumped_shaft import rigid_mass
 from fe_drivetrain.export.modes import natural_frequencies
+from fe_drivetrain.export.programs import exudyn_system, ross_rotor
 from fe_drivetrain.fidelity.bearing_units import (
     UnitMatrices,
     scene_supports,
@@ -143,3 +144,35 @@ def test_mass_on_supports_lowers_frequencies_and_needs_a_point() -> None:
     assert (found[:6] < 0.95 * without[:6]).any()
     with pytest.raises(InputError, match="mass of 'nowhere' is at none of the points hub"):
         natural_frequencies(*body, supports, {"nowhere": unit.mass})
+
+
+@pytest.mark.needs("ross")
+def test_ross_has_the_housings_mass_at_its_node_and_does_not_spin_it() -> None:
+    scene, unit = coarse_scene("bonded", **SOFT), on_bedplate()
+    stiffness, inertia = {"main_bearing": unit.stiffness}, {"main_bearing": unit.mass}
+    light = ross_rotor.rotor_of_scene(scene, stiffness)
+    heavy = ross_rotor.rotor_of_scene(scene, stiffness, inertia=inertia)
+    first = 6 * heavy.supports["main_bearing"][0]
+    more = heavy.matrix("M") - light.matrix("M")
+    expected = np.zeros_like(more)
+    expected[first : first + 6, first : first + 6] = unit.mass
+    np.testing.assert_allclose(more, expected, atol=1e-9 * unit.mass.max())
+    np.testing.assert_array_equal(heavy.rotor.G(), light.rotor.G())
+    K, M = heavy.matrix("K"), heavy.matrix("M")
+    np.testing.assert_allclose(heavy.frequencies(8), natural_frequencies([], K, M)[:8], rtol=1e-8)
+    # the shaft's weight alone, as without the mass
+    sag = [rotor.deflections({}, (0.0, 0.0, -9.81)) for rotor in (light, heavy)]
+    np.testing.assert_allclose(sag[1], sag[0], rtol=0, atol=1e-9 * np.abs(sag[0]).max())
+    with pytest.raises(InputError, match="mass of 'nowhere' is at none of the supports"):
+        ross_rotor.rotor_of_scene(scene, stiffness, inertia={"nowhere": unit.mass})
+
+
+@pytest.mark.needs("exudyn")
+def test_exudyn_has_the_frequencies_with_the_housings_mass() -> None:
+    scene, unit = coarse_scene("bonded", **SOFT), on_bedplate()
+    shaft = craig_bampton_shaft(scene, 4, order=3)
+    supports = scene_supports(scene, {"main_bearing": unit.stiffness})
+    inertia = {"main_bearing": unit.mass}
+    system = exudyn_system.flexible_system(shaft, supports, inertia=inertia)
+    own = natural_frequencies(shaft.points, shaft.stiffness, shaft.mass, supports, inertia)
+    np.testing.assert_allclose(system.frequencies(), own, rtol=1e-9)
