@@ -204,6 +204,17 @@ def test_modes_bring_frequencies_down_to_those_of_the_shaft(run_page: Runner) ->
     assert errors[4][0] == pytest.approx(0.005, abs=0.001)
 
 
+def test_a_housing_with_its_inertia_has_the_frequencies_of_the_solids(run_page: Runner) -> None:
+    """Modes 5 to 8 move the housing; the others are those of a shaft on springs."""
+    names = run_page("how-to/housing-inertia.md")
+    whole = names["whole"]
+    error, massless = names["found"] / whole - 1, names["massless"] / whole - 1
+    assert np.abs(error[:4]).max() < 0.03
+    assert np.abs(error[4:]).max() < 0.005
+    assert massless[4:].round(3) == pytest.approx([0.162, 0.090, 0.119, 0.042], abs=0.002)
+    assert names["element"].mass == pytest.approx(names["unit"].mass)
+
+
 @pytest.mark.needs("exudyn", "ross")
 def test_a_housing_in_ross_and_exudyn(run_page: Runner) -> None:
     names = run_page("how-to/housing-to-ross-and-exudyn.md")
@@ -214,6 +225,10 @@ def test_a_housing_in_ross_and_exudyn(run_page: Runner) -> None:
     own = natural_frequencies(shaft.points, shaft.stiffness, shaft.mass, supports)
     assert system.frequencies()[:4] == pytest.approx(own[:4], rel=1e-6)
     assert names["rotor"].frequencies(1)[0] == pytest.approx(own[0], rel=0.05)
+    masses = names["masses"]
+    own = natural_frequencies(shaft.points, shaft.stiffness, shaft.mass, supports, masses)
+    assert names["heavy_system"].frequencies()[:4] == pytest.approx(own[:4], rel=1e-6)
+    assert names["heavy_rotor"].frequencies(1)[0] == pytest.approx(own[0], rel=0.05)
 
 
 # --- links ---

@@ -27,6 +27,7 @@ from .from_component import component_superelement as component_superelement
 from .from_scene import shaft_superelement as shaft_superelement
 from .from_scene import unit_superelement as unit_superelement
 from .lumped_shaft import lumped_superelement as lumped_superelement
+from .modes import assembly_frequencies as assembly_frequencies
 from .modes import natural_frequencies as natural_frequencies
 from .programs.calculix_runs import compliance_by_calculix as compliance_by_calculix
 from .programs.calculix_runs import frequencies_by_calculix as frequencies_by_calculix

@@ -11,7 +11,7 @@ import numpy as np
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.export.superelement import Origin, Superelement
-from fe_drivetrain.fidelity.bearing_units import banded_unit
+from fe_drivetrain.fidelity.bearing_units import banded_unit, unit_matrices
 from fe_drivetrain.fidelity.ladder import LevelModel
 from fe_drivetrain.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
 from fe_drivetrain.fidelity.shafts import beam_shaft, reference_points
@@ -103,11 +103,25 @@ def supported_superelement(
     return Superelement("drivetrain", tuple(at), positions, stiffness, None, True, band, origin)
 
 
-def unit_superelement(scene: Scene, name: str) -> Superelement:
+def unit_superelement(scene: Scene, name: str, mass: bool = False) -> Superelement:
     """A bearing and its housing on the ground, at the bearing's centre: K_R of both planes, too.
 
     The shaft is taken to keep its face in shape; the band reaches to a face that moves on average,
     and holds the error of the mesh: see `fe_drivetrain.fidelity.banded_unit`.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of the bearing.
+    mass : bool
+        Whether it has its mass, see `fe_drivetrain.fidelity.unit_matrices`.
+
+    Raises
+    ------
+    InputError
+        Its mass is asked for, and its housing is a stiffness alone.
     """
     x = scene.bearing_unit(name).bearing.x
     stiffness, band = banded_unit(scene, name)
@@ -116,6 +130,7 @@ def unit_superelement(scene: Scene, name: str) -> Superelement:
         (name,),
         np.array([[x, 0.0, 0.0]]),
         stiffness,
+        unit_matrices(scene, name).mass if mass else None,
         supported=True,
         band=band,
         origin=scene_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),

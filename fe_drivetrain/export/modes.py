@@ -1,4 +1,4 @@
-"""Natural frequencies of a condensed shaft, free or on the supports of its scene."""
+"""Natural frequencies of a condensed shaft, and of the solids that nothing was condensed of."""
 
 from __future__ import annotations
 
@@ -6,9 +6,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy import linalg
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
+from fe_drivetrain.operator.mass import mass_matrix
+from fe_drivetrain.response.model import build_model, mesh_scene
+from fe_drivetrain.response.prepared import prepared
+from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.condensation import on_supports
 
 
@@ -17,16 +23,102 @@ def natural_frequencies(
     stiffness: Floats,
     mass: Floats,
     supports: Mapping[str, Floats] | None = None,
+    inertia: Mapping[str, Floats] | None = None,
 ) -> Floats:
     """Natural frequencies, ascending, those of free motions among them as about 0 [Hz].
 
-    For the arguments see `condensation.on_supports`; mass is of the same degrees of freedom as
-    stiffness.
+    Parameters
+    ----------
+    points, stiffness, supports : Sequence[str], Floats, Mapping[str, Floats] or None
+        As of `condensation.on_supports`.
+    mass : Floats
+        Of the same degrees of freedom as the stiffness.
+    inertia : Mapping[str, Floats] or None
+        (6, 6) mass of supports that moves with a point [kg, kg m, kg m^2], by point, as of
+        `fe_drivetrain.fidelity.unit_matrices`.
+
+    Raises
+    ------
+    InputError
+        A support or its mass is at no point.
     """
     K, left = on_supports(points, stiffness, supports or {})
-    M = np.asarray(mass)[np.ix_(left, left)]
+    M = with_inertia(points, mass, inertia or {})[np.ix_(left, left)]
     # lengths and angles, points and modes equally: a unit diagonal keeps the digits of all
     values = linalg.eigh(
         scaled_to_unit_diagonal(K, M.diagonal()), scaled_to_unit_diagonal(M), eigvals_only=True
     )
     return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))
+
+
+def with_inertia(points: Sequence[str], mass: Floats, inertia: Mapping[str, Floats]) -> Floats:
+    """A mass with that of supports added.
+
+    Parameters
+    ----------
+    points : Sequence[str]
+        Names of n points.
+    mass : Floats
+        (6 n + m, 6 n + m): six degrees of freedom of each point first, then m of anything.
+    inertia : Mapping[str, Floats]
+        (6, 6) by point [kg, kg m, kg m^2].
+
+    Raises
+    ------
+    InputError
+        A mass is at no point.
+    """
+    M = np.array(mass)
+    for name, own in inertia.items():
+        if name not in points:
+            raise InputError(
+                f"mass of {name!r} is at none of the points {', '.join(points)}: keep its point"
+            )
+        rows = slice(6 * points.index(name), 6 * points.index(name) + 6)
+        M[rows, rows] += own
+    return M
+
+
+def assembly_frequencies(scene: Scene, count: int) -> Floats:
+    """The lowest natural frequencies [Hz] of a scene's solids, shaft and housings, not condensed.
+
+    They are from above: those of the mesh, which is too stiff. For small models, as reference.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its weights and hub have no inertia, nor have springs.
+    count : int
+        How many.
+
+    Returns
+    -------
+    Floats
+        (count,) ascending.
+    """
+    model = build_model(scene, mesh_scene(scene))
+    mesh = model.mesh
+    found = prepared(model, "auto", 4 * count)
+    T, free = found.elimination.T, np.flatnonzero(found.elimination.free)
+    M = sum(
+        mass_matrix(
+            mesh.points,
+            mesh.cells[mesh.part_cells(part)],
+            scene.material_of(part).density,
+            model.n_dofs,
+        )
+        for part in mesh.part_names
+    )
+    M = (T.T @ M @ T).tocsr()[free][:, free]
+
+    def solved(forces: Floats) -> Floats:
+        F = np.zeros((model.n_dofs, 1))
+        F[free, 0] = forces
+        return np.asarray(found.solver.solve(F).x[free, 0])
+
+    size = (len(free), len(free))
+    inverse = LinearOperator(size, matvec=solved, dtype=float)
+    start = solved(M @ np.random.default_rng(0).standard_normal(len(free)))
+    # about zero only the inverse is asked for
+    values = eigsh(M, count, M, sigma=0.0, OPinv=inverse, v0=start, return_eigenvectors=False)
+    return np.asarray(np.sqrt(np.sort(values)) / (2.0 * np.pi))

@@ -7,9 +7,11 @@ from .assembly_bands import all_reaction_errors as all_reaction_errors
 from .assembly_bands import cached_reaction_errors as cached_reaction_errors
 from .assembly_bands import reaction_error as reaction_error
 from .bearing_units import UnitBounds as UnitBounds
+from .bearing_units import UnitMatrices as UnitMatrices
 from .bearing_units import banded_unit as banded_unit
 from .bearing_units import scene_supports as scene_supports
 from .bearing_units import unit_bounds as unit_bounds
+from .bearing_units import unit_matrices as unit_matrices
 from .bearing_units import unit_stiffness as unit_stiffness
 from .component_frames import housing_frame as housing_frame
 from .component_levels import GearboxSprings as GearboxSprings

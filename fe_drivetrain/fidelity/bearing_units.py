@@ -14,11 +14,13 @@ from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
-from fe_drivetrain.common.spatial import wrench_transport
+from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
 from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs, mesh_parts, tied
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
+from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.response.cached import solved_content
 from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
 from fe_drivetrain.response.kept import kept_together
@@ -157,6 +159,72 @@ def unit_stiffnesses(
     return dict(zip(_COUPLINGS, _kept(scene, name, contents, cache, solved), strict=True))
 
 
+class UnitMatrices(NamedTuple):
+    """A bearing unit at its bearing's centre, as what the shaft feels there.
+
+    Attributes
+    ----------
+    stiffness : Floats
+        (6, 6) to ground [N/m, N, N m/rad].
+    mass : Floats
+        (6, 6) [kg, kg m, kg m^2].
+    """
+
+    stiffness: Floats
+    mass: Floats
+
+
+def unit_matrices(
+    scene: Scene,
+    name: str,
+    coupling: Coupling = "rigid",
+    method: str = "auto",
+    cache: Cache | None = None,
+) -> UnitMatrices:
+    """Stiffness and mass of a bearing and its housing, solved without the shaft.
+
+    The solid follows the shaft as it does in statics, so that its mass is felt as U^T M U, with its
+    displacements U for unit motions of the shaft (Guyan 1965, "Reduction of stiffness and mass
+    matrices", AIAA Journal 3(2), 380). Frequencies are those of a model that is too stiff, and
+    none is there in which the housing moves and the shaft does not.
+
+    The mass is that of housing, further parts, and of a ring that is bonded to the housing or on
+    rollers in it: other rings belong to the shaft, see `fe_drivetrain.fidelity.ringed_shaft`. What
+    the joint leaves free the housing does not follow; springs of joint and bedplate have no mass.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Of the bearing.
+    coupling, method, cache : Coupling, str, Cache or None
+        As of `unit_stiffness`.
+
+    Raises
+    ------
+    InputError
+        The housing is a stiffness alone.
+    """
+    if _given(scene, name) is not None:
+        raise InputError(
+            f"bearing {name!r} has a housing of a stiffness alone, which has no mass: give the "
+            "housing as a solid, or leave its mass out"
+        )
+    with_ring, coupling = face_of(scene, name, True, coupling)
+
+    def solved() -> list[Floats]:
+        of = _unit_solid(scene, name, with_ring)
+        unit = _solved_unit(of, coupling, method)
+        return [unit.stiffness, _unit_mass(of, unit)]
+
+    contents = [
+        _content(name, with_ring, coupling, method),
+        {"mass of": name, "coupling": coupling, "method": method},
+    ]
+    return UnitMatrices(*_kept(scene, name, contents, cache, solved))
+
+
 def banded_unit(scene: Scene, name: str) -> tuple[Floats, float]:
     """Stiffness of a bearing unit, its face held in shape, and its band.
 
@@ -283,7 +351,8 @@ def _kept(
 class _SolvedUnit(NamedTuple):
     """A unit's solid, its parts, displacements (n, 6) and motions (6, 6) for unit loads; stiffness.
 
-    The stiffness (6, 6) is that of joint, solid and bedplate.
+    The stiffness (6, 6) is that of joint, solid and bedplate. For unit motions of the shaft, the
+    solid's own point moves by ``strained`` (6, 6) against the base, and that by ``carried`` (6, 6).
     """
 
     solid: CoupledSolid
@@ -291,6 +360,23 @@ class _SolvedUnit(NamedTuple):
     displacements: Floats
     compliance: Floats
     stiffness: Floats
+    strained: Floats
+    carried: Floats
+
+
+def _unit_mass(of: UnitSolid, unit: _SolvedUnit) -> Floats:
+    """(6, 6) mass of a solved unit as the shaft feels it."""
+    mesh, n = unit.solid.mesh, unit.solid.mesh.points.size
+    motions = unit.displacements[:n] @ np.linalg.solve(unit.compliance, unit.strained)
+    described = of.scene.bearing_unit(of.name)
+    if described.bedplate is not None:
+        motions += rigid_motions(mesh.points, base_centre(described, mesh)) @ unit.carried
+    found = np.zeros((6, 6))
+    for part in unit.parts:
+        density = of.scene.material_of(part).density
+        mass = mass_matrix(mesh.points, mesh.cells[mesh.part_cells(part)], density, n)
+        found += motions.T @ (mass @ motions)
+    return 0.5 * (found + found.T)
 
 
 def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
@@ -404,15 +490,22 @@ def _solved_unit(of: UnitSolid, coupling: Coupling, method: str) -> _SolvedUnit:
     if unit.rollers is not None:
         carried = np.eye(6) - np.linalg.pinv(free) @ free
         stiffness = np.asarray(carried.T @ (stiffness - ground) @ carried)
+    strained, carried_along = np.eye(6), np.zeros((6, 6))
     if unit.bedplate is not None:
         # the base moves as a rigid body, so this is exact
         lever = wrench_transport(at.position - base_centre(unit, mesh)).T
-        softness = lever @ np.diag(1.0 / as_numbers(unit.bedplate)) @ lever.T
+        gives = np.diag(1.0 / as_numbers(unit.bedplate))
+        softness = lever @ gives @ lever.T
         stiffness = np.linalg.solve(np.eye(6) + stiffness @ softness, stiffness)
+        carried_along = gives @ lever.T @ stiffness
+        strained -= lever @ carried_along
     stiffness = 0.5 * (stiffness + stiffness.T)
     if unit.rollers is None:
-        stiffness = in_series(stiffness, joint_stiffness(unit))
-    return _SolvedUnit(solid, parts, displacements, compliance, stiffness)
+        behind = stiffness
+        stiffness = in_series(behind, joint_stiffness(unit))
+        follows = np.linalg.solve(behind, stiffness)
+        strained, carried_along = strained @ follows, carried_along @ follows
+    return _SolvedUnit(solid, parts, displacements, compliance, stiffness, strained, carried_along)
 
 
 def _free_motions(stiffness: Floats, length: float) -> Floats:

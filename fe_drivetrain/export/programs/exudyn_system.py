@@ -31,6 +31,7 @@ from fe_drivetrain.common.scaling import diagonal_roots, largest_difference, sca
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.export.craig_bampton import CraigBampton
 from fe_drivetrain.export.lumped_shaft import rigid_mass
+from fe_drivetrain.export.modes import with_inertia
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
 
 STANDING_STILL = (0.0, 0.0, 0.0)
@@ -150,6 +151,7 @@ def flexible_system(
     body: Superelement | CraigBampton,
     supports: Mapping[str, Floats],
     gravity: Sequence[float] = STANDING_STILL,
+    inertia: Mapping[str, Floats] | None = None,
 ) -> System:
     """A condensed shaft as a flexible body on its supports.
 
@@ -161,14 +163,17 @@ def flexible_system(
         (6, 6) stiffness to ground by point [N/m, N, N m/rad]; inf on the diagonal holds that motion
         rigidly, and nothing else is in its row.
     gravity : Sequence[float]
-        (3,) [m/s^2].
+        (3,) of the shaft, not of its supports [m/s^2].
+    inertia : Mapping[str, Floats] or None
+        (6, 6) mass of supports by point [kg, kg m, kg m^2], as
+        `fe_drivetrain.fidelity.unit_matrices` gives it; they have none where it is not given.
 
     Raises
     ------
     MissingToolError
         Exudyn is not installed.
     InputError
-        The body is supported already or has no mass, or a support is at no point.
+        The body is supported already or has no mass, or a support or its mass is at no point.
     """
     _, items = _exudyn()
     K, M = _matrices(body)
@@ -197,7 +202,7 @@ def flexible_system(
         items.ObjectGenericODE2(
             name=getattr(body, "name", "shaft"),
             nodeNumbers=numbers,
-            massMatrix=M,
+            massMatrix=with_inertia(body.points, M, inertia or {}),
             stiffnessMatrix=K,
             forceVector=M @ falling,
         )

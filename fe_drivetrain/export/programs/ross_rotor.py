@@ -6,8 +6,8 @@ cyclically and right-handed both. Shear as here: Cowper's coefficient.
 
 A BearingElement has kxx, kxy, kyx, kyy and kzz only. What else a bearing unit or a gearbox has
 (stiffness against tilt, and what couples forces along the shaft, across it, and moments) goes into
-an element of its own without mass, at the same node. ROSS cannot hold a motion rigidly: a rigid
-support is a spring that many times stiffer than the shaft beside it.
+an element of its own at the same node, and so does the mass of a housing. ROSS cannot hold a motion
+rigidly: a rigid support is a spring that many times stiffer than the shaft beside it.
 
 ``run_static`` of ROSS puts 1e20 N/m in the place of every bearing's lateral stiffness, whatever it
 is, and loads by 9.8065 m/s^2 along -y: it answers for rigid bearings alone. `Rotor.deflections`
@@ -19,7 +19,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
@@ -56,11 +56,14 @@ class Rotor:
     supports : Mapping[str, tuple[int, Floats]]
         Of each support by name: its node, and its stiffness (6, 6) [N/m, N, N m/rad] in this
         project's frame and order, as it went in.
+    inertia : Mapping[str, Floats]
+        Of supports that have a mass: (6, 6) [kg, kg m, kg m^2].
     """
 
     rotor: Any
     stations: Floats
     supports: Mapping[str, tuple[int, Floats]]
+    inertia: Mapping[str, Floats] = field(default_factory=dict)
 
     def node(self, x: float) -> int:
         """The node at a station [m].
@@ -88,6 +91,8 @@ class Rotor:
     ) -> Floats:
         """(n, 6) motions of the nodes under loads (6,) at stations and the shaft's own weight.
 
+        The weight of supports is not among the loads.
+
         Parameters
         ----------
         loads : Mapping[float, Floats]
@@ -96,7 +101,11 @@ class Rotor:
             (3,) along x, y, z [m/s^2].
         """
         n = len(self.stations)
-        F = self.matrix("M") @ np.tile([*gravity, 0.0, 0.0, 0.0], n)
+        falling = np.array([*gravity, 0.0, 0.0, 0.0])
+        F = self.matrix("M") @ np.tile(falling, n)
+        for name, mass in self.inertia.items():
+            first = 6 * self.supports[name][0]
+            F[first : first + 6] -= mass @ falling
         for x, load in loads.items():
             first = 6 * self.node(x)
             F[first : first + 6] += load
@@ -132,6 +141,7 @@ def ross_rotor(
     stations: Sequence[float] = (),
     longest: float | None = None,
     stiffer: float = 1e6,
+    inertia: Mapping[str, Floats] | None = None,
 ) -> Rotor:
     """A rotor of ROSS from a beam and its supports.
 
@@ -146,14 +156,25 @@ def ross_rotor(
         between nodes; frequencies, and cones, want short elements.
     stiffer : float
         How many times a support that is rigid is stiffer than the shaft at its node.
+    inertia : Mapping[str, Floats] or None
+        (6, 6) mass of supports by name [kg, kg m, kg m^2], in this project's frame: it moves with
+        the shaft's node, but does not spin.
 
     Raises
     ------
     MissingToolError
         ROSS is not installed.
     InputError
-        A section is given by rigidities, which ROSS does not take, or a length is not positive.
+        A section is given by rigidities, which ROSS does not take, a length is not positive, or
+        there is no support of a mass's name.
     """
+    inertia = {} if inertia is None else inertia
+    names = [support.name for support in beam.supports]
+    for name in inertia:
+        if name not in names:
+            raise InputError(
+                f"mass of {name!r} is at none of the supports {', '.join(names)}: name one of these"
+            )
     ross = _ross()
     longest = beam.length / 16.0 if longest is None else longest
     if not longest > 0.0:
@@ -191,7 +212,7 @@ def ross_rotor(
             )
         )
     own = _free_diagonal(elements)
-    extra = _further_stiffness(ross)
+    extra = _further_matrices(ross)
     bearings, others = [], []
     supports: dict[str, tuple[int, Floats]] = {}
     for support in beam.supports:
@@ -214,9 +235,10 @@ def ross_rotor(
         bearings.append(bearing)
         rest = k.copy()
         rest[:3, :3] -= bearing.K(0.0)
-        if rest.any():
-            others.append(extra(node, rest, f"{support.name}, moments and coupling"))
-    return Rotor(ross.Rotor(elements, others, bearings), nodes, supports)
+        mass = inertia.get(support.name, np.zeros((6, 6)))[np.ix_(FROM_PROJECT, FROM_PROJECT)]
+        if rest.any() or mass.any():
+            others.append(extra(node, rest, mass, f"{support.name}, moments, coupling, mass"))
+    return Rotor(ross.Rotor(elements, others, bearings), nodes, supports, inertia)
 
 
 def rotor_of_scene(
@@ -225,6 +247,7 @@ def rotor_of_scene(
     rings: bool = True,
     longest: float | None = None,
     stiffer: float = 1e6,
+    inertia: Mapping[str, Floats] | None = None,
 ) -> Rotor:
     """The shaft, the bearing units and the gearbox of a scene as a rotor of ROSS.
 
@@ -239,9 +262,12 @@ def rotor_of_scene(
         Whether the shaft has its rings, see `fe_drivetrain.fidelity.shafts.ringed_shaft`.
     longest, stiffer : float or None, float
         As for `ross_rotor`.
+    inertia : Mapping[str, Floats] or None
+        (6, 6) by bearing [kg, kg m, kg m^2], as `fe_drivetrain.fidelity.unit_matrices` gives it;
+        supports have no mass where it is not given.
     """
     beam = (ringed_beam if rings else beam_of_scene)(scene, bearing_stiffness)
-    return ross_rotor(beam, (), longest, stiffer)
+    return ross_rotor(beam, (), longest, stiffer, inertia)
 
 
 def ringed_beam(scene: Scene, bearing_stiffness: Mapping[str, Floats]) -> Beam:
@@ -291,19 +317,20 @@ def _rows(n: int) -> Floats:
     return np.add.outer(6 * np.arange(n), _BACK).ravel()
 
 
-def _further_stiffness(ross: Any) -> Any:
-    """A class of elements with a full stiffness to ground.
+def _further_matrices(ross: Any) -> Any:
+    """A class of elements with a full stiffness to ground, and a full mass.
 
     ROSS adds the stiffness of its disks, which is zero but for this one, to six degrees of freedom
-    of a node; a bearing has three.
+    of a node; a bearing has three. Of a disk without polar inertia nothing spins.
     """
 
-    class FurtherStiffness(ross.DiskElement):  # type: ignore[misc]
-        """Stiffness (6, 6) to ground without mass."""
+    class FurtherMatrices(ross.DiskElement):  # type: ignore[misc]
+        """Stiffness (6, 6) to ground and mass (6, 6), which is none of the rotor's own."""
 
-        def __init__(self, n: int, stiffness: Floats, tag: str) -> None:
+        def __init__(self, n: int, stiffness: Floats, mass: Floats, tag: str) -> None:
             super().__init__(n=n, m=0.0, Id=0.0, Ip=0.0, tag=tag)
             self.stiffness = stiffness
+            self.mass = mass
 
         def __hash__(self) -> int:
             return hash(self.tag)
@@ -311,7 +338,10 @@ def _further_stiffness(ross: Any) -> Any:
         def K(self) -> Floats:
             return self.stiffness
 
-    return FurtherStiffness
+        def M(self) -> Floats:
+            return self.mass
+
+    return FurtherMatrices
 
 
 def _ross() -> Any:
