@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from statistics import median
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numba import get_num_threads
@@ -14,8 +14,8 @@ from numba import get_num_threads
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
 from fe_drivetrain.interfaces import eliminate, fixed
-from fe_drivetrain.operator import Pattern, assemble, kernels, sparsity
-from fe_drivetrain.peers import BENCHMARKS, Problem, problems
+from fe_drivetrain.operator import Pattern, kernels, sparsity
+from fe_drivetrain.peers import BENCHMARKS, Problem, assembled, problems
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import System, multigrid, reduce
 from fe_drivetrain.suite import Page, Record, Run, grouped
@@ -142,24 +142,6 @@ def timed(problem: Problem) -> Solved:
     }
     # the product of conjugate gradients, a residual, and the smoother before and behind it
     return Solved(seconds, moved, found.iterations, 1 + 2 * hierarchy.levels[0].degree)
-
-
-def assembled(problem: Problem, pattern: Pattern) -> Any:
-    """The stiffness of all materials in one pattern."""
-    K: Any = None
-    for number, lame in enumerate(zip(*problem.lame(), strict=True)):
-        chosen = problem.material == number
-        part = assemble(
-            problem.points,
-            problem.cells[chosen],
-            lame,
-            pattern=replace(pattern, slots=pattern.slots[chosen]),
-        )
-        if K is None:
-            K = part
-        else:
-            K.data += part.data
-    return K
 
 
 def pattern_bytes(pattern: Pattern) -> float:

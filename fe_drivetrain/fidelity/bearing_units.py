@@ -17,14 +17,20 @@ from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
-from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs, mesh_parts, tied
+from fe_drivetrain.fidelity.unit_faces import (
+    attached,
+    face_of,
+    parts_left_out,
+    seat,
+    without_shaft,
+)
+from fe_drivetrain.foreign.assembly import Tied, base_centre, bolt_springs
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.joints import in_series, roller_joint
 from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.response.cached import solved_content
 from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
 from fe_drivetrain.response.kept import kept_together
-from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.scene.scene import Coupling, Scene
 from fe_drivetrain.scene.shared_parts import refuse_coupled
@@ -39,13 +45,6 @@ from fe_drivetrain.solve.error_estimate import SAFETY, error_energies
 _FREE = 1e-9  # of the largest stiffness: rollers hold a motion by far more, or not at all
 
 _COUPLINGS: tuple[Coupling, Coupling] = ("rigid", "averaged")
-
-#: How the joint itself moves the faces.
-_PRESCRIBED: dict[str, Coupling] = {
-    "spring": "averaged",
-    "averaged": "averaged",
-    "rigid": "rigid",
-}
 
 
 class UnitSolid(NamedTuple):
@@ -310,23 +309,6 @@ def _given(scene: Scene, name: str) -> Floats | None:
     return in_series(unit.condensed.matrix, joint_stiffness(unit))
 
 
-def face_of(scene: Scene, name: str, ring: bool, coupling: Coupling) -> tuple[bool, Coupling]:
-    """Whether a unit is solved with its ring, and how its face is coupled: as the joint says.
-
-    Parameters
-    ----------
-    scene, name : Scene, str
-        The scene, and which bearing of it.
-    ring, coupling : bool, Coupling
-        What is asked for, see `unit_stiffness`.
-    """
-    unit = scene.bearing_unit(name)
-    with_ring = unit.ring_on_housing and ring
-    if unit.rollers is not None and not with_ring:
-        return with_ring, "rigid"
-    return with_ring, _PRESCRIBED.get(unit.interface, coupling)
-
-
 def _content(name: str, with_ring: bool, coupling: Coupling, method: str) -> dict[str, Any]:
     return {"stiffness of": name, "coupling": coupling, "method": method, "ring": with_ring}
 
@@ -387,74 +369,6 @@ def _mesh_band(scene: Scene, unit: _SolvedUnit) -> float:
     motions = unit.displacements @ stiffness
     shares = error_energies(mesh.points, parts, motions) / (0.5 * stiffness.diagonal())
     return SAFETY * float(shares.max())
-
-
-def seat(scene: Scene, name: str) -> float:
-    """Diameter of the shaft under a bearing [m]: all of the shaft that its unit knows of.
-
-    Parameters
-    ----------
-    scene, name : Scene, str
-        The scene, and which bearing of it.
-    """
-    bearing = scene.bearing_unit(name).bearing
-    return scene.shaft.seat_diameter(bearing.x, bearing.width, name)
-
-
-def without_shaft(scene: Scene, rings: Mapping[str, bool]) -> tuple[Tied, list[str]]:
-    """Bearing units without the shaft: their mesh and ties, and the parts in it that give.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    rings : Mapping[str, bool]
-        Whether the ring gives, by the name of each bearing.
-    """
-    units, parts = [], []
-    for name, with_ring in rings.items():
-        unit = scene.bearing_unit(name)
-        bearing = unit.bearing.model_copy(update={"bore_diameter": seat(scene, name)})
-        units.append(unit.model_copy(update={"bearing": bearing}))
-        parts += [*([name] if with_ring else []), *unit.housing_parts]
-    giving = [name for name, with_ring in rings.items() if with_ring]
-    return tied(units, mesh_parts(None, units, scene.mesh), giving), parts
-
-
-def attached(scene: Scene, name: str, with_ring: bool, coupling: Coupling) -> Attachment:
-    """How the shaft takes hold of a bearing unit: by a face, from the bearing's centre.
-
-    Parameters
-    ----------
-    scene, name : Scene, str
-        The scene, and which bearing of it.
-    with_ring, coupling : bool, Coupling
-        As of `face_of`.
-    """
-    unit = scene.bearing_unit(name)
-    if with_ring:
-        face = f"{name}.bore"
-    elif unit.rollers is not None:
-        face = f"{name}.outer"
-    else:
-        face = f"{name}.housing.bore"
-    return Attachment(name, face, np.array([unit.bearing.x, 0.0, 0.0]), coupling)
-
-
-def parts_left_out(solid: CoupledSolid, at: Sequence[Attachment]) -> constraints.Constraint:
-    """Hold the nodes that no part has and no attachment takes hold of.
-
-    Parameters
-    ----------
-    solid : CoupledSolid
-        Of some parts of its mesh.
-    at : Sequence[Attachment]
-        Its attachments.
-    """
-    taken = [solid.mesh.face_nodes(one.face) for one in at]
-    nodes = np.arange(len(solid.mesh.points))
-    left_out = np.setdiff1d(nodes, np.concatenate([solid.cells.ravel(), *taken]))
-    return constraints.fixed("parts left out", left_out, solid.n_dofs)
 
 
 def _unit_solid(scene: Scene, name: str, with_ring: bool) -> UnitSolid:

@@ -12,7 +12,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
-from fe_drivetrain.fidelity.bearing_units import (
+from fe_drivetrain.fidelity.unit_faces import (
     attached,
     face_of,
     parts_left_out,

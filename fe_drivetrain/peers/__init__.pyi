@@ -15,3 +15,4 @@ from .rounds import Plan as Plan
 from .rounds import Row as Row
 from .runner import Problem as Problem
 from .runner import write_problem as write_problem
+from .this_project import assembled as assembled

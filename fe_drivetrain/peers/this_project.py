@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from scipy import sparse
+
+    from fe_drivetrain.operator import Pattern
     from fe_drivetrain.peers.runner import Clock, Problem
 
 NAME = "this project"
@@ -36,30 +39,37 @@ def load(problem: Problem) -> Problem:
     return problem
 
 
+def assembled(problem: Problem, pattern: Pattern) -> sparse.bsr_array:
+    """The stiffness of all materials in one pattern."""
+    from fe_drivetrain.operator import assemble
+
+    K: Any = None
+    for number, lame in enumerate(zip(*problem.lame(), strict=True)):
+        chosen = problem.material == number
+        part = assemble(
+            problem.points,
+            problem.cells[chosen],
+            lame,
+            pattern=replace(pattern, slots=pattern.slots[chosen]),
+        )
+        if K is None:
+            K = part
+        else:
+            K.data += part.data
+    return K
+
+
 def solve(problem: Problem, variant: str, clock: Clock) -> list[float]:
     """The stiffnesses, by one solve of all motions."""
     from fe_drivetrain.interfaces import eliminate, fixed
-    from fe_drivetrain.operator import assemble, sparsity
+    from fe_drivetrain.operator import sparsity
     from fe_drivetrain.operator.kernels import product
     from fe_drivetrain.solve import reduce
     from fe_drivetrain.solve import solve as solve_system
 
     with clock.step("assembly"):
         n = len(problem.points)
-        pattern = sparsity(problem.cells, n)
-        K: Any = None
-        for number, lame in enumerate(zip(*problem.lame(), strict=True)):
-            chosen = problem.material == number
-            part = assemble(
-                problem.points,
-                problem.cells[chosen],
-                lame,
-                pattern=replace(pattern, slots=pattern.slots[chosen]),
-            )
-            if K is None:
-                K = part
-            else:
-                K.data += part.data
+        K = assembled(problem, sparsity(problem.cells, n))
         given = np.zeros((3 * n, len(problem.motions)))
         for k, column in enumerate(given.T):
             nodes, values = problem.prescribed(k)
