@@ -159,7 +159,11 @@ def test_ross_has_the_housings_mass_at_its_node_and_does_not_spin_it() -> None:
     np.testing.assert_allclose(more, expected, atol=1e-9 * unit.mass.max())
     np.testing.assert_array_equal(heavy.rotor.G(), light.rotor.G())
     K, M = heavy.matrix("K"), heavy.matrix("M")
-    np.testing.assert_allclose(heavy.frequencies(8), natural_frequencies([], K, M)[:8], rtol=1e-8)
+    expected = natural_frequencies([], K, M)
+    # eigenvalues are known to the last digits of the largest one, and are squares of frequencies
+    known = np.finfo(float).eps * (expected[-1] / expected[:8]) ** 2
+    assert known.max() < 1e-4
+    assert (np.abs(heavy.frequencies(8) / expected[:8] - 1.0) <= known).all()
     # the shaft's weight alone, as without the mass
     sag = [rotor.deflections({}, (0.0, 0.0, -9.81)) for rotor in (light, heavy)]
     np.testing.assert_allclose(sag[1], sag[0], rtol=0, atol=1e-9 * np.abs(sag[0]).max())
