@@ -123,7 +123,9 @@ class Hierarchy:
         matrices = [m for level in self.levels for m in (level.prolongation, level.restriction)]
         matrices += [level.K for level in self.levels[1:]]
         held = sum(m.data.nbytes + m.indices.nbytes + m.indptr.nbytes for m in matrices)
-        held += sum(level.K.data.nbytes for level in self.levels[:1])  # its pattern is the system's
+        # the finest pattern is the system's, and in double precision its entries are, too
+        rounded = (level.K.data for level in self.levels[:1] if level.K.data.dtype == np.float32)
+        held += sum(data.nbytes for data in rounded)
         held += sum(level.inverse.nbytes for level in self.levels)
         return int(held + self.coarsest[0].nbytes)
 
@@ -305,6 +307,7 @@ def largest_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
     r = np.random.default_rng(0).standard_normal((3 * len(inverse), 1))
     zero, Kp, z = np.zeros_like(r), np.empty_like(r), np.empty_like(r)
     kernels.times_blocks(inverse, r, 1.0, z)
+    # x is what conjugate gradients would find: nobody asks, but its step is one loop with that of r
     x, p, rz = np.zeros_like(r), z.copy(), float(kernels.dots(r, z)[0])
     diagonal, beside = [], []
     alpha, beta = 1.0, 0.0
