@@ -75,7 +75,7 @@ def test_a_compliance_is_right_to_the_square_of_what_its_displacements_are(mesh:
     hub, _ = attachments("rigid", "rigid")
     solid = coupled_solid(mesh, MATERIAL, [hub])
     rear = fixed("rear", mesh.face_nodes("shaft.rear"), solid.n_dofs)
-    exact = point_compliance(solid, [rear], method="superlu")
+    exact = point_compliance(solid, [rear])
     iterated = point_motions_of(solid, [rear], method="multigrid")
     size = np.sqrt(np.outer(exact.diagonal(), exact.diagonal()))
     first = np.abs((solid.loads.T @ iterated[0] - exact) / size).max()

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.main import get_command
 
 from fe_drivetrain.commands.compare_runs import compare_runs_command
 from fe_drivetrain.commands.designs import compare_command
@@ -97,7 +100,13 @@ def main(arguments: list[str] | None = None) -> None:
         The words after the name of the program; those of the shell where left out.
     """
     prepare_streams()
-    app(arguments, prog_name="fe-drivetrain")
+    _command()(arguments, prog_name="fe-drivetrain")
+
+
+@cache
+def _command() -> Callable[..., Any]:
+    """All commands with their options, built once where a program calls several."""
+    return get_command(app)
 
 
 def main_of_case(case: Case) -> None:

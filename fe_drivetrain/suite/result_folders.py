@@ -99,11 +99,9 @@ def run_case(
         check_history(shared or folder.path)
         with _listed(case, shared):
             results = run_into(case, folder.path, taken, quick, report, shared)
-            if shared is None:  # before others see the folder, and may put another in its place
-                record_run(folder.path, results)
+            # before others see the folder, and may put another in its place
+            record_run(shared or folder.path, results)
             put_in_place(folder, out)
-            if shared is not None:
-                record_run(shared, results)
     finally:
         folder.discard()
     return results

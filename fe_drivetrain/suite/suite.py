@@ -107,11 +107,11 @@ def run_cases(
         if problem:
             problems[case.name] = problem
         else:
+            # whoever is stopped in between runs the case again: no result is without its history
+            record_run(out, read_results(folders[case.name].path / "results.json"))
             put_in_place(folders[case.name], result_folder(out, case))
         with changing:
             del pending[case.name]
-        if not problem:
-            record_run(out, read_results(result_folder(out, case) / "results.json"))
         pages.soon()
         count()
 
