@@ -8,8 +8,9 @@ were solved apart. Each level states what it neglects.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -160,9 +161,9 @@ def statics_level(scene: Scene) -> LevelModel:
     neglects = ["every stiffness"]
     if unknown:
         neglects.append(f"cannot tell {', '.join(unknown)}: statics does not decide their shares")
-    _add_weights(matrices, scene, on_shaft=ringed_shaft(scene)[1])
     cost = Cost(time.perf_counter() - start, len(carried))
-    return LevelModel(0, TITLES[0], tuple(neglects), cost, matrices)
+    reactions = _Weighed(matrices, scene, on_shaft=ringed_shaft(scene)[1])
+    return LevelModel(0, TITLES[0], tuple(neglects), cost, reactions)
 
 
 def shaft_level(
@@ -220,10 +221,10 @@ def shaft_level(
         on_bearings = standing.reactions(found.motions)
         reactions |= {name: R @ columns for name, R in on_bearings.items()}
     reactions.setdefault("gearbox", np.zeros((6, columns.shape[1])))
-    _add_weights(reactions, scene, on_shaft)
     cost = Cost(time.perf_counter() - start, 6 * n)
     motions = found.motions[:, : 6 * n]
-    return LevelModel(level, title, tuple(neglects), cost, reactions, body.names, motions)
+    weighed = _Weighed(reactions, scene, on_shaft)
+    return LevelModel(level, title, tuple(neglects), cost, weighed, body.names, motions)
 
 
 def assembly_level(scene: Scene, cache: Cache | None = None) -> LevelModel:
@@ -293,22 +294,46 @@ def housing_springs(
     return found, time.perf_counter() - start
 
 
-def _add_weights(reactions: Mapping[str, Floats], scene: Scene, on_shaft: frozenset[str]) -> None:
-    """Add what the mass of housings, and of rings that are no part of the shaft, does to reactions.
+class _Weighed(Mapping[str, Floats]):
+    """Reactions with what the mass of housings, and of rings that are no part of the shaft, adds.
 
-    It rests on the ground and bends no shaft, except as the housing deforms under its weight.
+    It rests on the ground and bends no shaft, except as the housing deforms under its weight. It is
+    added when a reaction is first asked for: its geometry takes longer than a shaft on springs, and
+    a stiffness needs none of it.
     """
-    for unit in scene.bearing_units:
-        bearing = unit.bearing
-        bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
-        solids = solids_of_unit(unit, bore, scene.mesh)
-        ring = solids.pop(bearing.name)
-        if bearing.name not in on_shaft:
-            solids[bearing.name] = ring
-        for part, solid in solids.items():
-            arm = np.array(solid.centre) - [bearing.x, 0.0, 0.0]
-            mass = scene.material_of(part).density * solid.volume
-            reactions[bearing.name][:, 6:9] += mass * wrench_transport(arm)[:, :3]
+
+    def __init__(
+        self, reactions: dict[str, Floats], scene: Scene, on_shaft: frozenset[str]
+    ) -> None:
+        self._bare, self._scene, self._on_shaft = reactions, scene, on_shaft
+
+    @cached_property
+    def _found(self) -> dict[str, Floats]:
+        found, scene = dict(self._bare), self._scene
+        for unit in scene.bearing_units:
+            bearing = unit.bearing
+            bore = scene.shaft.seat_diameter(bearing.x, bearing.width, bearing.name)
+            solids = solids_of_unit(unit, bore, scene.mesh)
+            ring = solids.pop(bearing.name)
+            if bearing.name not in self._on_shaft:
+                solids[bearing.name] = ring
+            added = np.zeros((6, 3))
+            for part, solid in solids.items():
+                arm = np.array(solid.centre) - [bearing.x, 0.0, 0.0]
+                mass = scene.material_of(part).density * solid.volume
+                added += mass * wrench_transport(arm)[:, :3]
+            found[bearing.name] = found[bearing.name].copy()
+            found[bearing.name][:, 6:9] += added
+        return found
+
+    def __getitem__(self, name: str) -> Floats:
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._bare)
+
+    def __len__(self) -> int:
+        return len(self._bare)
 
 
 def _unit_loads(scene: Scene, body: Condensed) -> Floats:
