@@ -25,7 +25,7 @@ from fe_drivetrain.hub_loads import (
 )
 from fe_drivetrain.report import rounded, trace
 from fe_drivetrain.scene import Scene
-from fe_drivetrain.suite import Jobs, Page, Run
+from fe_drivetrain.suite import Jobs, Page, Run, RunJob
 
 #: Seeds of each group under --quick: the least that has a standard deviation.
 QUICK_SEEDS = 2
@@ -107,24 +107,30 @@ def skip_of(run: Run) -> float:
     return float(skip)
 
 
-def surrogate_hub_loads(run: Run, jobs: Jobs) -> HubLoads:
-    """Made hub loads; those that were not made before are made side by side."""
+def start_surrogate(run: Run, jobs: Jobs) -> list[RunJob[None]]:
+    """Make those hub loads that were not made before, beside everything else."""
+    groups: dict[float, list[Condition]] = {}
+    for condition in not_kept(_grid(run)):
+        groups.setdefault(condition.wind_speed, []).append(condition)
+    return [jobs.start(_make, wind_speed, group) for wind_speed, group in groups.items()]
+
+
+def _grid(run: Run) -> list[Condition]:
+    return [c for c in surrogate_grid() if not run.quick or c.seed <= QUICK_SEEDS]
+
+
+def surrogate_hub_loads(run: Run, making: Sequence[RunJob[None]]) -> HubLoads:
+    """Made hub loads, where `start_surrogate` has begun to make them."""
     grid_of = "a" if "scene" in run.settings else "the thesis's"
     stand_in = "" if "scene" in run.settings else f" {_STAND_IN}"
-    grid = surrogate_grid()
-    if run.quick:
-        grid = [c for c in grid if c.seed <= QUICK_SEEDS]
-    groups: dict[float, list[Condition]] = {}
-    for condition in not_kept(grid):
-        groups.setdefault(condition.wind_speed, []).append(condition)
-    making = [jobs.start(_make, wind_speed, group) for wind_speed, group in groups.items()]
+    grid = _grid(run)
     for job in making:
         job.result()
     with run.step("hub loads") as step:
         histories = hub_load_set(
             grid, progress=lambda done, of: run.report(f"hub loads ({done} of {of})")
         )
-        if not groups and user_cache().folder is not None:
+        if not making and user_cache().folder is not None:
             step.name += ", from the cache"
     return HubLoads(
         np.broadcast_to(histories.time, histories.loads.shape[:2]),

@@ -201,6 +201,8 @@ def run(run: Run, page: Page) -> None:
         solving = jobs.start(
             study.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"
         )
+        # beside the first solid, which compiles loops: two at once would compile each of them twice
+        making = loads.start_surrogate(run, jobs) if given is None else []
         meshed = study.mesh_of(run, bonded_scene, "bonded")
         solving_bonded = jobs.start(
             study.solve_and_write, bonded_scene, "bonded", meshed, "mesh_bonded"
@@ -208,7 +210,7 @@ def run(run: Run, page: Page) -> None:
         tilting = jobs.start(study.solve_tilt, bonded_scene, "bonded, no gearbox", meshed)
         coarser = bands.start(jobs, spherical_scene, "spherical")
         coarser_bonded = bands.start(jobs, bonded_scene, "bonded", tilted=True)
-        hub = loads.surrogate_hub_loads(run, jobs) if given is None else given
+        hub = loads.surrogate_hub_loads(run, making) if given is None else given
         spherical = solving.result()
         mean_load = np.zeros(10)
         mean_load[:6] = hub.loads.mean(axis=(0, 1))
