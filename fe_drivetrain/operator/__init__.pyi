@@ -1,5 +1,6 @@
 from .elasticity import Pattern as Pattern
 from .elasticity import assemble as assemble
+from .elasticity import assemble_materials as assemble_materials
 from .elasticity import sparsity as sparsity
 from .element_loops import is_straight as is_straight
 from .loads import Traction as Traction

@@ -5,6 +5,7 @@ element adds its blocks in place. Tetrahedra with straight edges take one refere
 curved ones are integrated. Checked against scikit-fem's generic assembly in the tests.
 """
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -13,7 +14,7 @@ from numba import get_num_threads
 from numpy.typing import NDArray
 from scipy import sparse
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import element_kind
 from fe_drivetrain.operator import element_loops
@@ -91,24 +92,63 @@ def assemble(
     InputError
         A cell has a node that there is not.
     """
+    everywhere = np.ones(len(cells), dtype=bool)
+    return assemble_materials(points, cells, [(everywhere, lame)], n_dofs, pattern)
+
+
+def assemble_materials(
+    points: Floats,
+    cells: Ints,
+    materials: Sequence[tuple[Bools, tuple[float, float]]],
+    n_dofs: int | None = None,
+    pattern: Pattern | None = None,
+    others: sparse.bsr_array | None = None,
+) -> sparse.bsr_array:
+    """The sum of `assemble` over elements of several materials, with one sparsity.
+
+    Parameters
+    ----------
+    points, cells, n_dofs, pattern : Floats, Ints, int or None, Pattern or None
+        As of `assemble`.
+    materials : Sequence[tuple[Bools, tuple[float, float]]]
+        Which elements are of each, (n_cells,), and its Lame's constants [Pa].
+    others : sparse.bsr_array or None
+        (n_dofs, n_dofs) in 3x3 blocks, added [N/m]: at little cost where all of its rows come after
+        those of the nodes.
+
+    Raises
+    ------
+    InputError
+        A cell has a node that there is not.
+    """
     check_nodes(cells, len(points))
     n_blocks = len(points) if n_dofs is None else n_dofs // 3
     kind = element_kind(cells.shape[1])
     pattern = pattern or sparsity(cells, n_blocks)
+    indptr, indices = pattern.indptr, pattern.indices
     nodes = np.ascontiguousarray(cells, dtype=np.int32)
+    last = None
+    if others is not None and others.indptr[len(points)] == 0:
+        last = others.sorted_indices()  # adding it afterwards would copy all
+        indptr = (indptr + last.indptr).astype(np.int32)
+        indices = np.concatenate([indices, last.indices.astype(np.int32)])
     # NumPy asks for large pages for `empty`, not for `zeros`, whose small ones cost a third of all
-    data = np.empty((len(pattern.indices), 3, 3))
+    data = np.empty((len(indices), 3, 3))
     # Gradients of straight tetrahedra are linear at most: a rule of degree 2 is exact.
     affine = np.full(len(cells), kind.name == "tetra")
     if kind.name == "tetra10":
         affine = element_loops.is_straight(points, nodes)
-    rules = ((affine, kind.table(2)), (~affine, kind.table(kind.degree)))
+    rules = [
+        (of & straight, rule, lame)
+        for of, lame in materials
+        for straight, rule in ((affine, kind.table(2)), (~affine, kind.table(kind.degree)))
+    ]
 
     def clear(some: Floats) -> None:
         some.fill(0.0)
 
     def add(some: Ints) -> None:
-        for of, rule in rules:
+        for of, rule, lame in rules:
             element_loops.add_elements(
                 points, nodes, some[of[some]], *rule, *lame, pattern.slots, data
             )
@@ -117,6 +157,7 @@ def assemble(
         list(pool.map(clear, np.array_split(data, get_num_threads())))
         for parts in slabs(points, cells[:, : kind.n_corners]):
             list(pool.map(add, parts))
-    return sparse.bsr_array(
-        (data, pattern.indices, pattern.indptr), shape=(3 * n_blocks, 3 * n_blocks)
-    )
+    if last is not None:
+        data[len(pattern.indices) :] = last.data
+    total = sparse.bsr_array((data, indices, indptr), shape=(3 * n_blocks, 3 * n_blocks))
+    return total if others is None or last is not None else total + others

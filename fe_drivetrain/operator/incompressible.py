@@ -15,13 +15,14 @@ Tetrahedra of four nodes have a constant dilatation already, and no remedy in it
 alone, tetrahedra of 10 nodes lose an order of accuracy: away from nu = 1/2 they are better plain.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy import sparse
 from skfem.quadrature import get_quadrature
 
-from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
+from fe_drivetrain.common.arrays import CHUNK, Bools, Floats, Ints, chunks
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.numbering import check_nodes
 from fe_drivetrain.mesh.shapes import ElementKind, element_kind
 from fe_drivetrain.operator import elasticity
 from fe_drivetrain.operator.elasticity import Pattern
@@ -56,13 +57,18 @@ def assemble(
     InputError
         The elements are tetrahedra of four nodes.
     """
-    check_nodes(cells, len(points))
-    size = 3 * len(points) if n_dofs is None else n_dofs
+    plain = elasticity.assemble(points, cells, (0.0, lame[1]), n_dofs, pattern)
+    return _with_averaged(plain, points, cells, lame[0])
+
+
+def _with_averaged(
+    K: sparse.bsr_array, points: Floats, cells: Ints, factor: float
+) -> sparse.bsr_array:
+    """A stiffness and that of averaged dilatations."""
     rows = np.concatenate(
         [_projected(points, cells[chunk])[0] for chunk in chunks(len(cells), CHUNK // 4)]
     )
-    plain = elasticity.assemble(points, cells, (0.0, lame[1]), n_dofs, pattern)
-    return plus_products(plain, lame[0], rows, cells, size)
+    return plus_products(K, factor, rows, cells, K.shape[0])
 
 
 def poisson_ratio(lame: tuple[float, float]) -> float:
@@ -77,6 +83,36 @@ def assemble_unlocked(
     """`elasticity.assemble` below `AVERAGED_FROM`, and `assemble` from there on."""
     averaged = poisson_ratio(lame) >= AVERAGED_FROM
     return (assemble if averaged else elasticity.assemble)(points, cells, lame, n_dofs)
+
+
+def assemble_materials(
+    points: Floats,
+    cells: Ints,
+    materials: Sequence[tuple[Bools, tuple[float, float]]],
+    n_dofs: int | None = None,
+    others: sparse.bsr_array | None = None,
+) -> sparse.bsr_array:
+    """The sum of `assemble_unlocked` over elements of several materials.
+
+    Parameters
+    ----------
+    points, cells, n_dofs : Floats, Ints, int or None
+        As of `assemble`.
+    materials : Sequence[tuple[Bools, tuple[float, float]]]
+        Which elements are of each, (n_cells,), and its Lame's constants [Pa].
+    others : sparse.bsr_array or None
+        (n_dofs, n_dofs) in 3x3 blocks, added [N/m].
+    """
+    averaged = [poisson_ratio(lame) >= AVERAGED_FROM for _, lame in materials]
+    plain = [
+        (some, (0.0, lame[1]) if projects else lame)
+        for (some, lame), projects in zip(materials, averaged, strict=True)
+    ]
+    K = elasticity.assemble_materials(points, cells, plain, n_dofs, others=others)
+    for (some, lame), projects in zip(materials, averaged, strict=True):
+        if projects:
+            K = _with_averaged(K, points, cells[some], lame[0])
+    return K
 
 
 def warn_of_averaging(part: str, lame: tuple[float, float]) -> tuple[str, ...]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -41,22 +40,13 @@ def load(problem: Problem) -> Problem:
 
 def assembled(problem: Problem, pattern: Pattern) -> sparse.bsr_array:
     """The stiffness of all materials in one pattern."""
-    from fe_drivetrain.operator import assemble
+    from fe_drivetrain.operator import assemble_materials
 
-    K: Any = None
-    for number, lame in enumerate(zip(*problem.lame(), strict=True)):
-        chosen = problem.material == number
-        part = assemble(
-            problem.points,
-            problem.cells[chosen],
-            lame,
-            pattern=replace(pattern, slots=pattern.slots[chosen]),
-        )
-        if K is None:
-            K = part
-        else:
-            K.data += part.data
-    return K
+    materials = [
+        (problem.material == number, lame)
+        for number, lame in enumerate(zip(*problem.lame(), strict=True))
+    ]
+    return assemble_materials(problem.points, problem.cells, materials, pattern=pattern)
 
 
 def solve(problem: Problem, variant: str, clock: Clock) -> list[float]:

@@ -28,7 +28,11 @@ from fe_drivetrain.mesh.checks import refuse_unsound
 from fe_drivetrain.mesh.facets import MEANS, face_weights, volume_weights
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.side_by_side import beside, renamed
-from fe_drivetrain.operator.incompressible import assemble_unlocked, warn_of_averaging
+from fe_drivetrain.operator.incompressible import (
+    assemble_materials,
+    assemble_unlocked,
+    warn_of_averaging,
+)
 from fe_drivetrain.response.foot_contact import foot_holds, is_clamped
 from fe_drivetrain.scene.bearing_unit import BearingUnit, Springs
 from fe_drivetrain.scene.joint_springs import as_numbers
@@ -116,11 +120,14 @@ class Model:
     @property
     def stiffness(self) -> sparse.bsr_array:
         """Stiffness of all parts and springs, before any constraint [N/m]."""
-        total = sum(self.part_stiffness.values())
+        springs: sparse.bsr_array | None = None
         for point, k in self.springs:
-            spring = point.motion.T @ sparse.csr_array(k) @ point.motion
-            total = total + spring.tobsr((3, 3))
-        return total
+            spring = (point.motion.T @ sparse.csr_array(k) @ point.motion).tobsr((3, 3))
+            springs = spring if springs is None else springs + spring
+        if isinstance(self.part_stiffness, PartStiffness):
+            return self.part_stiffness.together(springs)
+        total = sum(self.part_stiffness.values())
+        return total if springs is None else total + springs
 
     @property
     def mass(self) -> Floats:
@@ -149,7 +156,7 @@ class Model:
         return F
 
 
-class _PartStiffness(Mapping[str, sparse.bsr_array]):
+class PartStiffness(Mapping[str, sparse.bsr_array]):
     """Stiffness by part, assembled when it is first asked for: a kept solution needs none."""
 
     def __init__(self, scene: Scene, mesh: Mesh, n_dofs: int) -> None:
@@ -163,6 +170,15 @@ class _PartStiffness(Mapping[str, sparse.bsr_array]):
             lame = self._scene.material_of(part).lame
             self._known[part] = assemble_unlocked(mesh.points, cells, lame, self._n_dofs)
         return self._known[part]
+
+    def together(self, springs: sparse.bsr_array | None = None) -> sparse.bsr_array:
+        """Stiffness of all parts and of springs [N/m], assembled in one: a sum takes longer."""
+        mesh = self._mesh
+        materials = [
+            (mesh.part == number, self._scene.material_of(part).lame)
+            for number, part in enumerate(mesh.part_names)
+        ]
+        return assemble_materials(mesh.points, mesh.cells, materials, self._n_dofs, springs)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._mesh.part_names)
@@ -320,7 +336,7 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     return Model(
         scene,
         mesh,
-        _PartStiffness(scene, mesh, n_dofs),
+        PartStiffness(scene, mesh, n_dofs),
         part_mass,
         points,
         tuple(conditions),

@@ -14,6 +14,7 @@ from fe_drivetrain.interfaces.constraints import dofs
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.plots.figures import load_bars
 from fe_drivetrain.response.model import LOADS, Model, stood_on
+from fe_drivetrain.response.part_forces import part_forces
 from fe_drivetrain.response.prepared import prepared
 from fe_drivetrain.solve.solvers import Diagnostics
 
@@ -171,8 +172,10 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         if str(error) == SINGULAR and model.warnings:
             raise InputError(f"{SINGULAR}: {'; '.join(model.warnings)}") from error
         raise
-    multipliers = ready.elimination.multipliers(kernels.product(ready.stiffness, U) - F)
-    reactions = _reactions(model, multipliers, U, cases)
+    internal = kernels.product(ready.stiffness, U)
+    multipliers = ready.elimination.multipliers(internal - F)
+    forces = part_forces(model, U, internal)
+    reactions = _reactions(model, multipliers, forces, U, cases)
 
     direct = np.concatenate([r[:, -1] for r in reactions.values()])
     superposed = np.concatenate([r[:, :-1] @ factors for r in reactions.values()])
@@ -191,7 +194,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         reactions=reactions,
         positions=positions,
         motions={name: point.motion @ U for name, point in model.points.items()},
-        strain_energy={part: U.T @ (k @ U) for part, k in model.part_stiffness.items()},
+        strain_energy={part: U.T @ inner[:, :-1] for part, inner in forces.items()},
         displacements=U[: 3 * n].reshape(n, 3, n_loads),
         equilibrium_error=_equilibrium_error(model, reactions, positions),
         superposition_error=float(np.abs(direct - superposed).max() / np.abs(direct).max()),
@@ -200,7 +203,11 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
 
 
 def _reactions(
-    model: Model, multipliers: Mapping[str, Floats], U: Floats, cases: Floats
+    model: Model,
+    multipliers: Mapping[str, Floats],
+    internal: Mapping[str, Floats],
+    U: Floats,
+    cases: Floats,
 ) -> dict[str, Floats]:
     """Reactions from the residual on constrained degrees of freedom; never from stresses."""
     mesh = model.mesh
@@ -211,7 +218,7 @@ def _reactions(
         standing = model.standing(name)
         if name in model.scene.guests:  # less than its parts' own, which carries it
             part, faces = f"{name}.housing", stood_on(model.scene, name)
-            forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
+            forces = internal[part] - model.part_loads(part) @ cases
             nodes = np.unique(np.concatenate([mesh.face_nodes(face) for face in faces]))
             reactions[name] = -resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
         elif not standing:
@@ -231,7 +238,7 @@ def _reactions(
             reactions[f"{name}.outer"] = reactions[name]
         for key, part, face in parts:
             # What a part's neighbour puts on it: its internal forces less the loads inside it.
-            forces = model.part_stiffness[part] @ U - model.part_loads(part) @ cases
+            forces = internal[part] - model.part_loads(part) @ cases
             nodes = mesh.face_nodes(face)
             reactions[key] = resultant(mesh.points[nodes], forces[dofs(nodes)], centre)
     for owner, *others in model.scene.coupled_units:

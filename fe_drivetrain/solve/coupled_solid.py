@@ -21,7 +21,7 @@ from fe_drivetrain.mesh.facets import MEANS, face_weights
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.operator.elements import check_elements
-from fe_drivetrain.operator.incompressible import assemble_unlocked
+from fe_drivetrain.operator.incompressible import assemble_materials
 from fe_drivetrain.operator.mass import mass_matrix
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.materials import Material
@@ -134,13 +134,12 @@ def assembled_parts(mesh: Mesh, materials: Mapping[str, Material]) -> sparse.bsr
     InputError
         A cell has a node that there is not, or is folded over.
     """
-    cells = [mesh.cells[mesh.part_cells(part)] for part in materials]
-    for some in cells:
-        check_elements(mesh.points, some)
-    return sum(
-        assemble_unlocked(mesh.points, some, material.lame)
-        for some, material in zip(cells, materials.values(), strict=True)
-    )
+    chosen = [mesh.part_cells(part) for part in materials]
+    cells = mesh.cells[np.concatenate(chosen)]
+    check_elements(mesh.points, cells)
+    owner = np.repeat(np.arange(len(chosen)), [len(some) for some in chosen])
+    of_parts = [(owner == k, material.lame) for k, material in enumerate(materials.values())]
+    return assemble_materials(mesh.points, cells, of_parts)
 
 
 def coupled_solid(
