@@ -8,13 +8,17 @@ average.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.made_by import program_hash
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.threads import cores
 from fe_drivetrain.fidelity.adviser import Advice, LevelResult, Quantity, advise
 from fe_drivetrain.fidelity.quantities import (
     Number,
@@ -26,9 +30,14 @@ from fe_drivetrain.fidelity.quantities import (
 )
 from fe_drivetrain.fidelity.shafts import condensed_shaft, meridian_shaft
 from fe_drivetrain.response.makers import solved_by
-from fe_drivetrain.scene.scene import Coupling, Scene
+from fe_drivetrain.scene.scene import Coupling, Scene, Spread
 from fe_drivetrain.uncertainty.resolver import Resolver
-from fe_drivetrain.uncertainty.response_surface import UnitSurface, touching, unit_surface
+from fe_drivetrain.uncertainty.response_surface import (
+    UnitSurface,
+    surface_scenes,
+    touching,
+    unit_surface,
+)
 from fe_drivetrain.uncertainty.sampling import (
     Samples,
     Shares,
@@ -47,7 +56,6 @@ DEFAULT = "hub.stiffness.uz"
 _BOUNDS: tuple[Coupling, Coupling] = ("rigid", "averaged")
 _SOFT = "soft "
 
-_Progress = Callable[[str], object]
 _T = TypeVar("_T")
 
 
@@ -119,7 +127,7 @@ def study(
     count: int = 128,
     seed: int = 0,
     sobol: int = 0,
-    report: _Progress = lambda step: None,
+    report: Progress = silent,
 ) -> Study:
     """Propagate a scene's uncertain values to what is reported of it.
 
@@ -141,7 +149,7 @@ def study(
         Of the Latin hypercube.
     sobol : int
         Base samples of Sobol's shares, a power of two; none for 0.
-    report : _Progress
+    report : Progress
         Called with what is being done.
 
     Raises
@@ -155,22 +163,36 @@ def study(
     stiffnesses = numbers(scene, [n for n in stiffness_names(scene) if n not in asked])
     wanted = numbers(scene, asked, load)
     solver = Resolver(LEVELS[0] if level is None else level)
-    report("nominal values")
-    wanted = without_zeros(wanted, solver(scene))  # before anything that takes long
-    advices: list[Advice] = []
-    if level is None:
-        advices, level = _advised(scene, asked, load, tolerance, report)
-        if level != solver.level:
-            solver = Resolver(level, springs=solver.springs)
-    solved = solver(scene)
-    found = [*wanted, *(n for n in stiffnesses if n.of(solved) > 0.0)]
+    touched = {
+        unit.bearing.name: _touching(scene, unit.bearing.name) for unit in scene.bearing_units
+    }
+    designs = {n: surface_scenes(scene, some, seed) for n, some in touched.items() if some}
     surfaces = []
     bounds = []
-    for coupling in _BOUNDS:
-        exact = replace(solver, coupling=coupling, units={})
-        known = _surfaces(scene, exact, seed, report)
-        bounds.append(replace(exact, units={surface.name: surface for surface in known}))
-        surfaces += known
+    # bearing units do not depend on the level: they are solved beside the ladders that select it
+    with pool(min(cores(), 1 + sum(map(len, designs.values()))), report) as workers:
+        report("nominal values")
+        for name, scenes in designs.items():
+            solver.solve_ahead(scenes[:1], name, workers)  # which the first answer waits for
+        ladders = [] if level is not None else _ladders(scene, asked, load, tolerance, workers)
+        for name, scenes in designs.items():
+            solver.solve_ahead(scenes, name, workers)
+        wanted = without_zeros(wanted, solver(scene))  # before anything that takes long
+        report("levels, beside bearing units")
+        advices = [ladder.result() for ladder in ladders]
+        if level is None:
+            level = _enough(advices, tolerance)
+        if level != solver.level:
+            solver = replace(solver, level=level, bodies={})
+        solved = solver(scene)
+        for coupling in _BOUNDS:
+            exact = replace(solver, coupling=coupling, units={})
+            known = [
+                unit_surface(scene, name, touched[name], exact, seed, report) for name in designs
+            ]
+            bounds.append(replace(exact, units={surface.name: surface for surface in known}))
+            surfaces += known
+    found = [*wanted, *(n for n in stiffnesses if n.of(solved) > 0.0)]
     of_housings = [n for n in found if not n.name.startswith("shaft.")]
 
     def evaluate(changed: Scene) -> dict[str, float]:
@@ -209,15 +231,9 @@ def study(
     )
 
 
-def _surfaces(scene: Scene, solver: Resolver, seed: int, report: _Progress) -> list[UnitSurface]:
-    """Of each bearing unit that depends on uncertain values."""
-    found = []
-    for unit in scene.bearing_units:
-        keys = touching(scene, unit.bearing.name, list(scene.uncertainty))
-        if keys:
-            spreads = {key: scene.uncertainty[key] for key in keys}
-            found.append(unit_surface(scene, unit.bearing.name, spreads, solver, seed, report))
-    return found
+def _touching(scene: Scene, name: str) -> dict[str, Spread]:
+    """Spreads of those values that a bearing unit depends on."""
+    return {key: scene.uncertainty[key] for key in touching(scene, name, list(scene.uncertainty))}
 
 
 def _soft(values: Mapping[str, _T]) -> dict[str, _T]:
@@ -234,18 +250,23 @@ def level_error(advice: Advice, level: int) -> float:
     return result_at(advice, level).error + advice.top.estimate
 
 
-def _advised(
-    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, report: _Progress
-) -> tuple[list[Advice], int]:
-    """The ladder of each quantity that has one, and the cheapest level that is enough for all."""
+def _ladders(
+    scene: Scene, asked: Sequence[str], load: Floats | None, tolerance: float, workers: Pool
+) -> list[Future[Advice]]:
+    """The ladder of each quantity that has one, on its way."""
     names = [name for name in asked if name.startswith("hub.") or name[-2] in "FM"] or [DEFAULT]
-    advices = [
-        advise(scene, Quantity(name, load), tolerance, True, report, shafts=LEVELS)
-        for name in names
-    ]
+    return [workers.start(_ladder, scene, Quantity(name, load), tolerance) for name in names]
+
+
+def _ladder(report: Progress, scene: Scene, quantity: Quantity, tolerance: float) -> Advice:
+    return advise(scene, quantity, tolerance, True, report, shafts=LEVELS)
+
+
+def _enough(advices: Sequence[Advice], tolerance: float) -> int:
+    """The cheapest level that is enough for all quantities."""
     worst = {level: max(level_error(advice, level) for advice in advices) for level in LEVELS}
     enough = [level for level in LEVELS if worst[level] <= tolerance]
-    return advices, enough[0] if enough else min(worst, key=lambda level: worst[level])
+    return enough[0] if enough else min(worst, key=lambda level: worst[level])
 
 
 def _errors(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.jobs import mapped
+from fe_drivetrain.common.jobs import Pool, pool
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.threads import cores
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness, unit_stiffnesses
@@ -62,6 +63,8 @@ class Resolver:
         Of the units' faces, where solved.
     springs, bodies : dict[str, Floats], dict[str, tuple[float, Condensed]]
         What was solved before, by what it depends on; a body with the modulus that it had.
+    coming : dict[str, Future]
+        Both bounds of bearing units that are being solved, see `solve_ahead`.
     """
 
     level: int
@@ -69,6 +72,7 @@ class Resolver:
     coupling: Coupling = "rigid"
     springs: dict[str, Floats] = field(default_factory=dict, repr=False)
     bodies: dict[str, tuple[float, Condensed]] = field(default_factory=dict, repr=False)
+    coming: dict[str, Future[dict[Coupling, Floats]]] = field(default_factory=dict, repr=False)
 
     def __call__(self, scene: Scene) -> Solved:
         """The scene at that level.
@@ -88,15 +92,31 @@ class Resolver:
         known = self.units.get(name)
         if known is not None:
             return known(scene)
-        solve = partial(unit_stiffness, scene, name, coupling=self.coupling)
-        return _kept(self.springs, f"{self.coupling} {unit_content(scene, name)}", solve)
+        return self._kept_spring(scene, name)
+
+    def solve_ahead(self, scenes: Sequence[Scene], name: str, workers: Pool) -> None:
+        """Begin to solve a bearing unit in each of several scenes, beside everything else.
+
+        Both bounds are solved on each mesh. What asks for one waits for it.
+
+        Parameters
+        ----------
+        scenes : sequence of Scene
+            Which.
+        name : str
+            Of the bearing.
+        workers : Pool
+            Solves them, and stays until they are asked for.
+        """
+        for scene in scenes:
+            content = unit_content(scene, name)
+            if content not in self.coming and f"{self.coupling} {content}" not in self.springs:
+                self.coming[content] = workers.start(_unit_bounds, scene, name)
 
     def solve_springs(
         self, scenes: Sequence[Scene], name: str, report: Callable[[int], object]
     ) -> list[Floats]:
         """(6, 6) stiffness of a bearing unit in each of several scenes.
-
-        Both bounds are solved on each mesh: the other one is asked for next.
 
         Parameters
         ----------
@@ -107,22 +127,22 @@ class Resolver:
         report : callable
             Called with the number of a scene before its stiffness is there, the first being 1.
         """
-        contents = [unit_content(scene, name) for scene in scenes]
-        missing = {
-            content: scene
-            for content, scene in zip(contents, scenes, strict=True)
-            if f"{self.coupling} {content}" not in self.springs
-        }
-        # side by side, since most of the time goes into meshes, which take one core each; a process
-        # for a single one would take longer to start
-        items = ((scene, name) for scene in missing.values())
-        solved = mapped(_unit_bounds, items, min(cores(), len(missing)))
-        for number, content in enumerate(contents, 1):
-            report(number)
-            if f"{self.coupling} {content}" not in self.springs:
-                for coupling, stiffness in next(solved).items():
-                    self.springs[f"{coupling} {content}"] = stiffness
-        return [self.springs[f"{self.coupling} {content}"] for content in contents]
+        found = []
+        # side by side, since most of the time goes into meshes, which take one core each
+        with pool(min(cores(), len(scenes))) as workers:
+            self.solve_ahead(scenes, name, workers)
+            for number, scene in enumerate(scenes, 1):
+                report(number)
+                found.append(self._kept_spring(scene, name))
+        return found
+
+    def _kept_spring(self, scene: Scene, name: str) -> Floats:
+        content = unit_content(scene, name)
+        if (job := self.coming.pop(content, None)) is not None:
+            for coupling, stiffness in job.result().items():
+                self.springs[f"{coupling} {content}"] = stiffness
+        solve = partial(unit_stiffness, scene, name, coupling=self.coupling)
+        return _kept(self.springs, f"{self.coupling} {content}", solve)
 
     def _body(self, scene: Scene) -> Condensed:
         modulus = scene.material_of("shaft").youngs_modulus

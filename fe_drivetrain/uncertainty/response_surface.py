@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -103,6 +104,56 @@ def touching(scene: Scene, name: str, keys: Sequence[str]) -> list[str]:
     return found
 
 
+class _Design(NamedTuple):
+    """Steps (2,) of the logarithm of each value, values moved so far, and values drawn."""
+
+    steps: list[Floats]
+    moves: list[dict[str, float]]
+    drawn: list[dict[str, float]]
+
+    def scenes(self, scene: Scene) -> list[Scene]:
+        """The nominal scene, and those with other values."""
+        return [with_values(scene, values) for values in [{}, *self.moves, *self.drawn]]
+
+
+def _design(scene: Scene, spreads: Mapping[str, Spread], seed: int) -> _Design:
+    """Where a surface of these values is solved."""
+    from scipy.stats import qmc
+
+    values = nominal_values(scene, list(spreads))
+    known = [distribution(s, v) for s, v in zip(spreads.values(), values, strict=True)]
+    steps = []
+    for value, spread in zip(values, known, strict=True):
+        low, high = (math.log(spread.ppf(q) / value) for q in (EDGE, 1.0 - EDGE))
+        steps.append(np.array([min(low, -LEAST_REACH), max(high, LEAST_REACH)]))
+    moves = [
+        {key: value * math.exp(step)}
+        for key, value, t in zip(spreads, values, steps, strict=True)
+        for step in t
+    ]
+    drawn = [
+        {key: float(spread.ppf(q)) for key, spread, q in zip(spreads, known, row, strict=True)}
+        for row in qmc.LatinHypercube(d=len(spreads), rng=seed).random(CHECKS)
+    ]
+    return _Design(steps, moves, drawn)
+
+
+def surface_scenes(scene: Scene, spreads: Mapping[str, Spread], seed: int = 0) -> list[Scene]:
+    """All scenes in which `unit_surface` solves a bearing unit, for whoever begins beforehand.
+
+    Parameters
+    ----------
+    scene, spreads, seed : Scene, Mapping[str, Spread], int
+        As of `unit_surface`.
+
+    Raises
+    ------
+    InputError
+        A value within the spread does not give a valid scene.
+    """
+    return _design(scene, spreads, seed).scenes(scene)
+
+
 def unit_surface(
     scene: Scene,
     name: str,
@@ -131,28 +182,14 @@ def unit_surface(
     InputError
         A value within the spread does not give a valid scene.
     """
-    from scipy.stats import qmc
-
     keys = tuple(spreads)
     nominal = np.array(nominal_values(scene, keys))
-    known = [distribution(s, v) for s, v in zip(spreads.values(), nominal.tolist(), strict=True)]
-    steps = []
-    for value, spread in zip(nominal.tolist(), known, strict=True):
-        low, high = (math.log(spread.ppf(q) / value) for q in (EDGE, 1.0 - EDGE))
-        steps.append(np.array([min(low, -LEAST_REACH), max(high, LEAST_REACH)]))
-    moves = [
-        {key: value * math.exp(step)}
-        for key, value, t in zip(keys, nominal.tolist(), steps, strict=True)
-        for step in t
-    ]
-    drawn = [
-        {key: float(spread.ppf(q)) for key, spread, q in zip(keys, known, row, strict=True)}
-        for row in qmc.LatinHypercube(d=len(keys), rng=seed).random(CHECKS)
-    ]
+    design = _design(scene, spreads, seed)
+    steps, moves, drawn = design
     count = 1 + len(moves) + len(drawn)
     face = "in shape" if resolver.coupling == "rigid" else "on average"
     solved = resolver.solve_springs(
-        [with_values(scene, values) for values in [{}, *moves, *drawn]],
+        design.scenes(scene),
         name,
         lambda number: report(f"stiffness of {name}, face {face} ({number} of {count})"),
     )
