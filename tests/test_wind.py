@@ -131,7 +131,7 @@ def test_formulas_agree_with_pyconturb() -> None:
 
 
 def test_factors_give_the_iec_cross_spectrum_of_every_pair_of_nodes(disc: DiscTurbulence) -> None:
-    factors = disc.factors.astype(float)
+    factors = np.moveaxis(disc.factors, -1, 1).astype(float)
     spectra = factors @ factors.swapaxes(-1, -2)
     frequency = np.arange(1, factors.shape[1] + 1) / DURATION
     power = spectra[:, :, 0, 0].sum(axis=0)  # at any one point: what the coherence is relative to
@@ -148,13 +148,25 @@ def test_factors_give_the_iec_cross_spectrum_of_every_pair_of_nodes(disc: DiscTu
 @pytest.mark.parametrize("duration", [60.0, 60.1])
 def test_variance_of_a_point_is_whole_for_short_records_too(duration: float) -> None:
     disc = disc_turbulence(RADIUS, 3, SPEED, LENGTH, LENGTH, duration, RATE)
-    factors = disc.factors.astype(float)
+    factors = np.moveaxis(disc.factors, -1, 1).astype(float)
     spectra = np.einsum("mfij,mfij->fi", factors, factors)
     # A line (n / 2) a (p + i q) of the transform is a wave of variance a^2.
     variance = (spectra / (0.5 * disc.samples) ** 2).sum(axis=0)
     np.testing.assert_allclose(
         variance, kaimal_variance_below(RATE / 2.0, SPEED, LENGTH), rtol=1e-5
     )
+
+
+def test_lines_of_a_field_are_factors_times_independent_numbers(disc: DiscTurbulence) -> None:
+    factors = np.moveaxis(disc.factors, -1, 1)
+    lines = factors.shape[1]
+    shape = (2 * HARMONICS + 1, lines, len(RADIUS), 2)
+    noise = np.random.default_rng(7).standard_normal(shape, dtype=np.float32)
+    drawn = np.fft.rfft(disc.draw(np.random.default_rng(7)), axis=-1)[..., 1 : lines + 1]
+    of_rows = factors[[*range(HARMONICS + 1), *range(1, HARMONICS + 1)]].astype(float)
+    expected = of_rows @ (noise[..., 0] + 1j * noise[..., 1])[..., None]
+    found = np.moveaxis(drawn, -1, 1)
+    np.testing.assert_allclose(found, expected[..., 0], atol=1e-5 * np.abs(expected).max())
 
 
 # --- the drawn field, statistically --------------------------------------------------------------

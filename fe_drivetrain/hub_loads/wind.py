@@ -118,7 +118,7 @@ class DiscTurbulence:
         Rings of the disc.
     samples, rate : int, float
         Length n of a history and its samples a second [Hz].
-    factors : (M + 1, k, r, r)
+    factors : (M + 1, r, r, k)
         For each azimuth harmonic and frequency line, the lower Cholesky factor of the rings'
         cross-spectral matrix, scaled so that the inverse real FFT gives unit variance at a point.
     """
@@ -139,14 +139,19 @@ class DiscTurbulence:
         Row 0 is the mean around each ring, rows 1..M the cosine and M+1..2M the sine coefficients.
         The history is periodic: its end runs on into its beginning.
         """
-        m, lines, rings = self.harmonics, self.factors.shape[1], self.radius.size
+        m, lines, rings = self.harmonics, self.factors.shape[-1], self.radius.size
         # Single precision: seven digits are far more than a random field needs, at half the cost.
         noise = generator.standard_normal((2 * m + 1, lines, rings, 2), dtype=np.float32)
         lines_out = np.zeros((2 * m + 1, rings, self.samples // 2 + 1), dtype=np.complex64)
         for row in range(2 * m + 1):
-            harmonic = row if row <= m else row - m
-            correlated = (self.factors[harmonic] @ noise[row]).view(np.complex64)[..., 0]
-            lines_out[row, :, 1 : lines + 1] = correlated.T
+            factor = self.factors[row if row <= m else row - m]
+            # all lines at once: a product of small matrices for each takes three times as long
+            drawn = np.ascontiguousarray(np.moveaxis(noise[row], 0, -1))
+            correlated = factor[:, 0, None] * drawn[0]
+            for ring in range(1, rings):
+                correlated[ring:] += factor[ring:, ring, None] * drawn[ring]
+            of_row = lines_out[row, :, 1 : lines + 1]
+            of_row.real, of_row.imag = correlated[:, 0], correlated[:, 1]
         return np.asarray(scipy.fft.irfft(lines_out, n=self.samples, axis=-1))
 
 
@@ -203,11 +208,12 @@ def disc_turbulence(
     # A line of variance v is sqrt(v) (p cos - q sin) with p, q standard normal, and irfft makes
     # that from (n / 2) sqrt(v) (p + i q).
     amplitude = 0.5 * samples * np.sqrt(variance)
-    factors = np.empty((harmonics + 1, frequency.size, r.size, r.size), dtype=np.float32)
+    factors = np.empty((harmonics + 1, r.size, r.size, frequency.size), dtype=np.float32)
     for lines in np.array_split(np.arange(frequency.size), max(1, frequency.size // 500)):
         coherence = np.exp(-decay[lines, None, None, None] * distance)
         spectra = np.moveaxis(coherence @ transform, -1, 0)
-        factors[:, lines] = np.linalg.cholesky(spectra) * amplitude[lines, None, None]
+        lower = np.linalg.cholesky(spectra) * amplitude[lines, None, None]
+        factors[..., lines] = np.moveaxis(lower, 1, -1)
     return DiscTurbulence(r, samples, rate, factors)
 
 
