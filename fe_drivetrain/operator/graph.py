@@ -29,14 +29,25 @@ def distances(indptr: Index, indices: Index, start: int) -> Index:
     return steps
 
 
-@njit(cache=True, parallel=True)
 def places(
     indptr: Index, indices: Index, rows: NDArray[np.int64], columns: NDArray[np.int64]
 ) -> NDArray[np.int64]:
     """Where the blocks of some rows and columns stand in ``data``; -1 where there are none."""
+    # NumPy makes the array out here: in a compiled loop that takes longer to compile
     found = np.full(len(rows), -1, np.int64)
+    _find_places(indptr, indices, rows, columns, found)
+    return found
+
+
+@njit(cache=True, parallel=True)
+def _find_places(
+    indptr: Index,
+    indices: Index,
+    rows: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    found: NDArray[np.int64],
+) -> None:
     for k in prange(len(rows)):
         for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
             if indices[p] == columns[k]:
                 found[k] = p
-    return found

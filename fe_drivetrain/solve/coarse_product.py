@@ -39,11 +39,14 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     pieces = np.linspace(0, n // 3, _PIECES + 1).astype(np.int64)
     indptr = np.zeros(n // 3 + 1, dtype=np.int32)
     patterns = back.indptr, back.indices, K.indptr, K.indices, forwards.indptr, forwards.indices
-    _count(*patterns, pieces, indptr[1:])
+    # NumPy makes the array out here: in a compiled loop that takes longer to compile
+    markers = np.full((_PIECES, n // 3), -1, dtype=np.int64)
+    _count(*patterns, pieces, markers, indptr[1:])
     np.cumsum(indptr, out=indptr)
+    markers[:] = -1
     indices, data = np.empty(indptr[-1], dtype=np.int32), np.zeros((indptr[-1], 3, 3))
     values = back.data, back.factors, K.data.ravel(), forwards.data, forwards.factors
-    _fill(*patterns, pieces, *values, indptr, indices, data.ravel())
+    _fill(*patterns, pieces, markers, *values, indptr, indices, data.ravel())
     coarse = sparse.bsr_array((data, indices, indptr), shape=(n, n))
     coarse.has_sorted_indices = False
     coarse.sort_indices()
@@ -72,11 +75,12 @@ def _count(
     Pptr: Index,
     Pind: Index,
     pieces: NDArray[np.int64],
+    markers: NDArray[np.int64],
     counts: Index,
 ) -> None:
     """Number of blocks in each coarse row."""
     for piece in prange(len(pieces) - 1):
-        seen = np.full(len(Rptr) - 1, -1, np.int32)
+        seen = markers[piece]
         for a in range(pieces[piece], pieces[piece + 1]):
             count = 0
             for s in range(Rptr[a], Rptr[a + 1]):
@@ -99,6 +103,7 @@ def _fill(
     Pptr: Index,
     Pind: Index,
     pieces: NDArray[np.int64],
+    markers: NDArray[np.int64],
     R: Floats,
     to: Floats,
     K: Floats,
@@ -110,7 +115,7 @@ def _fill(
 ) -> None:
     """Sum the blocks of each coarse row, in the order in which they are met."""
     for piece in prange(len(pieces) - 1):
-        place = np.full(len(Rptr) - 1, -1, np.int64)
+        place = markers[piece]
         for a in range(pieces[piece], pieces[piece + 1]):
             first = end = np.int64(indptr[a])
             for s in range(Rptr[a], Rptr[a + 1]):
