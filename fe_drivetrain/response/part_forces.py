@@ -29,25 +29,27 @@ def part_forces(model: Model, U: Floats, forces: Floats) -> dict[str, Floats]:
         return {part: k @ U for part, k in model.part_stiffness.items()}
     mesh, n = model.mesh, len(model.mesh.points)
     parts = {part: mesh.cells[mesh.part_cells(part)] for part in mesh.part_names}
-    owners = np.zeros(n, dtype=np.int64)
-    for cells in parts.values():
-        owners[np.unique(cells)] += 1
-    mixed = (owners > 1) | _held_by_springs(model)
-    found = {}
-    for part, cells in parts.items():
-        own = np.zeros(n, dtype=bool)
+    members = np.zeros((len(parts), n), dtype=bool)
+    for own, cells in zip(members, parts.values(), strict=True):
         own[cells] = True
+    mixed = (np.count_nonzero(members, axis=0) > 1) | _held_by_springs(model)
+    number = np.empty(n, dtype=np.int64)
+    found = {}
+    for own, (part, cells) in zip(members, parts.items(), strict=True):
         of_part = np.zeros_like(U)
         alone = dofs(np.flatnonzero(own & ~mixed))
         of_part[alone] = forces[alone]
         some = cells[mixed[cells].any(axis=1)]
         if len(some):
-            nodes, local = np.unique(some, return_inverse=True)
+            here = np.zeros(n, dtype=bool)
+            here[some] = True
+            nodes = np.flatnonzero(here)
+            number[nodes] = np.arange(len(nodes))
             lame = model.scene.material_of(part).lame
-            K = assemble_unlocked(mesh.points[nodes], local.reshape(some.shape), lame)
+            K = assemble_unlocked(mesh.points[nodes], number[some], lame)
             strained = kernels.product(K, U[dofs(nodes).ravel()])
-            here = mixed[nodes]
-            of_part[dofs(nodes[here])] = strained[dofs(np.flatnonzero(here))]
+            shared = mixed[nodes]
+            of_part[dofs(nodes[shared])] = strained[dofs(np.flatnonzero(shared))]
         found[part] = of_part
     return found
 
