@@ -211,6 +211,7 @@ class Page:
             measure=target.measure
             or MEASURES.get(unit)
             or ("identity" if not target.value else None),
+            basis=target.basis,
             band=band,
         )
 
