@@ -1,14 +1,12 @@
 """Thick curved bar, as of a hook, in bending and under an end force, against exact solutions."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation.curved_bars import bent_and_pulled, missed_at_surface
+from fe_drivetrain.validation.curved_bars import bent_and_pulled, curvature_of
+from fe_drivetrain.validation.loaded_blocks import fourth_power, within_surface
 from fe_drivetrain.validation.plane_rings import CURVED_BAR, CurvedBar, plane_strain
 from fe_drivetrain.validation.ring_solids import ring_sector
 
@@ -25,7 +23,7 @@ INSIDE, OUTSIDE = "bending: hoop stress inside [MPa]", "bending: hoop stress out
 PULLED = "force: hoop stress inside, t = 90 deg [MPa]"
 ENERGIES = [f"{load}: strain energy per width [J/m]" for load in ("bending", "force")]
 #: Hoop stresses that are judged: along the radius [MPa], and where; a force at t = 90 degrees.
-HOOP: dict[str, tuple[Callable[[Floats], Floats], float]] = {
+HOOP = {
     INSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, INNER),
     OUTSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, OUTER),
     PULLED: (lambda r: BAR.end_force(r, np.array(QUARTER), FORCE)[1] / 1e6, INNER),
@@ -57,12 +55,10 @@ def solve(n: int) -> Record:
 def target(key: str, within: float, h: float) -> Target:
     """One quantity, and what a finest mesh of elements of size h may miss of it."""
     if key not in HOOP:
-        why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
-        return Target(key, EXACT[key], within, why + "only there", CURVED_BAR)
-    miss = missed_at_surface(*HOOP[key], h, 1e-3 * INNER)
-    why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the Gauss "
-    why += "points misses at a surface; the element's own error is of that size"
-    return Target(key, EXACT[key], 4.0 * miss, why, CURVED_BAR, relative=False)
+        why = f"{fourth_power(h, INNER)}, and weighs only there"
+        return Target(key, EXACT[key], within, why, CURVED_BAR)
+    recovered = within_surface(curvature_of(*HOOP[key], 1e-3 * INNER), h)
+    return Target(key, EXACT[key], *recovered, CURVED_BAR, relative=False)
 
 
 @case(

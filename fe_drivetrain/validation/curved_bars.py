@@ -80,17 +80,15 @@ def bent_and_pulled(
     return BentAndPulled(bent, pulled, width, there[0], there[1], float(turned))
 
 
-def missed_at_surface(field: Callable[[Floats], Floats], r: float, h: float, step: float) -> float:
-    """What a linear field through the Gauss points misses at the surface, s'' h^2 / 12.
+def curvature_of(field: Callable[[Floats], Floats], r: float, step: float) -> float:
+    """Size of a field's second derivative, by a difference quotient.
 
     Parameters
     ----------
     field : Callable
-        Stress of (n,) radii [m].
-    r, h : float
-        Radius of the surface, and height of the element there [m].
-    step : float
-        Of the difference quotient for s'' [m].
+        Of (n,) radii [m].
+    r, step : float
+        Where, and how far the quotient reaches to both sides [m].
     """
     around = field(np.array([r - step, r, r + step]))
-    return float(abs(around[0] - 2.0 * around[1] + around[2]) / step**2 * h**2 / 12.0)
+    return float(abs(around[0] - 2.0 * around[1] + around[2]) / step**2)
