@@ -1,8 +1,11 @@
 """Thick curved bar, as of a hook, in bending and under an end force, against exact solutions."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation.curved_bars import bent_and_pulled, curvature_of
@@ -23,7 +26,7 @@ INSIDE, OUTSIDE = "bending: hoop stress inside [MPa]", "bending: hoop stress out
 PULLED = "force: hoop stress inside, t = 90 deg [MPa]"
 ENERGIES = [f"{load}: strain energy per width [J/m]" for load in ("bending", "force")]
 #: Hoop stresses that are judged: along the radius [MPa], and where; a force at t = 90 degrees.
-HOOP = {
+HOOP: dict[str, tuple[Callable[[Floats], Floats], float]] = {
     INSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, INNER),
     OUTSIDE: (lambda r: BAR.bending(r, MOMENT)[1] / 1e6, OUTER),
     PULLED: (lambda r: BAR.end_force(r, np.array(QUARTER), FORCE)[1] / 1e6, INNER),

@@ -496,3 +496,8 @@ class Page:
     def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
         """State a value that the sources do not give, and where it comes from."""
         self.assumptions.append(AssumptionRow(name=name, value=value, unit=unit, source=source))
+
+    def assume_all(self, rows: Iterable[tuple[str, Cell, str, str]]) -> None:
+        """State several such values, each as `assume` takes it."""
+        for row in rows:
+            self.assume(*row)
