@@ -1,10 +1,9 @@
 """Geometry and mesh stiffness of the NREL 5 MW reference gearbox against printed reports."""
 
-from math import degrees
-
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
 from fe_drivetrain.gear import (
     constant_law,
     iso_stiffness,
@@ -34,13 +33,9 @@ def run(run: Run, page: Page) -> None:
         found = run.timed(name, iso_stiffness, pair, blank=printed.blank)
         rows.append(
             {
-                "mesh": name,
-                "working angle [deg]": degrees(pair.working_angle),
-                "contact ratio": pair.transverse_ratio,
-                "overlap ratio": pair.overlap_ratio,
+                **mesh_row(name, pair),
                 "backlash [µm]": 1e6 * pair.backlash,
-                "c' [N/(mm µm)]": found.single / 1e9,
-                "c_gamma [N/(mm µm)]": found.mesh / 1e9,
+                **stiffness_row(found),
             }
         )
         for quantity, value, expected in (

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats
+from fe_drivetrain.mesh import Block
 from fe_drivetrain.scene import Material
 from fe_drivetrain.validation.loaded_blocks import LoadedBlock, face_loads, solve_block, supports
 from fe_drivetrain.validation.plane_rings import CurvedBar
@@ -42,6 +43,12 @@ class BentAndPulled:
     rotation: float
 
 
+def quarter_of(bar: CurvedBar, n: int) -> Block:
+    """Hexahedra of 27 nodes, n through the height, twice as many along the bar, one across."""
+    width = (bar.outer - bar.inner) / n
+    return ring_sector(bar.inner, bar.outer, width, 0.5 * np.pi, (n, 2 * n, 1))
+
+
 def bent_and_pulled(
     bar: CurvedBar, material: Material, moment: float, force: float, n: int
 ) -> BentAndPulled:
@@ -56,10 +63,10 @@ def bent_and_pulled(
     moment, force : float
         Per width [N] and [N/m].
     n : int
-        Hexahedra of 27 nodes through the height, twice as many along the bar, one across.
+        Hexahedra through the height, see `quarter_of`.
     """
     width, quarter = (bar.outer - bar.inner) / n, 0.5 * np.pi
-    block = ring_sector(bar.inner, bar.outer, width, quarter, (n, 2 * n, 1))
+    block = quarter_of(bar, n)
     here, there = (
         [node_at(block.points, [0.0, r * np.cos(t), r * np.sin(t)]) for r in (bar.inner, bar.outer)]
         for t in (0.0, quarter)
