@@ -206,7 +206,7 @@ def fourth_power(h: float, r: float) -> str:
     h, r : float
         Height of the finest mesh's elements at the bore, and its radius [m].
     """
-    return f"(h/r)^4, with h an element of the finest mesh at the bore, is {(h / r) ** 4:.0e}"
+    return f"(h/r)^4, with h an element of the finest mesh at the inside, is {(h / r) ** 4:.0e}"
 
 
 def within_surface(curvature: float, h: float) -> tuple[float, str]:
