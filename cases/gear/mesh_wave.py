@@ -45,9 +45,9 @@ def run(run: Run, page: Page) -> None:
         levels = (2.0, 1.0) if sign == PLUS else (2 * ratio - 1, 2 * ratio - 2)
         share = ratio - 1.0 if sign == PLUS else 2.0 - ratio
         for key, expected in zip(MEASURED, (*levels, share, ratio), strict=True):
-            exact = expected, 5e-3, jumps, mirrored, "", False, "identity"
             name = key.partition(" [")[0]
-            page.meets(row[key], Target(name, *exact), of=f"contact ratio {ratio:g}, {sign}")
+            target = Target(name, expected, 5e-3, jumps, mirrored, "", False, "identity")
+            page.meets(row[key], target, of=f"contact ratio {ratio:g}, {sign}")
     overshoot = float(square_wave_series(1.0, 1.5, ORDERS).at(np.arange(40000) / 40000).max()) - 2
     gibbs = 0.08949, 1e-3, "sampled at 40,000 phases", "Gibbs: Si(pi) / pi - 1/2"
     title = "overshoot of the series, over the jump"
