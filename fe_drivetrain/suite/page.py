@@ -208,9 +208,7 @@ class Page:
             tolerance=target.within,
             relative=target.relative and not zero,
             unit=unit,
-            measure=target.measure
-            or MEASURES.get(unit)
-            or ("identity" if not target.value else None),
+            measure=target.measure or MEASURES.get(unit) or ("identity" if zero else None),
             basis=target.basis,
             band=band,
         )
@@ -464,8 +462,6 @@ class Page:
     def data(self, name: str, value: Any) -> None:
         """Keep numbers for other programs in results.json, under a name with its unit."""
         self.figures[name] = as_json(value)
-
-    # the atlas, and what was assumed
 
     def limit(
         self,
