@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.scene.materials import Material
-from fe_drivetrain.validation.curved_bars import bent_and_pulled, missed_at_surface
+from fe_drivetrain.validation.curved_bars import bent_and_pulled, curvature_of
+from fe_drivetrain.validation.loaded_blocks import within_surface
 from fe_drivetrain.validation.plane_rings import CurvedBar, plane_strain
 
 
@@ -24,6 +25,13 @@ def test_a_bent_and_pulled_bar_turns_and_stores_what_theory_says():
 
 
 def test_a_parabola_misses_a_twelfth_of_its_second_derivative():
-    assert missed_at_surface(lambda r: 3.0 * r**2, 2.0, 0.1, 1e-3) == pytest.approx(
-        6.0 * 0.01 / 12.0
-    )
+    """At the end of an element of height h, of the line through its two Gauss points."""
+    second, h = curvature_of(lambda r: 3.0 * r**2, 2.0, 1e-3), 0.1
+    gauss = 2.0 + 0.5 * h * (1.0 + np.array([-1.0, 1.0]) / np.sqrt(3.0))
+    line = np.polynomial.Polynomial.fit(gauss, 3.0 * gauss**2, 1)
+    within, why = within_surface(second, h)
+    assert second == pytest.approx(6.0)
+    # the line through the points of a parabola 3 r^2 is wrong by 3 (h / 2)^2 (1 - 1/3)
+    assert within == pytest.approx(4.0 * 6.0 * h**2 / 12.0)
+    assert abs(line(2.0) - 12.0) <= within
+    assert "0.005 MPa" in why

@@ -24,8 +24,8 @@ FLOORS = (
     {"foreign", "solve"},
     {"beam", "response"},
     {"dynamics", "fidelity", "peers", "report", "rings"},
-    {"coupled", "export", "procedure", "suite", "uncertainty", "validation"},
-    {"commands"},
+    {"coupled", "export", "procedure", "suite", "uncertainty"},
+    {"commands", "validation"},
     {"cases"},
 )
 

@@ -14,6 +14,7 @@ from fe_drivetrain.validation.loaded_blocks import (
     edge_nodes,
     face_loads,
     graded,
+    line_of,
     solve_block,
     supports,
 )
@@ -61,6 +62,12 @@ def test_an_edge_runs_along_its_axis(bar: Block) -> None:
     assert np.all(edge[:, 1:] == [0.5, 0.0])
 
 
+def test_a_line_is_what_a_face_has_at_one_place(bar: Block) -> None:
+    line = bar.points[line_of(bar, "x1", 2, 0.25)]
+    assert np.all(line[:, [0, 2]] == [2.0, 0.25])
+    assert sorted(line[:, 1]) == pytest.approx([0.0, 0.25, 0.5])
+
+
 def test_a_bar_between_planes_of_symmetry_is_stretched_uniformly(bar: Block) -> None:
     F = face_loads(bar, x1=pressure(-1e8), y1=np.array([0.0, 0.0, 0.0]))
     assert F.reshape(-1, 3).sum(axis=0) == pytest.approx([0.25e8, 0.0, 0.0], abs=1.0)
@@ -76,6 +83,10 @@ def test_a_bar_between_planes_of_symmetry_is_stretched_uniformly(bar: Block) -> 
     transverse = -0.3 * strain * 0.5 * np.sqrt(2.0)
     assert found.polar_u[far] == pytest.approx([2.0 * strain, transverse, 0.0], rel=1e-9, abs=1e-12)
     assert found.energy == pytest.approx(0.5 * 1e8 * strain * 0.5, rel=1e-9)
+    # three planes of the 45 nodes are held, of 5, 9 and 3 times as many
+    assert found.unknowns == 3 * 45 - 9 - 15 - 15
+    assert found.load(0) == pytest.approx(0.25e8)
+    assert found.imbalance(0) == pytest.approx(0.0, abs=1e-9)
     with pytest.raises(ValueError, match="no node"):
         found.node(0.1, 0.0, 0.0)
 

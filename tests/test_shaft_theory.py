@@ -18,10 +18,12 @@ from fe_drivetrain.validation.shaft_theory import (
     flexure_stress,
     macaulay,
     michell_torque,
+    missed_at_held_edge,
     parabola_shortfall,
     pure_bending_field,
     rod_frequency,
     two_mass_frequencies,
+    within_arcs,
 )
 from fe_drivetrain.validation.solid_shafts import (
     on_springs,
@@ -195,6 +197,19 @@ def test_a_circle_of_parabolas_falls_short_as_the_formula_says():
 
     area = face_weights(mesh.points, facets, len(mesh.points)).sum() / (np.pi * 0.04)
     assert 1 - area == pytest.approx(2 * parabola_shortfall(12), rel=0.02)
+
+
+def test_a_field_that_elements_do_not_hold_may_miss_half_as_much_again():
+    within, why = within_arcs(12, "J", 4)
+    more, _ = within_arcs(12, "J", 4, held=False)
+    assert within == pytest.approx(8 * parabola_shortfall(12))
+    assert more == pytest.approx(1.5 * within)
+    assert why.startswith("12 parabolic arcs round a turn: J is ")
+
+
+def test_half_as_long_elements_at_a_held_edge_miss_2_6_times_less():
+    coarse, fine = (missed_at_held_edge(edge)[0] for edge in (0.1, 0.05))
+    assert coarse / fine == pytest.approx(2 ** (2 * 0.7))
 
 
 def test_sectional_compliance_is_symmetric_and_a_cantilevers():

@@ -14,9 +14,11 @@ from fe_drivetrain.mesh.blocks import brick
 from fe_drivetrain.mesh.mesh import boundary
 from fe_drivetrain.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report import solid_view
+from fe_drivetrain.report.results import Solid
 from fe_drivetrain.report.solid_view import Parts, write_solid_view
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response
+from fe_drivetrain.suite.run import Run
 
 STEEL = (115e9, 77e9)
 LIMIT = 3_000_000  # bytes
@@ -166,3 +168,14 @@ def test_parts_of_other_elements_are_closed_and_have_their_volume(
     strain = np.array([1e-3, -0.3e-3, -0.3e-3])
     stress = lam * strain.sum() + 2.0 * mu * strain
     assert_allclose(view["loads"][0]["greatest"], stress[0] - stress[1], rtol=1e-6)
+
+
+def test_a_run_shows_a_body_bent_beside_the_picture_of_it(tmp_path: Path) -> None:
+    block, run = brick((2, 1, 1), 27), Run({}, True, tmp_path)
+    stretched = block.points * [1e-3, 0.0, 0.0]
+    item = run.view("a bar", ("bar", block, STEEL), {"pulled": stretched}, "model.png")
+    assert isinstance(item, Solid)
+    assert (item.caption, item.still) == ("a bar", "model.png")
+    view = json.loads((tmp_path / item.file).read_text())
+    assert [part["name"] for part in view["parts"]] == ["bar"]
+    assert [load["name"] for load in view["loads"]] == ["pulled"]

@@ -6,7 +6,7 @@ from fe_drivetrain.compare.convergence import band_of
 from fe_drivetrain.report.charts import bars, trace
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import MeshSeries, goal
-from fe_drivetrain.suite.targets import Target, split_unit
+from fe_drivetrain.suite.targets import Target, order_of, split_unit, targets_of
 
 
 @pytest.mark.parametrize(
@@ -84,6 +84,31 @@ def test_a_target_of_zero_is_a_check_that_something_vanishes() -> None:
     )
     assert verdict.passed
     assert not verdict.relative
+
+
+def test_what_is_allowed_goes_by_the_first_words_that_stand_in_a_key() -> None:
+    values = {"hoop stress [MPa]": 3.0, "pressure [MPa]": 2.0}
+    hoop, pressure = targets_of(
+        values, {"stress": (0.1, "recovered"), "": (0.01, "fourth order")}, "Lame"
+    )
+    assert hoop == Target("hoop stress [MPa]", 3.0, 0.1, "recovered", "Lame")
+    assert pressure == Target("pressure [MPa]", 2.0, 0.01, "fourth order", "Lame")
+    with pytest.raises(ValueError, match=r"'pressure \[MPa\]' has none of the words 'stress'"):
+        targets_of(values, {"stress": (0.1, "recovered")}, "Lame")
+
+
+def test_what_is_allowed_of_an_order_is_of_the_order_itself() -> None:
+    page = Page()
+    for found in (3.6, 4.4, 3.4):
+        page.meets(found, order_of("order", 4.0, 0.5, "coarse meshes", "theory"))
+    assert [verdict.passed for verdict in page.verdicts] == [True, True, False]
+    assert {verdict.measure for verdict in page.verdicts} == {"order"}
+
+
+def test_a_target_keeps_what_its_value_rests_on() -> None:
+    page = Page()
+    page.meets(1.0, Target("gap", 1.0, 0.1, "digits", "a program", basis="second-hand"))
+    assert page.verdicts[0].basis == "second-hand"
 
 
 def test_the_band_is_of_all_meshes_or_the_change_from_the_one_before() -> None:

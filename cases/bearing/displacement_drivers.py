@@ -4,19 +4,19 @@ import numpy as np
 
 from fe_drivetrain.bearing import equilibrium
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.thesis_beam import (
+from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.coupled import coupled_equilibrium
+from fe_drivetrain.report import rolling_elements, trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.thesis_beam import (
+    ASSUMED,
     BEARINGS,
     beam_body,
     bearing_s,
     histories,
     housed_body,
     radial,
-    state_assumptions,
 )
-from fe_drivetrain.common import Bools, Floats
-from fe_drivetrain.coupled import coupled_equilibrium
-from fe_drivetrain.report import rolling_elements, trace
-from fe_drivetrain.suite import Page, Record, Run
 
 #: Of a bearing S with the moment of the rotor's weight alone [N m].
 MOMENT = 8e5
@@ -25,7 +25,7 @@ MOMENT = 8e5
 @case("What drives the axial displacement of a main bearing", source="Stirling 2023, section 4.4")
 def run(run: Run, page: Page) -> None:
     """Axial displacement over one wind file against thrust, radial force and moment."""
-    state_assumptions(page)
+    page.assume_all(ASSUMED)
     with run.step("hub loads"):
         factors = histories(*((20.0, 4.0) if run.quick else (600.0, 5.0)), (12.0,))[0]
     check_signs(page)

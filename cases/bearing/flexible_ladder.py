@@ -14,7 +14,6 @@ from fe_drivetrain.bearing import (
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.flexible_rings_calculix import PART, calculix_rollers
-from fe_drivetrain.cases.bearing.housed import NAME, bearing_s, housed_scene, state_housing
 from fe_drivetrain.cases.bearing.ladder import (
     CROWN,
     FIVE,
@@ -28,6 +27,7 @@ from fe_drivetrain.export import find_calculix
 from fe_drivetrain.report import rolling_elements
 from fe_drivetrain.rings import housing_races, housing_solid
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.housed_bearing import ASSUMED_HOUSING, NAME, bearing_s, housed_scene
 
 SIZE, QUICK_SIZE = (1.6, None), (3.6, 8)
 ALL = 144
@@ -126,7 +126,7 @@ def run(run: Run, page: Page) -> None:
         f"once, in {condensed:.0f} s.",
     )
     error_against_time(page, rows)
-    state_housing(page)
+    page.assume_all(ASSUMED_HOUSING)
     page.text(
         "Gap springs have rollers without length, and their time is that of CalculiX for one load "
         "case with the motion of the inner ring given, which has to be found besides."

@@ -49,13 +49,10 @@ def run(run: Run, page: Page) -> None:
     grown = float(scaled.displacements[0, 2] / base.displacements[0, 2])
     target = Target(title, 3.0 ** (1 / 1.1), 1e-8, RESIDUAL, power, measure="deflection")
     page.meets(grown, target)
-    page.vanishes(
-        "asymmetry of the tangent stiffness",
-        float(np.abs(K - np.swapaxes(K, 1, 2)).max() / np.abs(K).max()),
-        **round_off(40, "mirrored entries are sums of the same products, in another order"),
-        source="an energy",
-        basis="self-consistency",
-    )
+    mirrored = round_off(40, "mirrored entries are sums of the same products, in another order")
+    title = "asymmetry of the tangent stiffness"
+    target = Target(title, 0.0, **mirrored, source="an energy", basis="self-consistency")
+    page.meets(float(np.abs(K - np.swapaxes(K, 1, 2)).max() / np.abs(K).max()), target)
     angles = range(0, 91, 30 if run.quick else 5)
     rows = [run.timed("three degrees", reduced, float(angle)) for angle in angles]
     title = "force and moment in one plane: side force left by three degrees [kN]"

@@ -9,19 +9,6 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, equilibrium, roller_loads
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.thesis_beam import (
-    BEARINGS,
-    BEST_FIT,
-    HOUSING_RADIAL,
-    HOUSING_TILT,
-    WIND_SPEEDS,
-    beam_body,
-    bearing_s,
-    histories,
-    housed_body,
-    radial,
-    state_assumptions,
-)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import round_off
 from fe_drivetrain.coupled import (
@@ -40,6 +27,19 @@ from fe_drivetrain.histories import (
 )
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.thesis_beam import (
+    ASSUMED,
+    BEARINGS,
+    BEST_FIT,
+    HOUSING_RADIAL,
+    HOUSING_TILT,
+    WIND_SPEEDS,
+    beam_body,
+    bearing_s,
+    histories,
+    housed_body,
+    radial,
+)
 
 CONSTANT = "constant 1272 MN m/rad"
 LOOP = "the thesis's loop"
@@ -69,7 +69,7 @@ class Answer:
 )
 def run(run: Run, page: Page) -> None:
     """Loads of bearing and rollers over four wind files, with and without the housing."""
-    state_assumptions(page)
+    page.assume_all(ASSUMED)
     page.assume(
         "housing", "145 and 392", "MN m/rad", "Stirling 2023, section 3.3.1; stiff along the axes"
     )

@@ -17,16 +17,6 @@ from fe_drivetrain.bearing import (
     turn,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.thesis_beam import (
-    BEAM,
-    WIND_SPEEDS,
-    beam_body,
-    bearing_s,
-    histories,
-    housed_body,
-    radial,
-    state_assumptions,
-)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import coupled_equilibrium
 from fe_drivetrain.hub_loads import (
@@ -39,6 +29,16 @@ from fe_drivetrain.hub_loads import (
 )
 from fe_drivetrain.report import density_chart, rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.thesis_beam import (
+    ASSUMED,
+    BEAM,
+    WIND_SPEEDS,
+    beam_body,
+    bearing_s,
+    histories,
+    housed_body,
+    radial,
+)
 
 #: Length of an example [s], as in the thesis's figures 4.15 and 4.16.
 WINDOW = 2.0
@@ -77,7 +77,7 @@ class Example:
 )
 def run(run: Run, page: Page) -> None:
     """Direction of force and moment, loops, and rollers in them, over four wind files."""
-    state_assumptions(page)
+    page.assume_all(ASSUMED)
     page.assume(
         "places of rollers",
         "rolling",

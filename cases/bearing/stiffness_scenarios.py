@@ -4,17 +4,6 @@ import numpy as np
 
 from fe_drivetrain.bearing import Arrangement, Bearing, double_row_tapered, equilibrium, sjovall
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.thesis_beam import (
-    BEARINGS,
-    BEST_FIT,
-    HOUSING_TILT,
-    WIND_SPEEDS,
-    beam_body,
-    bearing_s,
-    histories,
-    radial,
-    state_assumptions,
-)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import (
     SCENARIOS,
@@ -26,6 +15,17 @@ from fe_drivetrain.coupled import (
 )
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.thesis_beam import (
+    ASSUMED,
+    BEARINGS,
+    BEST_FIT,
+    HOUSING_TILT,
+    WIND_SPEEDS,
+    beam_body,
+    bearing_s,
+    histories,
+    radial,
+)
 
 #: Distance of the middles of the inner races: half the width of Table 4.1 [m].
 RACES = 0.1524
@@ -37,7 +37,7 @@ RACES = 0.1524
 )
 def run(run: Run, page: Page) -> None:
     """Displacements over four wind files; moment and stiffness against tilt; best fit."""
-    state_assumptions(page)
+    page.assume_all(ASSUMED)
     with run.step("hub loads"):
         factors = histories(*((10.0, 2.0) if run.quick else (600.0, 2.0)))
     flat = factors.reshape(-1, factors.shape[-1])

@@ -3,24 +3,18 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.dynamics import (
-    distinct,
-    divergence_speeds,
-    system_modes,
-    turning_modes,
-)
+from fe_drivetrain.dynamics import distinct, divergence_speeds, system_modes, turning_modes
 from fe_drivetrain.report import crosses
-from fe_drivetrain.suite import Page, Run
-from fe_drivetrain.validation.published_planetary import (
-    COOLEY_PARKER,
-    COOLEY_PARKER_PRINTED,
-    COOLEY_PARKER_STAGE,
-    plane_system,
-    printed_values,
-)
+from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.validation import published_planetary as published
 
 CENTRAL = ("carrier", "ring", "sun")
-UNIT = float(np.sqrt(COOLEY_PARKER_STAGE.pin / COOLEY_PARKER_STAGE.masses[3]))  # rad/s
+STAGE = published.COOLEY_PARKER_STAGE
+UNIT = float(np.sqrt(STAGE.pin / STAGE.masses[3]))  # rad/s
+DIFFERENCE = "largest relative difference from the print"
+DIGITS = "four digits are printed, of the smallest 0.6992: 0.7 in ten thousand, and inputs of "
+DIGITS += "three digits"
+AT_REST = Target(DIFFERENCE, 0.0, 5e-4, DIGITS, published.COOLEY_PARKER, basis="second-hand")
 
 
 @case(
@@ -31,18 +25,11 @@ def run(run: Run, page: Page) -> None:
     """Frequencies at rest against the print; pairs that part, and speeds of divergence."""
     for planets in (3, 4, 5):
         with run.step(f"{planets} planets at rest"):
-            found = 2 * np.pi * system_modes(plane_system(COOLEY_PARKER_STAGE, planets)).frequencies
-        printed = printed_values(COOLEY_PARKER_PRINTED[planets], planets)
-        page.vanishes(
-            f"{planets} planets at rest: largest relative difference from the print",
-            float(np.abs(found / UNIT / printed - 1).max()),
-            within=5e-4,
-            why="four digits are printed, of the smallest 0.6992: 0.7 in ten thousand, and inputs "
-            "of three digits",
-            source=COOLEY_PARKER,
-            basis="second-hand",
-        )
-    system = plane_system(COOLEY_PARKER_STAGE, 5)
+            found = 2 * np.pi * system_modes(published.plane_system(STAGE, planets)).frequencies
+        printed = published.printed_values(published.COOLEY_PARKER_PRINTED[planets], planets)
+        largest = float(np.abs(found / UNIT / printed - 1).max())
+        page.meets(largest, AT_REST, of=f"{planets} planets at rest")
+    system = published.plane_system(STAGE, 5)
     with run.step("speeds"):
         limits = divergence_speeds(system) / UNIT
         speeds = np.linspace(0.0, 1.2 * limits[0], 13 if run.quick else 61)
@@ -57,12 +44,9 @@ def run(run: Run, page: Page) -> None:
     page.section("Frequencies by speed")
     x = np.concatenate([np.full(len(m.frequencies), s) for s, m in zip(speeds, modes, strict=True)])
     y = np.concatenate([2 * np.pi * m.frequencies / UNIT for m in modes])
-    page.chart(
-        "Frequencies seen from the carrier, five planets, against its speed",
-        [crosses("modes", x[y < 2.5], y[y < 2.5])],
-        "speed of the carrier over sqrt(k_p / m_p)",
-        "frequency over sqrt(k_p / m_p)",
-    )
+    title = "Frequencies seen from the carrier, five planets, against its speed"
+    axes = "speed of the carrier over sqrt(k_p / m_p)", "frequency over sqrt(k_p / m_p)"
+    page.chart(title, [crosses("modes", x[y < 2.5], y[y < 2.5])], *axes)
     page.data("divergence_speeds", limits)
     page.text(
         "The paper's figures at speed were not found with numbers: what is checked there are "
@@ -72,19 +56,16 @@ def run(run: Run, page: Page) -> None:
 
 def check_turning(page: Page, first: float) -> None:
     """Perturbation, multiplicities, and the static speed, each by a way of its own."""
-    three = plane_system(COOLEY_PARKER_STAGE, 3)
+    three = published.plane_system(STAGE, 3)
     pair = system_modes(three).shapes[:, :2]
     expected = float(abs(pair[:, 0] @ three.gyroscopic @ pair[:, 1]))
     found = turning_modes(three, 1.0).eigenvalues.imag
-    page.equals(
-        "three planets: parting of the first pair by speed",
-        float(found[1] - found[0]),
-        expected,
-        within=1e-4,
-        why="the next order of perturbation is the speed over the frequency, 1 in 2000",
-        source="first-order perturbation, phi_1^T G phi_2, of the modes at rest",
-    )
-    five = plane_system(COOLEY_PARKER_STAGE, 5)
+    title = "three planets: parting of the first pair by speed"
+    following = "the next order of perturbation is the speed over the frequency, 1 in 2000"
+    perturbed = "first-order perturbation, phi_1^T G phi_2, of the modes at rest"
+    target = Target(title, expected, 1e-4, following, perturbed)
+    page.meets(float(found[1] - found[0]), target)
+    five = published.plane_system(STAGE, 5)
     turning = turning_modes(five, 0.2 * UNIT)
     central = [k for k, name in enumerate(five.names) if name.rpartition(" ")[0] in CENTRAL]
     still = np.abs(turning.shapes[central]).max(axis=0) < 1e-6
@@ -103,10 +84,7 @@ def check_turning(page: Page, first: float) -> None:
         source="Cooley and Parker 2012, on translational modes",
     )
     near = turning_modes(five, first * UNIT * (1 - 1e-3)).frequencies[0]
-    page.vanishes(
-        "lowest frequency a thousandth below the divergence speed, over that at rest",
-        float(near / turning_modes(five, 0.0).frequencies[0]),
-        within=5e-3,
-        why="the backward whirl goes through zero there, in proportion to the distance",
-        source="det(K - W^2 Z) = 0, an eigenproblem of its own",
-    )
+    title = "lowest frequency a thousandth below the divergence speed, over that at rest"
+    whirl = "the backward whirl goes through zero there, in proportion to the distance"
+    target = Target(title, 0.0, 5e-3, whirl, "det(K - W^2 Z) = 0, an eigenproblem of its own")
+    page.meets(float(near / turning_modes(five, 0.0).frequencies[0]), target)

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.fidelity.component_page import COARSER, coarser
 from fe_drivetrain.dynamics import (
     QUESTIONS,
     RUNGS,
@@ -26,7 +25,7 @@ from fe_drivetrain.dynamics import (
     torsional,
     turning_modes,
 )
-from fe_drivetrain.fidelity import meridian_shaft, solid_component
+from fe_drivetrain.fidelity import COARSER, coarser, meridian_shaft, solid_component
 from fe_drivetrain.fidelity.component_frames import carrier_frame, housing_frame
 from fe_drivetrain.fidelity.component_levels import stiffness_on_supports
 from fe_drivetrain.report import trace

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.dynamics import load_sharing
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation.planet_loads import SharingStage, shared_load
 
 NOMINAL = 20e3  # N, mean force of a mesh
@@ -14,7 +14,8 @@ TABLED = {
     "floating": (1.0, 1.0625, 1.1, 1.125, 1.1429),
     "fixed": (1.1667, 1.1875, 1.2, 1.2083, 1.2143),
 }
-SHARING = "load sharing K_gamma"
+SHARING, MEAN = "load sharing K_gamma", "mean load over K e"
+LINEAR = "linear; the fixed sun is held a million times stiffer than a mesh"
 CLOSED = "a branch of stiffness K a planet: F_1 = T/(N r) + K e (1 - 3/N), or (1 - 1/N) fixed"
 
 
@@ -34,14 +35,8 @@ def run(run: Run, page: Page) -> None:
             forces = stage.mesh_forces(found)
             exact = shared_load(planets, NOMINAL, stage.branch, pressed, floating)
             name = "floating" if floating else "fixed"
-            page.equals(
-                f"{planets} planets, {name} sun: load of planet 1 [kN]",
-                float(forces[0]) / 1e3,
-                float(exact[0]) / 1e3,
-                within=1e-5,
-                why="linear; the fixed sun is held a million times stiffer than a mesh",
-                source=CLOSED,
-            )
+            one = Target("load of planet 1 [kN]", float(exact[0]) / 1e3, 1e-5, LINEAR, CLOSED)
+            page.meets(float(forces[0]) / 1e3, one, of=f"{planets} planets, {name} sun")
             rows.append(
                 {
                     "planets": planets,
@@ -52,23 +47,15 @@ def run(run: Run, page: Page) -> None:
                     "pin error [um]": 1e6 * pin,
                 }
             )
-    page.vanishes(
-        "load sharing of all ten against the tabled closed form",
-        max(abs(float(str(r[SHARING])) - float(str(r["as tabled"]))) for r in rows),
-        within=5.5e-5,
-        why="half of the fourth decimal",
-        source="closed form, tabled to four decimals",
-    )
+    title = "load sharing of all ten against the tabled closed form"
+    decimals = "half of the fourth decimal", "closed form, tabled to four decimals"
+    tabled = Target(title, 0.0, 5.5e-5, *decimals)
+    page.meets(max(abs(row[SHARING] - row["as tabled"]) for row in rows), tabled)
     three = SharingStage(3)
     both = three.mesh_forces(three.solved(1e3, {1: 80e-6, 2: -30e-6}))
-    page.equals(
-        "three planets, floating sun, two pins out of place: load sharing",
-        load_sharing(both),
-        1.0,
-        within=1e-8,
-        why="round-off; three branches on three motions are statically determinate",
-        source="statics",
-    )
+    title = "three planets, floating sun, two pins out of place: load sharing"
+    determinate = "round-off; three branches on three motions are statically determinate"
+    page.meets(load_sharing(both), Target(title, 1.0, 1e-8, determinate, "statics"))
     pairs = by_torque(page, 5 if run.quick else 21)
     last = rows[2]
     page.answer(
@@ -81,42 +68,22 @@ def run(run: Run, page: Page) -> None:
     page.section("One pin out of place")
     page.sweep(SHARING, rows, "planets", SHARING, by="sun")
     page.section("Four planets by the torque")
-    page.sweep(
-        "Load of each planet over the mean, one pin out of place, teeth that only press",
-        pairs,
-        "mean load over K e",
-        {f"planet {k}": f"planet {k}" for k in (1, 2, 3, 4)},
-        axis="load over the mean",
-        log="x",
-    )
+    title = "Load of each planet over the mean, one pin out of place, teeth that only press"
+    curves = {f"planet {k}": f"planet {k}" for k in (1, 2, 3, 4)}
+    page.sweep(title, pairs, MEAN, curves, axis="load over the mean", log="x")
 
 
 def by_torque(page: Page, count: int) -> list[Record]:
     """Four planets with contacts, from little torque to much."""
-    stage = SharingStage(4, weak=1e2)
-    error = 50e-6
-    scale = stage.branch * 2 * np.cos(stage.ANGLE) * error
-    rows: list[Record] = []
-    for share in np.geomspace(0.05, 5, count):
-        forces = stage.mesh_forces(stage.solved(share * scale, {1: error}, only_press=True))
-        over = forces / forces.mean()
-        record: Record = {"mean load over K e": float(share)}
-        rows.append(record | {f"planet {k + 1}": float(f) for k, f in enumerate(over)})
-    page.equals(
-        "four planets, little torque: load of planet 1 over the mean",
-        float(str(rows[0]["planet 1"])),
-        2.0,
-        within=1e-4,
-        why="a floating sun between two opposite planets: each has half of the torque; weak "
-        "springs that hold what is loose have a millionth of a mesh's stiffness",
-        source="statics",
-    )
-    page.equals(
-        "four planets, much torque: planets 1 and 3 share equally",
-        float(str(rows[-1]["planet 1"])),
-        1 + 0.25 / 5,
-        within=1e-5,
-        why="all press, so that the closed form holds: 1 + K e / (4 F)",
-        source=CLOSED,
-    )
-    return rows
+    shares = np.geomspace(0.05, 5, count)
+    over = SharingStage(4, weak=1e2).over_mean(50e-6, shares)
+    pairs = "a floating sun between two opposite planets: each has half of the torque; weak "
+    pairs += "springs that hold what is loose have a millionth of a mesh's stiffness"
+    little = Target("load of planet 1 over the mean", 2.0, 1e-4, pairs, "statics")
+    press = "all press, so that the closed form holds: 1 + K e / (4 F)"
+    much = Target("planets 1 and 3 share equally", 1 + 0.25 / 5, 1e-5, press, CLOSED)
+    page.meets(float(over[0, 0]), little, of="four planets, little torque")
+    page.meets(float(over[-1, 0]), much, of="four planets, much torque")
+    names = [f"planet {k}" for k in (1, 2, 3, 4)]
+    loads = [dict(zip(names, row.tolist(), strict=True)) for row in over]
+    return [{MEAN: float(share)} | row for share, row in zip(shares, loads, strict=True)]

@@ -19,9 +19,11 @@ from fe_drivetrain.export import (
     Superelement,
 )
 from fe_drivetrain.fidelity import (
+    COARSER,
     LEAST_ORDER,
     LevelModel,
     SolidComponent,
+    coarser,
     frame_levels,
     solid_component,
     solid_level,
@@ -43,9 +45,6 @@ from fe_drivetrain.suite import Page, Run, column
 #: Coarsening of the mesh under --quick.
 QUICK = 2.2
 
-#: Factors on mesh sizes of the two coarser solids that give the finest its band.
-COARSER = (1.8, 1.35)
-
 #: Allowed error of the level that is recommended.
 TOLERANCE = 0.1
 
@@ -59,11 +58,6 @@ SOLVED_REASON = (
 
 _LEAST = 1e-6  # percent: what is exact has a place on a logarithmic axis
 _CHANGE = "change over the diagonal [-]"
-
-
-def coarser(component: SomeComponent, factor: float) -> SomeComponent:
-    """The component with its mesh sizes times a factor."""
-    return component.model_copy(update={"mesh": component.mesh.scaled(factor)})
 
 
 @dataclass(frozen=True)

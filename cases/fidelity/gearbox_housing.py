@@ -16,7 +16,6 @@ from fe_drivetrain.cases.fidelity.component_page import (
     all_levels,
     assume_dimensions,
     check_rigid_motion,
-    coarser,
     show_files,
     show_ladder,
     show_picture,
@@ -29,6 +28,7 @@ from fe_drivetrain.export import component_superelement
 from fe_drivetrain.fidelity import (
     GearboxSprings,
     LevelModel,
+    coarser,
     frame_level,
     gearbox_springs,
     housing_frame,

@@ -7,7 +7,6 @@ import numpy as np
 from fe_drivetrain.beam import round_section
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.fidelity.component_page import (
-    COARSER,
     QUICK,
     SOLVED,
     SOLVED_REASON,
@@ -17,7 +16,6 @@ from fe_drivetrain.cases.fidelity.component_page import (
     assume_dimensions,
     band_of,
     check_rigid_motion,
-    coarser,
     show_files,
     show_ladder,
     show_picture,
@@ -26,8 +24,10 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import GridConvergence
 from fe_drivetrain.export import component_superelement
 from fe_drivetrain.fidelity import (
+    COARSER,
     LevelModel,
     PinMotions,
+    coarser,
     frame_level,
     pin_motions,
     solid_component,

@@ -5,12 +5,22 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common import Floats
 from fe_drivetrain.gear import square_wave, square_wave_series
 from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, Target
 
 RATIOS = (1.2, 1.5, 1.7)
 ORDERS = 400
+PLUS, MINUS = "plus", "minus, as printed"
+MEASURED = ("upper level [pairs]", "lower level [pairs]", "share of time above", "mean [pairs]")
+
+
+def measured(wave: Floats, ratio: float) -> dict[str, float]:
+    """Levels, share of time and mean of a wave about its contact ratio."""
+    high = wave > ratio
+    found = np.median(wave[high]), np.median(wave[~high]), high.mean(), wave.mean()
+    return dict(zip(MEASURED, map(float, found), strict=True))
 
 
 @case(
@@ -20,75 +30,39 @@ ORDERS = 400
 def run(run: Run, page: Page) -> None:
     """Compare levels and shares of time of the series, with both signs, with one and two pairs."""
     rows: list[Record] = []
-    waves = {}
     for ratio in RATIOS:
         with run.step(f"contact ratio {ratio:g}"):
             series = square_wave_series(1.0, ratio, ORDERS)
             printed = replace(series, cosines=-series.cosines, sines=-series.sines)
             at = (np.arange(4000) + 0.5) / 4000
-            for name, wave in (("plus", series.at(at)), ("minus, as printed", printed.at(at))):
-                high = wave > ratio
-                rows.append(
-                    {
-                        "contact ratio": ratio,
-                        "sign": name,
-                        "upper level [pairs]": float(np.median(wave[high])),
-                        "lower level [pairs]": float(np.median(wave[~high])),
-                        "share of time above": float(high.mean()),
-                        "mean [pairs]": float(wave.mean()),
-                    }
-                )
-                waves[ratio, name] = wave
+            for sign, wave in ((PLUS, series.at(at)), (MINUS, printed.at(at))):
+                rows.append({"contact ratio": ratio, "sign": sign} | measured(wave, ratio))
+    jumps = f"a series of {ORDERS} orders next to its jumps"
+    mirrored = "one pair always, two for the share C - 1 of a period; with the other sign the wave "
+    mirrored += "is mirrored about its mean"
     for row in rows:
         ratio, sign = row["contact ratio"], row["sign"]
-        levels = (2.0, 1.0) if sign == "plus" else (2 * ratio - 1, 2 * ratio - 2)
-        share = ratio - 1.0 if sign == "plus" else 2.0 - ratio
-        for key, expected in (
-            ("upper level [pairs]", levels[0]),
-            ("lower level [pairs]", levels[1]),
-            ("share of time above", share),
-            ("mean [pairs]", ratio),
-        ):
-            page.equals(
-                f"contact ratio {ratio:g}, {sign}: {key.partition(' [')[0]}",
-                row[key],
-                expected,
-                within=5e-3,
-                relative=False,
-                why=f"a series of {ORDERS} orders next to its jumps",
-                source="one pair always, two for the share C - 1 of a period; with the other sign "
-                "the wave is mirrored about its mean",
-                measure="identity",
-            )
+        levels = (2.0, 1.0) if sign == PLUS else (2 * ratio - 1, 2 * ratio - 2)
+        share = ratio - 1.0 if sign == PLUS else 2.0 - ratio
+        for key, expected in zip(MEASURED, (*levels, share, ratio), strict=True):
+            name = key.partition(" [")[0]
+            target = Target(name, expected, 5e-3, jumps, mirrored, "", False, "identity")
+            page.meets(row[key], target, of=f"contact ratio {ratio:g}, {sign}")
     overshoot = float(square_wave_series(1.0, 1.5, ORDERS).at(np.arange(40000) / 40000).max()) - 2
-    page.equals(
-        "overshoot of the series, over the jump",
-        overshoot,
-        0.08949,
-        within=1e-3,
-        relative=False,
-        why="sampled at 40,000 phases",
-        source="Gibbs: Si(pi) / pi - 1/2",
-        measure="identity",
-    )
+    gibbs = 0.08949, 1e-3, "sampled at 40,000 phases", "Gibbs: Si(pi) / pi - 1/2"
+    title = "overshoot of the series, over the jump"
+    page.meets(overshoot, Target(title, *gibbs, "", False, "identity"))
     page.section("Waves")
     eight = square_wave_series(1.0, 1.7, 8)
     shown = np.arange(0.0, 1.0001, 0.002)
-    page.chart(
-        "Contact ratio 1.7: pairs in contact over a period",
-        [
-            trace("exact", shown, square_wave(1.0, 1.7, shown)),
-            trace("8 orders, plus", shown, eight.at(shown)),
-            trace(
-                "8 orders, minus as printed",
-                shown,
-                2.0 * eight.mean - eight.at(shown),
-                line={"dash": "dash"},
-            ),
-        ],
-        "phase [periods]",
-        "stiffness [pairs]",
-    )
+    minus, dashed = 2.0 * eight.mean - eight.at(shown), {"dash": "dash"}
+    curves = [
+        trace("exact", shown, square_wave(1.0, 1.7, shown)),
+        trace("8 orders, plus", shown, eight.at(shown)),
+        trace("8 orders, minus as printed", shown, minus, line=dashed),
+    ]
+    title = "Contact ratio 1.7: pairs in contact over a period"
+    page.chart(title, curves, "phase [periods]", "stiffness [pairs]")
     page.table("Levels and shares of time, by sign", rows)
     page.text(
         "The paper prints a_l = -2 / (l pi) sin(l pi (C - 2 g)) sin(l pi C), b_l with a cosine, "

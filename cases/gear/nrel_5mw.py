@@ -1,10 +1,9 @@
 """Geometry and mesh stiffness of the NREL 5 MW reference gearbox against printed reports."""
 
-from math import degrees
-
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.gear.rows import mesh_row, stiffness_row
 from fe_drivetrain.gear import (
     constant_law,
     iso_stiffness,
@@ -14,11 +13,12 @@ from fe_drivetrain.gear import (
     sun_phases,
 )
 from fe_drivetrain.report import gear_pair, trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation.published_gears import NREL_5MW_PRINTED, nrel_5mw
 
 REPORTS = "KISSsoft 03/2017 reports of the gearbox, ISO 6336:2006 method B"
 DIGITS = "half a unit of the last printed digit"
+BLANK = "the factor of the gear blank is printed with three digits"
 
 
 @case(
@@ -32,56 +32,27 @@ def run(run: Run, page: Page) -> None:
     for name, pair in pairs.items():
         printed = NREL_5MW_PRINTED[name]
         found = run.timed(name, iso_stiffness, pair, blank=printed.blank)
-        rows.append(
-            {
-                "mesh": name,
-                "working angle [deg]": degrees(pair.working_angle),
-                "contact ratio": pair.transverse_ratio,
-                "overlap ratio": pair.overlap_ratio,
-                "backlash [µm]": 1e6 * pair.backlash,
-                "c' [N/(mm µm)]": found.single / 1e9,
-                "c_gamma [N/(mm µm)]": found.mesh / 1e9,
-            }
-        )
+        backlash = {"backlash [µm]": 1e6 * pair.backlash}
+        rows.append(mesh_row(name, pair) | backlash | stiffness_row(found))
         for quantity, value, expected in (
             ("transverse contact ratio", pair.transverse_ratio, printed.transverse_ratio),
             ("overlap ratio", pair.overlap_ratio, printed.overlap_ratio),
         ):
             if expected:
-                page.equals(
-                    f"{name}: {quantity}",
-                    value,
-                    expected,
-                    within=5e-4,
-                    relative=False,
-                    why=DIGITS,
-                    source=REPORTS,
-                    measure="identity",
-                )
+                target = Target(quantity, expected, 5e-4, DIGITS, REPORTS, "", False, "identity")
+                page.meets(value, target, of=name)
         if printed.torque is not None:
-            page.equals(
-                f"{name}: tangential force [kN]",
-                pair.tangential_force(printed.torque) / 1e3,
-                printed.force / 1e3,
-                within=1.3e-6,
-                why="torques are printed to 0.1 N m",
-                source=REPORTS,
-            )
+            force, why = pair.tangential_force(printed.torque), "torques are printed to 0.1 N m"
+            target = Target("tangential force [kN]", printed.force / 1e3, 1.3e-6, why, REPORTS)
+            page.meets(force / 1e3, target, of=name)
         for quantity, value, expected in (
             ("one pair, c'", found.single, printed.single),
             ("mesh, c_gamma_alpha", found.mesh, printed.mesh),
             ("over the face, c_gamma_beta", found.misaligned, printed.misaligned),
         ):
-            page.equals(
-                f"{name}: {quantity}",
-                value / 1e9,
-                expected,
-                within=6e-4,
-                why="the factor of the gear blank is printed with three digits",
-                source=REPORTS,
-                unit="N/(mm µm)",
-                measure="stiffness",
-            )
+            key = f"{quantity} [N/(mm µm)]"
+            target = Target(key, expected, 6e-4, BLANK, REPORTS, measure="stiffness")
+            page.meets(value / 1e9, target, of=name)
     page.section("Meshes")
     page.table("Five meshes of the gearbox", rows)
     page.text(
@@ -120,20 +91,12 @@ def phases(page: Page) -> None:
         )
     page.table("Phases of meshes, from teeth and flanks", rows)
     lines = mesh_stiffness(pairs["stage 3"], constant_law(1.0), points=400)
-    page.equals(
-        "stage 3: mean length of contact, in face widths",
-        lines.mean / pairs["stage 3"].face_width,
-        pairs["stage 3"].transverse_ratio,
-        within=1e-6,
-        why="trapezoids of a constant",
-        source="total length of contact lines is the contact ratio times the face, on average",
-        measure="identity",
-    )
+    title, why = "stage 3: mean length of contact, in face widths", "trapezoids of a constant"
+    mean = "total length of contact lines is the contact ratio times the face, on average"
+    ratio = pairs["stage 3"].transverse_ratio
+    exact = Target(title, ratio, 1e-6, why, mean, measure="identity")
+    page.meets(lines.mean / pairs["stage 3"].face_width, exact)
     at = np.append(lines.phases, 1.0)
     total = lines.at(at) / pairs["stage 3"].face_width
-    page.chart(
-        "Stage 3: width of face in contact, of all pairs",
-        [trace("all pairs", at, total)],
-        "phase [periods]",
-        "face in contact [face widths]",
-    )
+    title, y = "Stage 3: width of face in contact, of all pairs", "face in contact [face widths]"
+    page.chart(title, [trace("all pairs", at, total)], "phase [periods]", y)

@@ -5,8 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.thesis_beam import BEARINGS, beam_body, housed_body
-from fe_drivetrain.cases.life.operating import (
+from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
+from fe_drivetrain.common import Floats
+from fe_drivetrain.histories import Site
+from fe_drivetrain.life import equivalent_life, years
+from fe_drivetrain.report import trace
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.studied_lives import (
     EDGES,
     HOUSING,
     SPEEDS,
@@ -19,15 +24,9 @@ from fe_drivetrain.cases.life.operating import (
     rotor_speed,
     scatter_of_seeds,
     shares,
-    state_assumptions,
-    state_meaning,
     thesis_setup,
 )
-from fe_drivetrain.common import Floats
-from fe_drivetrain.histories import Site
-from fe_drivetrain.life import equivalent_life, years
-from fe_drivetrain.report import trace
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.thesis_beam import BEARINGS, beam_body, housed_body
 
 #: Site of the thesis's figure 5.9 [m/s], and its lives without and with the stress riser [years].
 MEAN_WIND = 10.0

@@ -15,10 +15,17 @@ from fe_drivetrain.bearing import (
     three_degrees,
 )
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.housed import NAME, Size, housed_scene, state_housing
-from fe_drivetrain.cases.bearing.thesis_beam import BEAM, beam_body
 from fe_drivetrain.cases.life import models
-from fe_drivetrain.cases.life.operating import (
+from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
+from fe_drivetrain.common import Floats
+from fe_drivetrain.compare import round_off
+from fe_drivetrain.coupled import body_on_races, on_springs, scene_body
+from fe_drivetrain.life import miner_load
+from fe_drivetrain.report import Chart, trace
+from fe_drivetrain.rings import RollerAssembly, assembly_equilibrium, housing_races, roller_assembly
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.housed_bearing import ASSUMED_HOUSING, NAME, Size, housed_scene
+from fe_drivetrain.validation.studied_lives import (
     SPEEDS,
     Setup,
     Winds,
@@ -28,16 +35,8 @@ from fe_drivetrain.cases.life.operating import (
     on_rigid_rings,
     scatter_of_seeds,
     shares,
-    state_assumptions,
-    state_meaning,
 )
-from fe_drivetrain.common import Floats
-from fe_drivetrain.compare import round_off
-from fe_drivetrain.coupled import body_on_races, on_springs, scene_body
-from fe_drivetrain.life import miner_load
-from fe_drivetrain.report import Chart, trace
-from fe_drivetrain.rings import RollerAssembly, assembly_equilibrium, housing_races, roller_assembly
-from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.thesis_beam import BEAM, beam_body
 
 MEAN_WIND = 8.0
 
@@ -101,7 +100,7 @@ class Found:
 def run(run: Run, page: Page) -> None:
     """Lives of eleven models over eleven wind speeds on two grounds, against solids on rollers."""
     state_assumptions(page)
-    state_housing(page)
+    page.assume_all(ASSUMED_HOUSING)
     elements = 12 if run.quick else 36
     bearing = bearing_s("bearing_s_o20", True, elements)
     winds = Winds(seeds=2, duration=20.0, rate=0.2) if run.quick else Winds(seeds=3, rate=0.25)

@@ -9,10 +9,17 @@ from scipy import stats
 
 from fe_drivetrain.bearing import Bearing, lamina_loads
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.bearing.housed import housed_scene, state_housing
-from fe_drivetrain.cases.bearing.thesis_beam import HOUSING_RADIAL, HOUSING_TILT, HOUSING_YAW
 from fe_drivetrain.cases.life import models
-from fe_drivetrain.cases.life.operating import (
+from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
+from fe_drivetrain.common import Floats
+from fe_drivetrain.coupled import LinearBody, in_housings, scene_body
+from fe_drivetrain.life import GRADES, LifeRules, Lubricant, Steps, damage_of_steps
+from fe_drivetrain.report import bars, trace
+from fe_drivetrain.rings import housing_races
+from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.uncertainty import Samples, Shares, variance_shares
+from fe_drivetrain.validation.housed_bearing import ASSUMED_HOUSING, housed_scene
+from fe_drivetrain.validation.studied_lives import (
     SPEEDS,
     Setup,
     Winds,
@@ -21,16 +28,8 @@ from fe_drivetrain.cases.life.operating import (
     by_wind,
     roller_rows,
     rotor_speed,
-    state_assumptions,
-    state_meaning,
 )
-from fe_drivetrain.common import Floats
-from fe_drivetrain.coupled import LinearBody, in_housings, scene_body
-from fe_drivetrain.life import GRADES, LifeRules, Lubricant, Steps, damage_of_steps
-from fe_drivetrain.report import bars, trace
-from fe_drivetrain.rings import housing_races
-from fe_drivetrain.suite import Page, Record, Run
-from fe_drivetrain.uncertainty import Samples, Shares, variance_shares
+from fe_drivetrain.validation.thesis_beam import HOUSING_RADIAL, HOUSING_TILT, HOUSING_YAW
 
 MEAN_WIND = 8.0
 SEEDS = 6
@@ -164,7 +163,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("models"):
         of_models = by_model(lives, run.quick)
     show(page, samples, shares, alone, of_models)
-    state_housing(page)
+    page.assume_all(ASSUMED_HOUSING)
     state_meaning(page)
 
 

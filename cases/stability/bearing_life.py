@@ -6,14 +6,6 @@ import numpy as np
 
 from fe_drivetrain.bearing import equilibrium, lamina_loads, pressures, sjovall
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.life.operating import (
-    ENOUGH,
-    LOAD,
-    Setup,
-    own_setup,
-    roller_rows,
-    thesis_setup,
-)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import (
     decades,
@@ -31,6 +23,14 @@ from fe_drivetrain.life import (
     life_factor,
 )
 from fe_drivetrain.suite import Page, Record, Run
+from fe_drivetrain.validation.studied_lives import (
+    ENOUGH,
+    LOAD,
+    Setup,
+    own_setup,
+    roller_rows,
+    thesis_setup,
+)
 
 KAPPA = "viscosity ratio kappa"
 OVER = "e_C C_u / P"

@@ -3,11 +3,10 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_uniform
+from fe_drivetrain.cases.verification.shaft_inputs import begin_uniform
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.end_loaded import section_area
 from fe_drivetrain.validation.exact_shafts import pulled
 
@@ -64,10 +63,9 @@ def run(run: Run, page: Page) -> None:
         f"E A / L is met to {solid:.1g} (solid) and {bored:.1g} (bored), and the exact linear "
         f"displacements to {max(column(rows, MOVED)):.0e} of the largest."
     )
-    page.section("Tension")
-    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
     pull = "tension on the ends", SIGMA / 1e6, "MPa"
-    show_uniform(page, OUTER, BORE, ("length", LENGTH, "m"), pull, steel=STEEL)
+    length = "length", LENGTH, "m"
+    begin_uniform(run, page, "Tension", (OUTER, BORE), length, pull, steel=STEEL)
     page.sweep(
         "Error of the stiffness: of the area, which parabolic arcs make too small",
         rows,

@@ -39,8 +39,7 @@ def solve(n: int) -> Record:
 
 def plane(n: int) -> tuple[float, float]:
     """Energy per width [J/m] and greatest stress [MPa] of the plane problem."""
-    E, nu = IRON.youngs_modulus, IRON.poisson_ratio
-    energy, peak = plane_answer(BRACKET, E, nu, FORCE, n)
+    energy, peak = plane_answer(BRACKET, IRON, FORCE, n)
     return energy, peak / 1e6
 
 

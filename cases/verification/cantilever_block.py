@@ -1,16 +1,15 @@
 """Block in shear, in bending and as a cantilever: strain energies known in closed form."""
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.mesh import ELEMENT_NAMES as NAMES
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, order_of
 from fe_drivetrain.validation.bent_blocks import BentBlock
 
 IRON = Material(youngs_modulus=169e9, poisson_ratio=0.275, density=0.0)
 BLOCK = BentBlock(length=0.6, height=0.2, width=0.15, material=IRON)  # m
 SHEAR, CURVATURE, FORCE = 1e-3, 1e-3, 1e6  # rad, 1/m, N/m of width
 
-NAMES = {n: f"tetrahedra of {n} nodes" for n in (4, 10)}
-NAMES |= {n: f"hexahedra of {n} nodes" for n in (8, 20, 27)}
 SECOND_ORDER = (10, 20, 27)
 #: Elements through the height, by the nodes of an element; three times as many along the block.
 DIVISIONS = {4: (8, 16, 32), 8: (8, 16, 32), 10: (2, 4, 8), 20: (2, 4, 8), 27: (2, 4, 8)}
@@ -59,8 +58,7 @@ def run(run: Run, page: Page) -> None:
         series = MeshSeries([run.timed(of, solve, nodes, n) for n in DIVISIONS[nodes]], THROUGH)
         rows += series.rows
         title, source = "order of the strain energy", "twice the order of the strains"
-        target = Target(title, order, 0.3, lost, source, "", False, "order")
-        page.meets(series.order(ENERGY), target, of=of)
+        page.meets(series.order(ENERGY), order_of(title, order, 0.3, lost, source), of=of)
         if nodes in SECOND_ORDER:
             exact, title = EXACT["cantilever"], "strain energy per width"
             target = Target(ENERGY, exact, 1e-4, quadratic, FLEXURE, title, order=order)

@@ -6,8 +6,8 @@ from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT, TURN
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.exact_shafts import flexed, neutral_shear, tip_deflection
+from fe_drivetrain.validation.solid_shafts import straight
 
 STEEL = MATERIALS["steel"]
 OUTER, LENGTH, FORCE = 0.4, 0.8, 1e6  # m, m, N
@@ -42,9 +42,8 @@ def solve(tube: theory.Tube, refinement: int) -> Record:
 )
 def run(run: Run, page: Page) -> None:
     """Exact tractions on both ends."""
-    page.section("Saint-Venant's flexure")
-    sketch = run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, 0.5 * OUTER))
-    page.image("Shaft with a bore of half its diameter", sketch)
+    title, bored = "Saint-Venant's flexure", straight((0.0, LENGTH), OUTER, 0.5 * OUTER)
+    inputs.begin(run, page, title, bored, "Shaft with a bore of half its diameter")
     inputs.show_inputs(
         page,
         ("outer diameter", OUTER, "m", inputs.SIZE),
@@ -62,8 +61,7 @@ def run(run: Run, page: Page) -> None:
         "Under Saint-Venant's tractions the solid's mean deflection is F L^3 / 3EI + F L / kGA "
         f"with Cowper's k to {max(met):.1g}, solid and bored."
     )
-    title, axis = ERROR.capitalize(), "relative error"
-    page.sweep(title, rows, "unknowns", ERROR, by=SHAFT, log="xy", axis=axis, table=False)
+    inputs.show_errors(page, ERROR.capitalize(), rows, table=False)
     page.text(
         "Cowper's coefficient speaks of the mean deflection and of the least-squares rotation of a "
         "section. An averaged reference point moves by these very means, so a beam describes a "

@@ -3,11 +3,11 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, SIZE, show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, SIZE, begin, show_inputs
 from fe_drivetrain.mesh import Grading
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.suite import Page, Record, Run, Target, order_of
 from fe_drivetrain.validation import end_loaded, solid_shafts
 from fe_drivetrain.validation import shaft_theory as theory
 
@@ -59,15 +59,13 @@ def run(run: Run, page: Page) -> None:
     why += "order in D / L, a tenth of the first there"
     turns = "a clamp turns less than Saint-Venant's root by a share of M D / EI: the error is in "
     turns += "proportion to D / L"
-    page.meets(float(power), Target(title, -1.0, 0.15, why, turns, "", False, "order"))
+    page.meets(float(power), order_of(title, -1.0, 0.15, why, turns))
     page.answer(
         f"A clamped end and a rigid tip are stiffer than the beam by {first[STIFFER]:.1f} % at "
         f"L = {first[RATIO]:g} D and {last[STIFFER]:.2f} % at L = {last[RATIO]:g} D."
     )
-    page.section("Clamped end")
-    page.image(
-        "Shaft of five diameters", run.sketch(solid_shafts.straight((0.0, 5.0 * OUTER), OUTER))
-    )
+    shaft, shown = solid_shafts.straight((0.0, 5.0 * OUTER), OUTER), "Shaft of five diameters"
+    begin(run, page, "Clamped end", shaft, shown)
     show_inputs(page, ("outer diameter", OUTER, "m", SIZE), steel=STEEL)
     title = "How much stiffer a clamped shaft with a rigid tip is than Timoshenko's beam, against "
     title += "length over diameter"
@@ -83,11 +81,10 @@ def check(page: Page, row: Record) -> None:
     """The solids of one length against the meridian."""
     found, turn = row["by mesh"], solid_shafts.BASE_TURN * REFINEMENTS[-1]
     edge = solid_shafts.SLICE / turn * solid_shafts.BASE_TURN * 0.3
-    within, why = theory.within_arcs(turn, "I", 4)
-    why += "; and stress is singular along the clamped edge, of exponent 0.71: what elements there "
-    why += f"miss goes as their size of {edge:.2g} radii to the power 1.4, in a part of the shaft "
-    why += "as long as it is wide"
-    within += 0.2 * edge**1.4 / row[RATIO]
+    within, arcs = theory.within_arcs(turn, "I", 4)
+    missed, singular = theory.missed_at_held_edge(edge)
+    within += 0.2 * missed / row[RATIO]
+    why = f"{arcs}; and {singular}, in a part of the shaft as long as it is wide"
     title = f"clamped, L = {row[RATIO]:g} D: deflection of a rigid tip [m/N]"
     target = Target(title, row["compliance [m/N]"], within, why, HARMONICS)
     page.meets(found[-1], target, solid_shafts.mesh_band(REFINEMENTS, found, 1.4))

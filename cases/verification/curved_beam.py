@@ -8,9 +8,9 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
 from fe_drivetrain.scene import Material
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
-from fe_drivetrain.validation.curved_bars import bent_and_pulled, missed_at_surface
+from fe_drivetrain.validation.curved_bars import bent_and_pulled, curvature_of, quarter_of
+from fe_drivetrain.validation.loaded_blocks import fourth_power, within_surface
 from fe_drivetrain.validation.plane_rings import CURVED_BAR, CurvedBar, plane_strain
-from fe_drivetrain.validation.ring_solids import ring_sector
 
 INNER, OUTER = 0.1, 0.3  # m
 BAR = CurvedBar(INNER, OUTER)
@@ -57,12 +57,10 @@ def solve(n: int) -> Record:
 def target(key: str, within: float, h: float) -> Target:
     """One quantity, and what a finest mesh of elements of size h may miss of it."""
     if key not in HOOP:
-        why = f"(h/r)^4 at the inside of the finest mesh is {(h / INNER) ** 4:.0e}, and weighs "
-        return Target(key, EXACT[key], within, why + "only there", CURVED_BAR)
-    miss = missed_at_surface(*HOOP[key], h, 1e-3 * INNER)
-    why = f"four times s'' h^2 / 12 = {miss:.2g} MPa, what a linear stress through the Gauss "
-    why += "points misses at a surface; the element's own error is of that size"
-    return Target(key, EXACT[key], 4.0 * miss, why, CURVED_BAR, relative=False)
+        why = f"{fourth_power(h, INNER)}, and weighs only there"
+        return Target(key, EXACT[key], within, why, CURVED_BAR)
+    recovered = within_surface(curvature_of(*HOOP[key], 1e-3 * INNER), h)
+    return Target(key, EXACT[key], *recovered, CURVED_BAR, relative=False)
 
 
 @case(
@@ -88,5 +86,4 @@ def run(run: Run, page: Page) -> None:
         "Plane strain, hexahedra of 27 nodes, a quarter circle. The ends carry the exact "
         "tractions, so no clamp disturbs the stress."
     )
-    sketch = run.sketch(ring_sector(INNER, OUTER, 0.05, QUARTER, (4, 8, 1)))
-    page.image("The quarter circle that is solved, of one mesh", sketch)
+    page.image("The quarter circle that is solved, of one mesh", run.sketch(quarter_of(BAR, 4)))

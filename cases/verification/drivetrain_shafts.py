@@ -7,7 +7,7 @@ from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
 from fe_drivetrain.report import trace
 from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation import published_drivetrains as published
-from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, diameter, implied
+from fe_drivetrain.validation.implied_shafts import SHEAR_MODULUS, diameter, implied, of_stiffness
 from fe_drivetrain.validation.solid_shafts import straight
 from fe_drivetrain.validation.twisted_tubes import twisted_tube
 
@@ -18,19 +18,16 @@ STRESS = "rated shear stress at 1 m [MPa]"
 
 def solids(letter: str) -> dict[str, Record]:
     """Of each shaft of a drivetrain the solid ones of its stiffness, and stress at rated torque."""
-    name, power, rpm = published.RATED[letter]
-    table, torque = published.table(name), power / (rpm * 2 * np.pi / 60)
-    rows: dict[str, Record] = {}
-    for shaft, ratio in zip(table.shafts, table.speeds, strict=True):
-        at = {L: diameter(shaft.stiffness, L) for L in LENGTHS}
-        rows[shaft.name] = {
-            "drivetrain": f"{letter}, {power / 1e6:g} MW",
-            "shaft": shaft.name,
+    return {
+        name: {
+            "drivetrain": f"{letter}, {published.RATED[letter][1] / 1e6:g} MW",
+            "shaft": name,
             STIFFNESS: shaft.stiffness,
-            **{f"diameter at {L:g} m": d for L, d in at.items()},
-            STRESS: float(16 * torque / ratio / (np.pi * at[1.0] ** 3) / 1e6),
+            **{f"diameter at {L:g} m": d for L, d in shaft.diameters.items()},
+            STRESS: shaft.rated_stress / 1e6,
         }
-    return rows
+        for name, shaft in of_stiffness(letter, LENGTHS).items()
+    }
 
 
 @case(

@@ -7,14 +7,8 @@ from fe_drivetrain.cases.verification import scenes
 from fe_drivetrain.report import trace
 from fe_drivetrain.response import build_model, unit_load_response
 from fe_drivetrain.suite import Page, Record, Run, Target, column, grouped
+from fe_drivetrain.validation import turned_frames as turned
 from fe_drivetrain.validation.manufactured import quarter_ring, regular
-from fe_drivetrain.validation.turned_frames import (
-    differences,
-    moved_model,
-    random_frame,
-    response_differences,
-    solve_ring,
-)
 
 #: Distances of the origin that are tried [m].
 DISTANCES = (1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
@@ -41,7 +35,7 @@ def check(page: Page, body: str, frame: str, found: dict[str, float]) -> list[Re
 def run(run: Run, page: Page) -> None:
     """Solve solids, and the main bearing, again after a random rotation and a translation."""
     page.seed = SEED
-    Q, away = random_frame(SEED)
+    Q, away = turned.random_frame(SEED)
     still, here, far = np.eye(3), np.zeros(3), 10.0 * away
     frames = {"turned": (Q, here), "10 m away": (still, far), "turned, 10 m away": (Q, far)}
     rows: list[Record] = []
@@ -49,11 +43,14 @@ def run(run: Run, page: Page) -> None:
     for nodes, label in ((10, "curved tetrahedra"), (27, "27-node hexahedra")):
         body = f"quarter ring, {label}"
         with run.step(body):
-            fixed = solve_ring(nodes, still, here)
+            fixed = turned.solve_ring(nodes, still, here)
             for frame, (turn, shift) in frames.items():
-                moved = solve_ring(nodes, turn, shift)
-                rows += check(page, body, frame, differences(fixed, moved, turn))
-            taken = [differences(fixed, solve_ring(nodes, Q, d * away), Q) for d in DISTANCES]
+                moved = turned.solve_ring(nodes, turn, shift)
+                rows += check(page, body, frame, turned.differences(fixed, moved, turn))
+            taken = [
+                turned.differences(fixed, turned.solve_ring(nodes, Q, d * away), Q)
+                for d in DISTANCES
+            ]
             largest = [max(found.values()) for found in taken]
             traces.append(trace(body, DISTANCES, largest, mode="lines+markers"))
     for kind in ("spherical",) if run.quick else scenes.KINDS:
@@ -61,9 +58,9 @@ def run(run: Run, page: Page) -> None:
         scene, mesh = scenes.meshed(run, kind, scenes.QUICK)
         with run.step(f"main bearing, {kind}"):
             model = build_model(scene, mesh)
-            both = model, moved_model(model, Q, far)
+            both = model, turned.moved_model(model, Q, far)
             one, two = (unit_load_response(m, "superlu") for m in both)
-        found = response_differences(one, two, Q)
+        found = turned.response_differences(one, two, Q)
         rows += check(page, f"main bearing, {kind}", "turned, 10 m away", found)
 
     worst = {body: max(column(of, "difference [-]")) for body, of in grouped(rows, "body")}

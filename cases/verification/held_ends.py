@@ -1,7 +1,7 @@
 """Tension of a shaft whose ends are held flat and round: how much stiffer it is than EA / L."""
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, show_uniform
+from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, begin_uniform
 from fe_drivetrain.mesh import Grading
 from fe_drivetrain.revolution import end_stiffness
 from fe_drivetrain.scene import MATERIALS
@@ -50,10 +50,8 @@ def run(run: Run, page: Page) -> None:
     """Ends that are held flat and round, by the meridian and in three dimensions."""
     layers, ratios = (1, QUICK_RATIOS) if run.quick else (2, RATIOS)
     # the coarsest elements are half a diameter long, the layers at the ends 0.3 of that each
-    edge = 2 * 0.5 / 2 * 0.3**layers
-    singular = "stress is singular along held edges, of exponent 0.71 in steel; elements there are "
-    singular += f"{edge:.2g} radii long, what they miss goes as that to the power 1.4, and a tenth "
-    singular += "of the energy is at the ends at most"
+    missed, singular = theory.missed_at_held_edge(2 * 0.5 / 2 * 0.3**layers)
+    singular += ", and a tenth of the energy is at the ends at most"
     fades = "the slowest even self-balanced disturbance of a round steel bar fades by "
     fades += "exp(-2.72 x / R), 2.72 the real part of the first root of g^2 (J0^2 + J1^2) = "
     fades += "2 (1 - nu) J1^2: 2e-5 over two diameters; and the meridian's own error at held edges"
@@ -64,7 +62,7 @@ def run(run: Run, page: Page) -> None:
         same, before, last = held[ratios.index(SOLVED)], *held[-2:]
         same[SOLIDS] = 100 * (solids[-1] - 1)
         title = f"stiffness over E A / L between held ends, L = {SOLVED:g} D"
-        within, stiffness = 0.1 * edge**1.4, 1 + same[STIFFER] / 100
+        within, stiffness = 0.1 * missed, 1 + same[STIFFER] / 100
         target = Target(title, stiffness, within, singular, HARMONICS, measure="stiffness")
         page.meets(solids[-1], target, solid_shafts.mesh_band((1, 2), solids, 1.4), name)
         title = f"length that held ends take off, L = {last[RATIO]:g} D against "
@@ -77,10 +75,8 @@ def run(run: Run, page: Page) -> None:
         f"Ends that are held flat and round take {off['solid']:.3f} diameters off a solid shaft's "
         f"length, {off['bored']:.3f} off a bored one's."
     )
-    page.section("Held ends")
-    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
     meshed = "length of the shaft in three dimensions", LENGTH, "m"
-    show_uniform(page, OUTER, BORE, meshed, steel=STEEL)
+    begin_uniform(run, page, "Held ends", (OUTER, BORE), meshed, steel=STEEL)
     title = "What ends that can neither contract nor warp add to E A / L"
     curves = {STIFFER: "meridian", SOLIDS: "hexahedra"}
     page.sweep(title, rows, RATIO, curves, by=SHAFT, log="xy", axis=STIFFER)

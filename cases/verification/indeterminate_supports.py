@@ -6,14 +6,19 @@ import numpy as np
 
 from fe_drivetrain.beam import torsional_spring_reaction
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import Tube, parabola_shortfall
-from fe_drivetrain.validation.solid_shafts import LOCAL, Compliance, Supported, local_compliance
+from fe_drivetrain.validation.solid_shafts import (
+    LOCAL,
+    Compliance,
+    Supported,
+    local_compliance,
+    straight,
+)
 from fe_drivetrain.validation.supported_shafts import Load, SupportedShaft
 
 STEEL = MATERIALS["steel"]
@@ -73,8 +78,7 @@ def run(run: Run, page: Page) -> None:
         "On five sets of supports the frame and Macaulay's beam agree to round-off, and the "
         f"solid's largest reactions differ from them by at most {100 * largest:.2f} %."
     )
-    page.section("Indeterminate supports")
-    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)))
+    begin(run, page, "Indeterminate supports", straight((0.0, LENGTH), OUTER))
     show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),

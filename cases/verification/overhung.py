@@ -4,13 +4,11 @@ import numpy as np
 
 from fe_drivetrain.beam import pinned_reaction
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import check_motion, show_inputs
-from fe_drivetrain.report import trace
+from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import Tube
-from fe_drivetrain.validation.solid_shafts import local_compliance
+from fe_drivetrain.validation.solid_shafts import local_compliance, straight
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
 
 STEEL = MATERIALS["steel"]
@@ -57,7 +55,9 @@ def run(run: Run, page: Page) -> None:
             within = float(section + local_compliance(TUBE) * slack[k] / abs(value))
             even = SHAFT.evenly(load).motions[HUB, k], within, evenly, EVENLY
             by_frame, by_mesh = frame.motions[HUB, k], [s.motions[HUB, k] for s in solids]
-            found = check_motion(page, title, unit, (value, SHEARED), by_frame, by_mesh, even)
+            found = inputs.check_motion(
+                page, title, unit, (value, SHEARED), by_frame, by_mesh, even
+            )
             rows.append({"quantity": f"{part} by a {name}"} | found)
         statics = float(pinned_reaction(load.force, load.moment, L1, L2))
         left = "what the iterations leave of the solid's balance"
@@ -67,13 +67,11 @@ def run(run: Run, page: Page) -> None:
         ):
             title, why = f"load on the bearing by a {name}", f"statically determinate: {why}"
             page.meets(value, Target(f"{title}, {who} [N]", statics, within, why, STATICS))
-        traces.append(trace(f"{name}, beam", fine, 1e3 * SHAFT.beam(load, fine).motions[:, 0]))
-        traces.append(trace(f"{name}, solid", STATIONS, 1e3 * solids[-1].motions[:, 0], True))
+        traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1])
     met = ", ".join(f"{r['quantity']} {100 * (r['solid'] / r['frame'] - 1):+.3f} %" for r in rows)
     page.answer(f"The frame meets the closed forms with shear, and the solid the frame: {met}.")
-    page.section("Overhung shaft")
-    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)))
-    show_inputs(
+    inputs.begin(run, page, "Overhung shaft", straight((0.0, LENGTH), OUTER))
+    inputs.show_inputs(
         page,
         ("diameter, solid", OUTER, "m", "Stirling 2023, Table 3.1"),
         ("overhang L1, hub to bearing", L1, "m", "Stirling 2023, Table 3.1"),

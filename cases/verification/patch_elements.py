@@ -42,16 +42,8 @@ def run(run: Run, page: Page) -> None:
         if patch.holds_quadratics:
             title = "interpolated quadratic field, largest error of strain"
             page.meets(quadratic, Target(title, 0.0, 1e-12, ROUND_OFF, CONTAINED), of=patch.label)
-        rows.append(
-            {
-                "element": patch.label,
-                "elements": len(patch.block.cells),
-                "nodes": len(patch.block.points),
-                "smallest over largest Jacobian in an element": patch.jacobian_ratio(),
-                **found,
-                "strain of an interpolated quadratic field": quadratic,
-            }
-        )
+        interpolated = {"strain of an interpolated quadratic field": quadratic}
+        rows.append({**patch.size(), **found, **interpolated})
         if (nodes := patch.block.cells.shape[1]) > 4:
             step = "forces by degree of quadrature"
             forces = np.maximum(run.timed(step, blocks.forces_by_degree, patch, DEGREES), 1e-17)

@@ -5,17 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.report import bars
 from fe_drivetrain.suite import Page, Run, Target, column
-from fe_drivetrain.validation.patched_interfaces import (
-    MESHES,
-    QUICK_MESHES,
-    averaged_block,
-    rigid_block,
-    sphere_error,
-    sphere_kinematics,
-    sprung_block,
-    tied_blocks,
-    two_blocks,
-)
+from fe_drivetrain.validation import patched_interfaces as patched
 
 DIVISIONS = "elements along a side of the sector"
 ERROR = "error of the stress"
@@ -30,14 +20,14 @@ PATCH = "constant stress (Irons and Razzaque 1972, patch test)"
 )
 def run(run: Run, page: Page) -> None:
     """Every interface under constant stress."""
-    ties, by_nodes = run.timed("ties", tied_blocks, QUICK_MESHES if run.quick else MESHES)
+    meshes = patched.QUICK_MESHES if run.quick else patched.MESHES
+    ties, by_nodes = run.timed("ties", patched.tied_blocks, meshes)
     with run.step("reference points"):
-        points = {**sprung_block(), **averaged_block(), **rigid_block()}
+        points = {**patched.sprung_block(), **patched.averaged_block(), **patched.rigid_block()}
     with run.step("spheres"):
-        kinematics = sphere_kinematics()
-        spheres = [
-            {DIVISIONS: n, ERROR: sphere_error(n)} for n in ((2, 4) if run.quick else (2, 4, 8))
-        ]
+        kinematics = patched.sphere_kinematics()
+        divisions = (2, 4) if run.quick else (2, 4, 8)
+        spheres = [{DIVISIONS: n, ERROR: patched.sphere_error(n)} for n in divisions]
     for name, error in {**ties, **points, **kinematics}.items():
         page.meets(error, Target(name, 0.0, 1e-12, ROUND_OFF, PATCH))
     before, last = column(spheres, ERROR)[-2:]
@@ -88,7 +78,6 @@ def run(run: Run, page: Page) -> None:
         "carries the sphere's resultant only: it passes no pressure, and adds nothing to what "
         "presses on both faces."
     )
-    page.image(
-        "Two of the oblique blocks, hexahedra on tetrahedra", run.sketch(two_blocks((27, 10, 2, 3)))
-    )
+    sketch = run.sketch(patched.two_blocks((27, 10, 2, 3)))
+    page.image("Two of the oblique blocks, hexahedra on tetrahedra", sketch)
     page.data("stress errors", exact | by_nodes)

@@ -1,12 +1,12 @@
 """Pure bending of a shaft: the exact three-dimensional solution, with anticlastic curvature."""
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT, of_mesh, show_uniform
+from fe_drivetrain.cases.verification import shaft_inputs as inputs
+from fe_drivetrain.cases.verification.shaft_inputs import ERROR, SHAFT
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.exact_shafts import bent
 
 STEEL = MATERIALS["steel"]
@@ -26,7 +26,7 @@ def solve(name: str, refinement: int) -> Record:
     rim, top = abs(y + z).argmax(), shaft.skin[z.argmax()]
     moved, exact = shaft.found.u[shaft.skin, 1], shaft.exact[shaft.skin, 1]
     return {
-        **of_mesh(name, refinement, shaft),
+        **inputs.of_mesh(name, refinement, shaft),
         STIFFNESS: float(shaft.rear_moment * LENGTH / slope),
         EXACT: shaft.tube.EI,
         # u_z of the exact field has no mean but k x^2 / 2 where the section is round
@@ -76,15 +76,13 @@ def run(run: Run, page: Page) -> None:
         f"E I is met to {solid:.1g} (solid) and {bored:.1g} (bored), and every node lies within "
         f"{worst:.1g} of the exact field, over the largest displacement."
     )
-    page.section("Pure bending")
-    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
-    curved = "curvature", CURVATURE, "1/m", "chosen: 40 MPa at the skin"
-    show_uniform(page, OUTER, BORE, ("length", LENGTH, "m"), curved, steel=STEEL)
+    sizes, curved = (OUTER, BORE), ("curvature", CURVATURE, "1/m", "chosen: 40 MPa at the skin")
+    length = "length", LENGTH, "m"
+    inputs.begin_uniform(run, page, "Pure bending", sizes, length, curved, steel=STEEL)
     title = "Anticlastic bending: sideways displacement of the skin round the shaft, at mid length"
     page.chart(title, profiles, "angle from the neutral axis [degrees]", "u_y [µm]")
     listed = SHAFT, "unknowns", STIFFNESS, EXACT, ERROR
-    title, axis = "Error of the displacements", "relative error"
-    page.sweep(title, rows, "unknowns", ERROR, by=SHAFT, log="xy", axis=axis, table=listed)
+    inputs.show_errors(page, "Error of the displacements", rows, table=listed)
     page.text(
         "The field is quadratic, so elements of 27 nodes with straight sides would hold it; curved "
         "ones do not quite, and converge on it."

@@ -4,7 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, targets_of
 from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.validation.plane_rings import harmonics, inextensible_ring, plane_strain
 from fe_drivetrain.validation.ring_slices import half_wave, wave_pressure
@@ -67,10 +67,7 @@ def run(run: Run, page: Page) -> None:
     orders = ORDERS[:2] if run.quick else ORDERS
     found = {n: [run.timed(f"n = {n}", solve, n, level) for level in (1, 2, 4)] for n in orders}
     for n, rows in found.items():
-        targets = [
-            Target(key, value, *((5e-3, stress) if "stress" in key else (1e-4, moved)), MICHELL)
-            for key, value in thick[n].items()
-        ]
+        targets = targets_of(thick[n], {"stress": (5e-3, stress), "": (1e-4, moved)}, MICHELL)
         page.targets(f"By mesh, n = {n}", MeshSeries(rows, THROUGH), targets, "exact", f"n = {n}")
     thin = inextensible_ring(np.array(list(thick)), INNER, OUTER, PRESSURE, PLANE)
     ratio = np.array([of[RADIAL] for of in thick.values()]) / (1e6 * thin)

@@ -3,12 +3,12 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, show_inputs
+from fe_drivetrain.cases.verification.shaft_inputs import SIZE, begin, check_motion, show_inputs
 from fe_drivetrain.common import GRAVITY
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column
 from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, parabola_shortfall, sag
+from fe_drivetrain.validation.shaft_theory import Tube, evenly_loaded_shear, sag, within_arcs
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, sag_over_beam
 
 STEEL = MATERIALS["steel"]
@@ -51,30 +51,26 @@ def run(run: Run, page: Page) -> None:
     ratios = RATIOS[:2] if run.quick else RATIOS
     sweep = [run.timed("other lengths", beyond_the_beam, ratio) for ratio in ratios]
     turn, series = meshes[-1][TURN], MeshSeries(meshes, TURN)
-    section = 2 * 2 * parabola_shortfall(turn)
     local = abs(Q) * LENGTH * solid_shafts.local_compliance(TUBE) / abs(closed)
-    arcs = f"{turn} parabolic arcs round a turn: weight over I is wrong by twice the radius's "
-    arcs += "shortfall, twice that is allowed"
+    section, arcs = within_arcs(turn, "I over weight", 2)
     evenly = f"{arcs}; and the root's reaction enters evenly, {solid_shafts.LOCAL:.0%} of what one "
     evenly += "diameter shears"
-    area = f"{turn} parabolic arcs round a turn: twice the area's shortfall"
     weight, density = STEEL.density * TUBE.area * LENGTH, "density times volume"
     cowper, found = (closed, COWPER), (even, section + local, evenly, EVENLY)
     rotation, exact = (ROTATION, "q L^3 / 6EI"), (ROTATION, section, arcs, RECIPROCAL)
     down, turned = (column(meshes, key) for key in (SAG, TURNED))
     sagging = check_motion(page, "sag of the tip", "m", cowper, frame[0], down, found)
     turning = check_motion(page, "rotation of the tip", "rad", rotation, frame[1], turned, exact)
-    page.finest(series, Target(MASS, weight, section, area, density, order=4.0))
+    page.finest(series, Target(MASS, weight, *within_arcs(turn, "the area", 2), density, order=4.0))
     over_cowper, over_even = down[-1] / closed - 1, down[-1] / even - 1
     page.answer(
         f"An overhang of {RATIO:g} diameters sags {-1e3 * down[-1]:.4f} mm; by Timoshenko's "
         f"beam {-1e3 * closed:.4f} mm with Cowper's shear coefficient ({100 * over_cowper:+.3f} "
         f"%), {-1e3 * even:.4f} mm with that of an evenly held root ({100 * over_even:+.3f} %)."
     )
-    page.section("Sag")
-    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER)))
-    length = "overhang", LENGTH, "m"
-    show_inputs(page, ("diameter, solid", OUTER, "m", SIZE), length, steel=STEEL, gravity=DOWN)
+    sizes = ("diameter, solid", OUTER, "m", SIZE), ("overhang", LENGTH, "m")
+    begin(run, page, "Sag", solid_shafts.straight((0.0, LENGTH), OUTER))
+    show_inputs(page, *sizes, steel=STEEL, gravity=DOWN)
     title = "Sag of the solid beyond Timoshenko's beam with Cowper's coefficient, of the meshed "
     title += "section; beside it the beam with that of an evenly held root"
     curves = {FOUND: FOUND, EVEN: EVEN}

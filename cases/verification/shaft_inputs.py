@@ -1,11 +1,18 @@
 """Tables of inputs, sources and a check, shared by the cases of shafts."""
 
 from collections.abc import Sequence
+from typing import Any
 
+import numpy as np
+
+from fe_drivetrain.common import Floats
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.report import trace
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import Page, Record, Target
+from fe_drivetrain.suite import Page, Record, Run, Target
 from fe_drivetrain.validation.exact_shafts import ExactShaft
-from fe_drivetrain.validation.solid_shafts import mesh_band
+from fe_drivetrain.validation.solid_shafts import Supported, mesh_band, straight
+from fe_drivetrain.validation.supported_shafts import Load, SupportedShaft
 
 SIZE = "Stirling 2023, Table 3.1, in size"
 HARMONICS = "Fourier harmonics in the meridian (fe_drivetrain.revolution.harmonics)"
@@ -34,18 +41,66 @@ def show_inputs(
     page.table("Inputs", table, ["input", "value", "unit", "source"])
 
 
-def show_uniform(
-    page: Page, outer: float, bore: float, length: Input, *more: Input, steel: Material
+def begin(run: Run, page: Page, title: str, shaft: Shaft, shown: str = "The shaft") -> None:
+    """Begin a section with a picture of its shaft, and what is shown there."""
+    page.section(title)
+    page.image(shown, run.sketch(shaft))
+
+
+def begin_uniform(
+    run: Run,
+    page: Page,
+    title: str,
+    diameters: tuple[float, float],
+    length: tuple[str, float, str] | tuple[str, float, str, str],
+    *more: Input,
+    steel: Material,
 ) -> None:
-    """The inputs of a uniform shaft, solid and bored; diameters in m."""
-    show_inputs(
-        page,
-        ("outer diameter", outer, "m", SIZE),
-        ("bore of the bored shaft", bore, "m"),
-        length,
-        *more,
-        steel=steel,
-    )
+    """Begin the section of a uniform shaft, solid and bored; outer diameter and bore in m."""
+    outer, bore = diameters
+    begin(run, page, title, straight((0.0, length[1]), outer, bore), "The bored shaft")
+    sizes = ("outer diameter", outer, "m", SIZE), ("bore of the bored shaft", bore, "m"), length
+    show_inputs(page, *sizes, *more, steel=steel)
+
+
+def beside_beam(
+    name: str,
+    shaft: SupportedShaft,
+    load: Load,
+    at: Floats,
+    solid: Supported,
+    over_largest: bool = False,
+) -> list[Any]:
+    """Curves of a deflection: the beam with shear at places x [m], the solid at its stations.
+
+    Parameters
+    ----------
+    name : str
+        Of the load.
+    shaft : SupportedShaft
+        Which is bent.
+    load : Load
+        What bends it.
+    at : ndarray
+        (n,) [m].
+    solid : Supported
+        What the solid does under the load.
+    over_largest : bool
+        Over the largest deflection of the beam; in mm otherwise.
+    """
+    beam, means = shaft.beam(load, at).motions[:, 0], solid.motions[:, 0]
+    largest = np.abs(beam).max()
+    curve, points = (of / largest if over_largest else 1e3 * of for of in (beam, means))
+    solids = trace(f"{name}, solid", shaft.stations, points, True)
+    return [trace(f"{name}, beam", at, curve), solids]
+
+
+def show_errors(
+    page: Page, title: str, rows: Sequence[Record], table: Sequence[str] | bool
+) -> None:
+    """Errors of the displacements of `of_mesh` over the unknowns, a curve for each shaft."""
+    axis = "relative error"
+    page.sweep(title, rows, UNKNOWNS, ERROR, by=SHAFT, log="xy", axis=axis, table=table)
 
 
 def of_mesh(name: str, refinement: int, shaft: ExactShaft) -> Record:

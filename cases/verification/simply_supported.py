@@ -3,14 +3,12 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import SIZE, check_motion, show_inputs
+from fe_drivetrain.cases.verification import shaft_inputs as inputs
 from fe_drivetrain.common import GRAVITY
-from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.suite import Page, Record, Run, Target
-from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.shaft_theory import Tube
-from fe_drivetrain.validation.solid_shafts import local_compliance, mesh_band
+from fe_drivetrain.validation.solid_shafts import local_compliance, mesh_band, straight
 from fe_drivetrain.validation.supported_shafts import EVENLY, Load, SupportedShaft, within_evenly
 
 STEEL, OUTER, L = MATERIALS["steel"], 0.4, 2.4  # m
@@ -51,7 +49,7 @@ def run(run: Run, page: Page) -> None:
         beside = even, section + local * local_compliance(TUBE) / abs(closed), evenly, EVENLY
         of_frame, by_mesh = float(frame.motions[MIDDLE, 0]), [s.motions[MIDDLE, 0] for s in solids]
         exact, title = (closed, "closed form with shear"), f"{name}: deflection at mid span"
-        row = check_motion(page, title, "m", exact, of_frame, by_mesh, beside)
+        row = inputs.check_motion(page, title, "m", exact, of_frame, by_mesh, beside)
         rows.append({"load": name, "beam, evenly loaded": even} | row)
         page.data(name, row["solid"] / row["frame"] - 1)
         reactions, band = [float(s.reactions[END, 0]) for s in solids], None
@@ -61,9 +59,7 @@ def run(run: Run, page: Page) -> None:
             band = mesh_band(refinements, reactions)
         target = Target(REACTION, float(frame.reactions[END, 0]), within, why, FRAME)
         page.meets(reactions[-1], target, band, name)
-        curve, found = SHAFT.beam(load, fine).motions[:, 0], solids[-1].motions[:, 0]
-        traces.append(trace(f"{name}, beam", fine, curve / np.abs(curve).max()))
-        traces.append(trace(f"{name}, solid", STATIONS, found / np.abs(curve).max(), True))
+        traces += inputs.beside_beam(name, SHAFT, load, fine, solids[-1], over_largest=True)
     differences = {row["load"]: row["solid"] / row["frame"] - 1 for row in rows}
     page.answer(
         "The frame meets the closed forms with shear to round-off. The solid, held and loaded "
@@ -71,11 +67,10 @@ def run(run: Run, page: Page) -> None:
         + ", ".join(f"{100 * d:+.3f} % ({name})" for name, d in differences.items())
         + f" at L = {L / OUTER:g} D."
     )
-    page.section("Simple supports")
-    page.image("The shaft", run.sketch(solid_shafts.straight((0.0, L), OUTER)))
-    show_inputs(
+    inputs.begin(run, page, "Simple supports", straight((0.0, L), OUTER))
+    inputs.show_inputs(
         page,
-        ("diameter, solid", OUTER, "m", SIZE),
+        ("diameter, solid", OUTER, "m", inputs.SIZE),
         ("span", L, "m"),
         ("force at mid span", F / 1e6, "MN"),
         ("moment at the downwind end", M / 1e6, "MN m"),

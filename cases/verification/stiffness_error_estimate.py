@@ -6,18 +6,12 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.rigid_balance import check_balance
+from fe_drivetrain.mesh import ELEMENT_NAMES as NAMES
 from fe_drivetrain.report import trace
 from fe_drivetrain.solve import recovery_estimate
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.validation import exact_blocks, rigid_ended_shafts
 
-NAMES = {
-    4: "tetrahedra of 4 nodes",
-    10: "tetrahedra of 10 nodes",
-    8: "hexahedra of 8 nodes",
-    20: "hexahedra of 20 nodes",
-    27: "hexahedra of 27 nodes",
-}
 #: Hexahedra across the bars: linear elements need more of them.
 DIVISIONS = {4: (4, 8), 8: (4, 8), 10: (2, 5), 20: (2, 4), 27: (2, 4)}
 QUICK_DIVISIONS = {4: (4,), 8: (4,), 10: (2, 4), 20: (2,), 27: (2,)}

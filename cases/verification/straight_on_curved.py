@@ -6,11 +6,11 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.verification.orders import add_convergence, check_orders
 from fe_drivetrain.mesh import straightened
 from fe_drivetrain.suite import Page, Run, Target
+from fe_drivetrain.validation import round_shafts as bodies
 from fe_drivetrain.validation.manufactured import NORMS, Series
-from fe_drivetrain.validation.round_shafts import Bush, Torsion, slice_of_tube
 
 WALLS, QUICK_WALLS = (3, 6, 9, 12), (2, 3, 4)  # elements through; eight times as many round
-SHAFT, BUSH = Torsion(), Bush()
+SHAFT, BUSH = bodies.Torsion(), bodies.Bush()
 STIFFNESS, ENERGY = "torsional stiffness", NORMS[1]
 #: Of the stiffness, and of the norms L2 and energy.
 ORDERS = {"straight": (2.0, (2.0, 1.5)), "curved": (4.0, (3.0, 2.0))}
@@ -32,7 +32,7 @@ SIZE = "element over circumference [-]"
 def run(run: Run, page: Page) -> None:
     """Mesh a shaft and a bush with straight and with curved elements on the same corners."""
     walls = QUICK_WALLS if run.quick else WALLS
-    blocks, sides = [slice_of_tube(wall) for wall in walls], 8 * walls[-1]
+    blocks, sides = [bodies.slice_of_tube(wall) for wall in walls], 8 * walls[-1]
     sizes, unknowns = [1.0 / (8 * wall) for wall in walls], [block.points.size for block in blocks]
     straight = [straightened(block.points, block.cells) for block in blocks]
     shafts, bushes, last = [], [], []
@@ -47,11 +47,9 @@ def run(run: Run, page: Page) -> None:
     check_orders(run, page, [*shafts, *bushes], THEORY)
     (before, chords), (coarser, arcs), ratio = *last, sizes[-1] / sizes[-2]
     title = f"shaft, straight P2, {sides} sides: torsional rigidity less GJ, relative"
-    polygon, within = -4.0 / 3.0 * (np.pi / sides) ** 2, 2.0 * np.pi / sides
+    polygon, within = bodies.polygon_deficit(sides), 2.0 * np.pi / sides
     why = "terms of the next order are smaller by about the angle of a side"
-    depth = "first variation of J: on a circle it sees the mean of the missing depth alone, "
-    depth += "R (pi / n)^2 / 3 of a polygon of n sides, so dJ / J = -4 (pi / n)^2 / 3"
-    target = Target(title, polygon, within, why, depth, measure="stiffness")
+    target = Target(title, polygon, within, why, bodies.FIRST_VARIATION, measure="stiffness")
     page.meets(chords, target, abs(chords - before * ratio**2))
     title = f"shaft, curved P2, {sides} elements round: torsional rigidity [N m²]"
     good = "a tenth of a percent is what a stiffness of the suite should be good for"

@@ -2,14 +2,15 @@
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.scene import Material
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, grouped, order_of
+from fe_drivetrain.validation.loaded_blocks import fourth_power, within_surface
 from fe_drivetrain.validation.plane_rings import Lame, Plane, plane_strain
-from fe_drivetrain.validation.ring_slices import EIGHTH, pressed_ring
-from fe_drivetrain.validation.ring_solids import ring_sector
+from fe_drivetrain.validation.ring_slices import eighth_of, pressed_ring
 
 E, NU = 200e9, 0.3
 STEEL = Material(youngs_modulus=E, poisson_ratio=NU, density=0.0)
 RING = Lame(inner=0.3, outer=0.6, inside=100e6)  # m, Pa
+WALL = RING.outer - RING.inner
 #: Elements through the wall, by the nodes of an element; a quick run has the first three.
 DIVISIONS = {4: (4, 8, 16), 8: (4, 8, 16, 32), 10: (2, 4, 8), 20: (2, 4, 8, 16), 27: (2, 4, 8, 16)}
 NAMES = {4: "tetrahedra of 4 nodes", 10: "curved tetrahedra of 10 nodes"}
@@ -52,20 +53,15 @@ def run(run: Run, page: Page) -> None:
     twice = "twice the order of the strains: the mean displacement is an energy"
     for name, meshes in grouped(rows, ELEMENT):
         series, n, order = MeshSeries(meshes, THROUGH), meshes[-1][THROUGH], ORDERS.get(name, 4.0)
-        target = Target(ORDER, order, order / 8, eighth, twice, "", False, "order")
-        page.meets(series.order(MOVED), target, of=name)
+        page.meets(series.order(MOVED), order_of(ORDER, order, order / 8, eighth, twice), of=name)
         if name in ORDERS:
             continue
-        far = f"(h/r)^4 of the finest mesh, with h an element at the bore, is {(1 / n) ** 4:.0e}, "
-        far += "and its factor may be some units; rounded up to the next power of ten that a "
-        far += "stiffness needs"
-        # a linear field through Gauss points at 0.577 misses f'' h^2 / 12 at the surface
-        curvature = 6.0 * (EXACT[HOOP] - EXACT[RADIAL]) / 2.0 / RING.inner**2
-        missed = curvature * ((RING.outer - RING.inner) / n) ** 2 / 12.0
-        near = "four times s'' h^2 / 12, what a linear stress through the Gauss points of a "
-        near += f"hexahedron misses at its surface ({missed:.2g} MPa); tetrahedra are less even"
+        curvature, h = 6.0 * (EXACT[HOOP] - EXACT[RADIAL]) / 2.0 / RING.inner**2, WALL / n
+        far = f"{fourth_power(h, RING.inner)}, and its factor may be some units; rounded up to the "
+        far += "next power of ten that a stiffness needs"
+        within, near = within_surface(curvature, h)
         moved = Target(MOVED, EXACT[MOVED], tolerance, far, LAME, order=4.0)
-        of_stress = 4.0 * missed, near, LAME, "", False
+        of_stress = within, f"{near}; tetrahedra are less even", LAME, "", False
         stresses = (Target(key, EXACT[key], *of_stress) for key in (HOOP, RADIAL))
         page.finest(series, moved, *stresses, of=f"{name}, plane strain")
     uniform = "as in plane strain: the axial strain is uniform, and adds no error of its own"
@@ -90,5 +86,4 @@ def run(run: Run, page: Page) -> None:
         "on the true circles. The mean displacement of the bore is the work of the pressure over "
         "pressure and area."
     )
-    sketch = run.sketch(ring_sector(RING.inner, RING.outer, 0.075, EIGHTH, (4, 4, 1)))
-    page.image("The eighth of the ring that is solved", sketch)
+    page.image("The eighth of the ring that is solved", run.sketch(eighth_of(RING, 27, 4)))

@@ -1,10 +1,19 @@
 """Checks shared by the torsion cases with two bounds from the meridian."""
 
-from fe_drivetrain.suite import Page
+from fe_drivetrain.suite import Page, Target
 from fe_drivetrain.validation.torsion_meridian import Bounds
 
 BOUNDS = "between two bounds from the meridian (displacements; torsion function)"
 """Where a reference between the bounds comes from."""
+
+
+def between(
+    bounds: Bounds, key: str, within: float, why: str, order: float | None = None
+) -> Target:
+    """A stiffness between the bounds, whose own width is allowed besides; see `Target`."""
+    width = bounds.half_width / bounds.middle
+    reasons = f"{why}; and the bounds' own width"
+    return Target(key, bounds.middle, within + width, reasons, BOUNDS, order=order)
 
 
 def check_plane_sections(page: Page, quantity: str, bounds: Bounds, stiffness: float) -> None:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
-from fe_drivetrain.cases.verification.torsion_bound import BOUNDS, check_plane_sections
+from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
+from fe_drivetrain.cases.verification.torsion_bound import between, check_plane_sections
 from fe_drivetrain.cases.verification.torsion_conical import (
     HALF_ANGLE,
     INPUTS,
@@ -14,7 +14,7 @@ from fe_drivetrain.cases.verification.torsion_conical import (
 )
 from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target
 from fe_drivetrain.validation import solid_shafts
-from fe_drivetrain.validation.shaft_theory import between_spheres, parabola_shortfall
+from fe_drivetrain.validation.shaft_theory import between_spheres, within_arcs
 from fe_drivetrain.validation.torsion_meridian import series_stiffness, torsion_bounds
 
 G = STEEL.shear_modulus
@@ -52,28 +52,22 @@ def run(run: Run, page: Page) -> None:
         bounds = torsion_bounds(SHAFT, G, RADII[0] / (2 if run.quick else 3), 2)
         sweep = [too_stiff(angle) for angle in (QUICK_ANGLES if run.quick else ANGLES)]
     series, simple = MeshSeries(meshes, TURN), series_stiffness(SHAFT, G)
-    turn, width = series.last[TURN], bounds.half_width / bounds.middle
-    shortfall = 4 * parabola_shortfall(turn)
-    arcs = f"{turn} parabolic arcs round a turn: J is {shortfall:.2g} too low, and three times "
-    arcs += "that is allowed, since the elements do not contain this field; and the bounds' own "
-    arcs += "width"
-    rigid = Target(RIGID, bounds.middle, 3 * shortfall + width, arcs, BOUNDS, order=4.0)
-    page.finest(series, rigid)
+    arcs = within_arcs(series.last[TURN], "J", 4, held=False)
+    page.finest(series, between(bounds, RIGID, *arcs, order=4.0))
     title = "excess of the upper bound over 1 / integral of dx / GJ"
     check_plane_sections(page, title, bounds, simple)
     title = f"1 / integral of dx / GJ at a half angle of {HALF_ANGLE:g} degrees [N m/rad]"
     first = "of a complete cone between spheres the integral is 5/3 a^2 too stiff to first order "
     first += "in the half angle a; flat rigid ends stiffen the cone, so it is less"
     within = float(np.tan(np.radians(HALF_ANGLE)) ** 2) * 5 / 3
-    between = "between two bounds from the meridian"
-    page.meets(simple, Target(title, bounds.middle, within, first, between))
+    meridian = "between two bounds from the meridian"
+    page.meets(simple, Target(title, bounds.middle, within, first, meridian))
     excess = 100 * (simple / bounds.middle - 1)
     page.answer(
         f"Between rigid flat ends the integral of dx / GJ is {excess:.2f} % too stiff at a half "
         f"angle of {HALF_ANGLE:g} degrees."
     )
-    page.section("Cone")
-    page.image("The cone", run.sketch(SHAFT))
+    begin(run, page, "Cone", SHAFT, "The cone")
     show_inputs(page, *INPUTS, steel=STEEL)
     title = "How much too stiff the integral of dx / GJ is: against rigid flat ends, and against "
     title += "Michell's cone between spheres through the ends' centres"

@@ -1,10 +1,10 @@
 """Torsion of a stepped shaft: the series sum of L / GJ, and the flexibility of the step."""
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_inputs
-from fe_drivetrain.cases.verification.torsion_bound import BOUNDS, check_plane_sections, check_width
+from fe_drivetrain.cases.verification import torsion_bound as bound
+from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import Page, Record, Run, Target
+from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.torsion_meridian import added_length, series_stiffness, torsion_bounds
 from fe_drivetrain.validation.twisted_tubes import twisted_step
@@ -29,12 +29,11 @@ def bored_or_solid(run: Run, page: Page, bore: float) -> Record:
     given = (LARGE, SMALL), LENGTH, bore, STEEL, refinements
     found = run.timed(f"{name}: mesh and solve", twisted_step, *given)
     title = f"{name}: torsional stiffness in three dimensions [N m/rad]"
-    within = found.tolerance + bounds.half_width / bounds.middle
-    why, summed = f"{found.reason}; and the bounds' own width", series_stiffness(shaft, G)
-    page.meets(found.stiffness, Target(title, bounds.middle, within, why, BOUNDS), found.band)
-    check_width(page, f"{name}: width of the bounds from the meridian, relative", bounds)
+    within, summed = (found.tolerance, found.reason), series_stiffness(shaft, G)
+    page.meets(found.stiffness, bound.between(bounds, title, *within), found.band)
+    bound.check_width(page, f"{name}: width of the bounds from the meridian, relative", bounds)
     title = f"{name}: excess of the upper bound over the series sum"
-    check_plane_sections(page, title, bounds, summed)
+    bound.check_plane_sections(page, title, bounds, summed)
     return {
         "shaft": name,
         SERIES: summed,
@@ -73,8 +72,8 @@ def run(run: Run, page: Page) -> None:
         "more of the thin part would. The solid in three dimensions lies within "
         f"{100 * abs(solid[SOLID] / middle - 1):.2g} % of the middle of two exact bounds."
     )
-    page.section("What a step adds")
-    page.image("The bored shaft", run.sketch(solid_shafts.stepped((LARGE, SMALL), LENGTH, BORE)))
+    bored_shaft = solid_shafts.stepped((LARGE, SMALL), LENGTH, BORE)
+    begin(run, page, "What a step adds", bored_shaft, "The bored shaft")
     names = "large diameter", "small diameter", "bore of the bored shaft", "length of each part"
     sizes = [(name, d, "m") for name, d in zip(names, (LARGE, SMALL, BORE, LENGTH), strict=True)]
     sharp = "fillet", 0.0, "m", "sharp step: the most that a step can add"

@@ -3,12 +3,11 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.verification.shaft_inputs import show_uniform
+from fe_drivetrain.cases.verification.shaft_inputs import begin_uniform
 from fe_drivetrain.report import trace
 from fe_drivetrain.scene import MATERIALS
-from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped
+from fe_drivetrain.suite import MeshSeries, Page, Record, Run, Target, column, grouped, order_of
 from fe_drivetrain.validation import shaft_theory as theory
-from fe_drivetrain.validation import solid_shafts
 from fe_drivetrain.validation.exact_shafts import twisted
 from fe_drivetrain.validation.solid_shafts import meshed_moment
 
@@ -66,7 +65,7 @@ def run(run: Run, page: Page) -> None:
         page.meets(best[STIFFNESS], section, band, name)
         page.meets(best[BALANCE], Target(BALANCE, 0.0, 1e-8, solver, works), of=name)
         order = float(np.log(before[ERROR] / best[ERROR]) / np.log(turn / before[TURN]))
-        page.meets(order, Target(ORDER, 4.0, 0.2, small, fourth, "", False, "order"), of=name)
+        page.meets(order, order_of(ORDER, 4.0, 0.2, small, fourth), of=name)
         page.settled(series, Target(STRESS, SKIN, *skin, "G theta R / L"), of=name)
         rows += meshes
     finest = max(row[ERROR] for row in rows if row[TURN] == rows[-1][TURN])
@@ -74,10 +73,8 @@ def run(run: Run, page: Page) -> None:
         f"G J / L is met to {finest:.1g} (relative) with {rows[-1][TURN]} elements of 27 nodes "
         "round a turn, solid and bored; what is left is what parabolas miss of the circle."
     )
-    page.section("Torsional stiffness")
-    page.image("The bored shaft", run.sketch(solid_shafts.straight((0.0, LENGTH), OUTER, BORE)))
     length = "length", LENGTH, "m", "chosen: the answer does not depend on it"
-    show_uniform(page, OUTER, BORE, length, steel=STEEL)
+    begin_uniform(run, page, "Torsional stiffness", (OUTER, BORE), length, steel=STEEL)
     curves = [trace(of, column(r, TURN), column(r, ERROR), True) for of, r in grouped(rows, SHAFT)]
     missed = [4 * theory.parabola_shortfall(n) for n in range(4, 33)]
     curves.append(trace("shortfall of parabolic arcs", range(4, 33), missed))

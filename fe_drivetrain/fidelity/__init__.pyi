@@ -24,7 +24,9 @@ from .component_levels import pin_motions as pin_motions
 from .component_levels import rigid_level as rigid_level
 from .component_levels import solid_level as solid_level
 from .component_levels import torque_share as torque_share
+from .component_solid import COARSER as COARSER
 from .component_solid import SolidComponent as SolidComponent
+from .component_solid import coarser as coarser
 from .component_solid import solid_component as solid_component
 from .designs import Difference as Difference
 from .designs import Value as Value

@@ -10,9 +10,17 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.geometry import BodySizes
 from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.mesh.symmetry import meshed, mirror, repeated, turns
-from fe_drivetrain.scene.component import Component, HousingComponent, material_of
+from fe_drivetrain.scene.component import Component, HousingComponent, SomeComponent, material_of
 from fe_drivetrain.solve.coupled_solid import CondensedSolid, condensed_solid
 from fe_drivetrain.solve.error_estimate import SAFETY, error_energies
+
+COARSER = (1.8, 1.35)
+"""Factors on mesh sizes of the two coarser solids that give the finest its band."""
+
+
+def coarser(component: SomeComponent, factor: float) -> SomeComponent:
+    """The component with its mesh sizes times a factor."""
+    return component.model_copy(update={"mesh": component.mesh.scaled(factor)})
 
 
 def component_mesh(component: Component) -> tuple[Mesh, BodySizes]:

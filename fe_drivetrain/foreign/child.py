@@ -49,13 +49,20 @@ def _text(data: Any) -> np.ndarray[Any, Any]:
     return np.array(json.dumps(data))
 
 
+def _opened(request: dict[str, Any]) -> dict[str, Any]:
+    from fe_drivetrain.foreign import step_solid
+
+    given = (request.get(key) for key in ("part", "healed"))
+    return step_solid.opened(request["file"], request["smallest_detail"], *given)
+
+
 def _look_at_step(request: dict[str, Any]) -> dict[str, Any]:
     """A survey, and a coarse surface for a picture."""
     from fe_drivetrain.foreign import step_heal, step_solid
     from fe_drivetrain.geometry.session import gmsh_session
 
     with gmsh_session():
-        survey = step_solid.opened(request["file"], request["smallest_detail"])
+        survey = _opened(request)
         survey["seats"] = step_solid.seat_cylinders(survey)
         points, triangles, owner = np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros(0, int)
         curved: dict[str, Any] = {}
@@ -113,7 +120,7 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
     from fe_drivetrain.geometry.session import gmsh_session
 
     with gmsh_session():
-        survey = step_solid.opened(request["file"], request["smallest_detail"], request["part"])
+        survey = _opened(request)
         seat = step_mesh.seat_of(survey, request)
         seat["holes"] = (
             step_mesh.bolt_holes(survey, request, _held(survey, request))
@@ -154,7 +161,7 @@ def _mesh_further_part(request: dict[str, Any]) -> dict[str, Any]:
     from fe_drivetrain.geometry.session import gmsh_session
 
     with gmsh_session():
-        survey = step_solid.opened(request["file"], request["smallest_detail"], request["part"])
+        survey = _opened(request)
         step_mesh.name_faces(survey, request)
         step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
         arrays = _grouped()

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,8 +16,8 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.made_by import machine, source_hash
 from fe_drivetrain.foreign.bolted import MOST_BETWEEN_RIMS, SIDES, joined_between_rims, opened
+from fe_drivetrain.foreign.known_healing import file_digest, read_step, reader_versions
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.geometry import ForeignFile, Pick
@@ -45,27 +43,6 @@ class PlacedPart(NamedTuple):
 
     mesh: Mesh
     facts: Mapping[str, Any]
-
-
-@lru_cache(maxsize=256)
-def _digest(path: str, modified: int, size: int) -> str:
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def file_digest(path: str) -> str:
-    """SHA-256 of a file; "" where there is none.
-
-    Parameters
-    ----------
-    path : str
-        The file.
-    """
-    try:
-        found = Path(path).stat()
-        return _digest(str(path), found.st_mtime_ns, found.st_size)
-    except OSError:
-        return ""
 
 
 def kept_part(
@@ -100,7 +77,7 @@ def kept_part(
         **content,
         "file": file_digest(source.file),
         "housing": source.model_dump(mode="json", exclude={"material", "step", "mesh"}),
-        "made by": _made_by(),
+        "made by": reader_versions(),
     }
     arrays = used.load("meshes", whole) if whole["file"] else None
     if arrays is None:
@@ -130,15 +107,6 @@ def kept_part(
     cells = arrays["cells"]
     mesh = Mesh(arrays["points"], cells, np.zeros(len(cells), dtype=np.int64), (part,), faces, {})
     return PlacedPart(mesh, facts)
-
-
-def _made_by() -> dict[str, str]:
-    import gmsh
-    import meshio
-
-    code = source_hash({"fe_drivetrain.geometry": None, "fe_drivetrain.foreign": None})
-    versions = {"gmsh": gmsh.__version__, "meshio": meshio.__version__, "numpy": np.__version__}
-    return versions | {"machine": machine(), "code": code}
 
 
 def pick_data(pick: Pick) -> dict[str, Any]:
@@ -173,7 +141,7 @@ def meshed_step(
         What is known of the solids.
     """
     for _ in range(ATTEMPTS):
-        found = read_in_process(action, source.file, request)
+        found = read_step(action, source.file, request)
         survey: dict[str, Any] = json.loads(str(found["survey"]))
         mesh = _placed_mesh(found, source, shift(survey), survey)
         if len(inverted_cells(mesh)) == 0:

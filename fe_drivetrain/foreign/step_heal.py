@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -63,10 +63,13 @@ class Healed(NamedTuple):
         Of `counted`.
     words : str
         What was done, in a sentence.
+    step : int or None
+        Place of the step of healing among those tried; None where there was none.
     """
 
     after: dict[str, Any]
     words: str
+    step: int | None
 
 
 def counted() -> dict[str, Any]:
@@ -174,7 +177,11 @@ def reason(error: Exception) -> str:
 
 
 def heal(
-    name: str, before: dict[str, Any], read: Callable[[], None], smallest_detail: float
+    name: str,
+    before: dict[str, Any],
+    read: Callable[[], None],
+    smallest_detail: float,
+    known: Mapping[str, Any] | None = None,
 ) -> Healed:
     """Leave sound solids in the model: as they are read, or with the least healing that they need.
 
@@ -188,6 +195,8 @@ def heal(
         Puts what is in the file into an empty model.
     smallest_detail : float
         Edges and small faces below it are removed; none are if 0 [mm].
+    known : Mapping[str, Any] or None
+        "words" and "step" of `Healed`, as found before for the same file: it is not tried again.
 
     Returns
     -------
@@ -198,19 +207,23 @@ def heal(
     InputError
         No step leaves as many solids of the same volume with closed shells.
     """
+    steps = _REMOVING if smallest_detail > 0 else _STEPS
+    if known:
+        step = known["step"]
+        after = before if step is None else _tried(read, steps[step], smallest_detail)
+        return Healed(after, known["words"], step)
     wrong = fault()
     if not wrong and not smallest_detail > 0:
-        return Healed(before, "not healed: its shells are closed, and gmsh meshes them")
-    steps = _REMOVING if smallest_detail > 0 else _STEPS
+        return Healed(before, "not healed: its shells are closed, and gmsh meshes them", None)
     why = f"{wrong}; " if wrong else ""
     after, best = before, None
-    for step in steps:
+    for number, step in enumerate(steps):
         after = _tried(read, step, smallest_detail)
         if not _as_before(before, after):
             continue
-        best = step
+        best = number
         if not (left := fault()):
-            return Healed(after, f"healed: {why}{step.words}")
+            return Healed(after, f"healed: {why}{step.words}", number)
     if best is None:
         raise InputError(
             f"{name} has {before['words']} of {before['volume']:.9g} mm^3 before and "
@@ -218,7 +231,7 @@ def heal(
             f"{f' ({wrong})' if wrong else ''}, but must have as many "
             f"of the same volume, to {VOLUME_TOLERANCE:g}: repair its faces in the CAD program"
         )
-    after = _tried(read, best, smallest_detail)
+    after = _tried(read, steps[best], smallest_detail)
     if left := free_edges([t for _, t in gmsh.model.getEntities(2)]):
         raise InputError(
             f"{name}: {left}, and healing does not close them: close the shell in the CAD program"
@@ -228,7 +241,7 @@ def heal(
             f"{name}: {left}, as it is and healed: its faces cross, so repair it in the CAD program"
         )
     # other elements than these coarse ones may do: what is wrong is said where it is meshed
-    return Healed(after, f"healed, but not sound: {left}")
+    return Healed(after, f"healed, but not sound: {left}", best)
 
 
 def _tried(read: Callable[[], None], step: Step, smallest_detail: float) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +34,26 @@ _SURFACES = {  # as STEP and gmsh call them
 }
 
 
-def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> dict[str, Any]:
+def opened(
+    path: str,
+    smallest_detail: float = 0.0,
+    part: str | None = None,
+    known: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
     """Import and heal the solids of a STEP file, or one of them; what is known, for `Survey`.
 
     Several solids are glued: they share the faces in which they touch.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+    smallest_detail : float
+        Of `heal` [mm].
+    part : str or None
+        The name of the solid that is wanted alone.
+    known : Mapping[str, Any] or None
+        "healed" of an earlier result for the same file, detail and part.
     """
     name = Path(path).name
     for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):
@@ -82,7 +98,7 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
         if part is not None:
             keep(name, part)
 
-    after, words = heal(name, before, again, smallest_detail)
+    after, words, step = heal(name, before, again, smallest_detail, known)
     kept = after["faces"] == before["faces"]
     if after["solids"] > 1:
         colours = glue(name, math.dist(_box()[:3], _box()[3:]), colours if kept else {})
@@ -103,6 +119,7 @@ def opened(path: str, smallest_detail: float = 0.0, part: str | None = None) -> 
         "before": before,
         "after": after,
         "healing": "; ".join(filter(None, (closed, words))),
+        "healed": {"words": words, "step": step},
         "solids": solids(),
         "box": _box(),
         "faces": faces,

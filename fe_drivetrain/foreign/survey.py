@@ -12,6 +12,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.holes import cylinders, planes
+from fe_drivetrain.foreign.known_healing import read_step
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.foreign.words import nearly
@@ -94,7 +95,7 @@ def surveyed(path: str | Path) -> Survey:
 
 
 def _of_step(path: Path) -> Survey:
-    found = read_in_process("look", path, {"smallest_detail": 0.0})
+    found = read_step("look", path, {"smallest_detail": 0.0})
     data = json.loads(str(found["survey"]))
     before, after = data["before"], data["after"]
     low, high = np.reshape(data["box"], (2, 3))

@@ -43,6 +43,7 @@ from .mesh import boundary as boundary
 from .shaft_section import UNGRADED as UNGRADED
 from .shaft_section import Grading as Grading
 from .shaft_section import shaft_quadrilaterals as shaft_quadrilaterals
+from .shapes import ELEMENT_NAMES as ELEMENT_NAMES
 from .shapes import TETRAHEDRON_EDGES as TETRAHEDRON_EDGES
 from .shapes import element_kind as element_kind
 from .shapes import shape_functions as shape_functions

@@ -1,5 +1,6 @@
 """What an element is: nodes, shape functions and quadrature of tetrahedra and hexahedra."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -96,6 +97,16 @@ class ElementKind(Nodal):
         """Reference gradients (n_q, 3, n_nodes), nodes in VTK's order, and weights (n_q,)."""
         X, W = get_quadrature(self.element.refdom, degree)
         return np.ascontiguousarray(self.shape(X)[1]), W
+
+
+ELEMENT_NAMES: Mapping[int, str] = {
+    4: "tetrahedra of 4 nodes",
+    10: "tetrahedra of 10 nodes",
+    8: "hexahedra of 8 nodes",
+    20: "hexahedra of 20 nodes",
+    27: "hexahedra of 27 nodes",
+}
+"""Elements in words, by the number of their nodes."""
 
 
 @cache

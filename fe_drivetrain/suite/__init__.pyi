@@ -19,3 +19,5 @@ from .run_comparison import compare_runs as compare_runs
 from .settings import settings_in_words as settings_in_words
 from .suite import run_cases as run_cases
 from .targets import Target as Target
+from .targets import order_of as order_of
+from .targets import targets_of as targets_of

@@ -208,9 +208,8 @@ class Page:
             tolerance=target.within,
             relative=target.relative and not zero,
             unit=unit,
-            measure=target.measure
-            or MEASURES.get(unit)
-            or ("identity" if not target.value else None),
+            measure=target.measure or MEASURES.get(unit) or ("identity" if zero else None),
+            basis=target.basis,
             band=band,
         )
 
@@ -464,8 +463,6 @@ class Page:
         """Keep numbers for other programs in results.json, under a name with its unit."""
         self.figures[name] = as_json(value)
 
-    # the atlas, and what was assumed
-
     def limit(
         self,
         method: str,
@@ -495,3 +492,8 @@ class Page:
     def assume(self, name: str, value: Cell, unit: str, source: str) -> None:
         """State a value that the sources do not give, and where it comes from."""
         self.assumptions.append(AssumptionRow(name=name, value=value, unit=unit, source=source))
+
+    def assume_all(self, rows: Iterable[tuple[str, Cell, str, str]]) -> None:
+        """State several such values, each as `assume` takes it."""
+        for row in rows:
+            self.assume(*row)

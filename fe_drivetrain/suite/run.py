@@ -20,8 +20,11 @@ from fe_drivetrain.common.made_by import arithmetic, program_hash
 from fe_drivetrain.common.progress import Progress, silent
 
 if TYPE_CHECKING:
+    from fe_drivetrain.common.arrays import Floats
     from fe_drivetrain.geometry.shaft import Shaft
+    from fe_drivetrain.mesh.blocks import Block
     from fe_drivetrain.report.pictures.sketch import Body, Faces
+    from fe_drivetrain.report.results import Image, Solid
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -146,6 +149,32 @@ class Run:
 
         (self.folder / file).write_bytes(sketch(*bodies))
         return file
+
+    def view(
+        self,
+        caption: str,
+        part: tuple[str, Block, tuple[float, float]],
+        fields: Mapping[str, Floats],
+        still: str,
+    ) -> Solid | Image:
+        """A body as it is bent, to be turned in the browser, beside a picture of it.
+
+        Parameters
+        ----------
+        caption : str
+            Of either.
+        part : tuple
+            The body's name, its mesh, and Lame's constants of its material [Pa].
+        fields : mapping
+            Name of each load, and displacements (n, 3) [m] under it.
+        still : str
+            File of the picture, as of `sketch`.
+        """
+        from fe_drivetrain.report.solid_view import Parts, solid_or_picture
+
+        name, block, lame = part
+        body = Parts(block.points, {name: block.cells})
+        return solid_or_picture(caption, body, fields, {name: lame}, self.folder, still)
 
     def add_time(self, name: str, seconds: float) -> None:
         """Add to the wall time of a step."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from fe_drivetrain.report.results import Measure
+from fe_drivetrain.report.results import Basis, Measure
 
 MEASURES: Mapping[str, Measure] = {
     "MPa": "stress",
@@ -56,6 +56,8 @@ class Target(NamedTuple):
         Kind of quantity; that of the unit where left out.
     order : float or None
         Expected order of convergence.
+    basis : str
+        What the value rests on.
     """
 
     key: str
@@ -67,6 +69,42 @@ class Target(NamedTuple):
     relative: bool = True
     measure: Measure | None = None
     order: float | None = None
+    basis: Basis = "independent"
+
+
+def order_of(name: str, value: float, within: float, why: str, source: str) -> Target:
+    """An order of convergence as a target; what is allowed is of the order itself."""
+    return Target(name, value, within, why, source, relative=False, measure="order")
+
+
+def targets_of(
+    values: Mapping[str, float], allowed: Mapping[str, tuple[float, str]], source: str
+) -> list[Target]:
+    """Targets for several quantities of one source.
+
+    Parameters
+    ----------
+    values : mapping
+        Value of each quantity, by its key.
+    allowed : mapping
+        Allowed difference and why, by words of the keys: ``{"stress": (5e-3, "recovered at a
+        surface"), "": (1e-4, "fourth order")}``. The first that stands in a key counts, and "" does
+        in each.
+    source : str
+        Where all the values come from.
+
+    Raises
+    ------
+    ValueError
+        Nothing says what a quantity is allowed to differ by.
+    """
+    targets = []
+    for key, value in values.items():
+        of_key = next((of for words, of in allowed.items() if words in key), None)
+        if of_key is None:
+            raise ValueError(f"{key!r} has none of the words {', '.join(map(repr, allowed))}")
+        targets.append(Target(key, value, *of_key, source))
+    return targets
 
 
 def split_unit(key: str) -> tuple[str, str]:

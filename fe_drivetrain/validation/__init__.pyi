@@ -18,6 +18,7 @@ from . import fillet_factors as fillet_factors
 from . import fingerprints as fingerprints
 from . import folded_meshes as folded_meshes
 from . import growing_shafts as growing_shafts
+from . import housed_bearing as housed_bearing
 from . import housing_dimensions as housing_dimensions
 from . import housing_nodes as housing_nodes
 from . import implied_shafts as implied_shafts
@@ -64,7 +65,9 @@ from . import spherical_shells as spherical_shells
 from . import squeezed_rings as squeezed_rings
 from . import stiffness_choices as stiffness_choices
 from . import streamed_series as streamed_series
+from . import studied_lives as studied_lives
 from . import supported_shafts as supported_shafts
+from . import thesis_beam as thesis_beam
 from . import thin_bodies as thin_bodies
 from . import tied_bars as tied_bars
 from . import tied_rings as tied_rings

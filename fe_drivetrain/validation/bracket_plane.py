@@ -21,6 +21,7 @@ from skfem import (
 from skfem.models.elasticity import linear_elasticity
 
 from fe_drivetrain.common import Floats
+from fe_drivetrain.scene import Material
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class Bracket:
 
 
 def plane_answer(
-    bracket: Bracket, E: float, nu: float, force: float, through: int
+    bracket: Bracket, material: Material, force: float, through: int
 ) -> tuple[float, float]:
     """Strain energy per width and greatest principal stress of the fillet, in plane strain.
 
@@ -96,8 +97,8 @@ def plane_answer(
     ----------
     bracket : Bracket
         The leg's end stays on its plane, and slides in it.
-    E, nu : float
-        Young's modulus [Pa] and Poisson's ratio.
+    material : Material
+        Of the bracket.
     force : float
         On the end of the arm, upwards, per width [N/m].
     through : int
@@ -108,6 +109,7 @@ def plane_answer(
     energy, stress
         [J/m] and [Pa].
     """
+    E, nu = material.youngs_modulus, material.poisson_ratio
     lam, mu = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
     unit = MeshTri2.from_mesh(
         MeshTri.init_tensor(np.linspace(0.0, 1.0, through + 1), bracket.edges(through))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats
+from fe_drivetrain.mesh import Block
 from fe_drivetrain.scene import Material
 from fe_drivetrain.validation.loaded_blocks import LoadedBlock, face_loads, solve_block, supports
 from fe_drivetrain.validation.plane_rings import CurvedBar
@@ -42,6 +43,12 @@ class BentAndPulled:
     rotation: float
 
 
+def quarter_of(bar: CurvedBar, n: int) -> Block:
+    """Hexahedra of 27 nodes, n through the height, twice as many along the bar, one across."""
+    width = (bar.outer - bar.inner) / n
+    return ring_sector(bar.inner, bar.outer, width, 0.5 * np.pi, (n, 2 * n, 1))
+
+
 def bent_and_pulled(
     bar: CurvedBar, material: Material, moment: float, force: float, n: int
 ) -> BentAndPulled:
@@ -56,10 +63,10 @@ def bent_and_pulled(
     moment, force : float
         Per width [N] and [N/m].
     n : int
-        Hexahedra of 27 nodes through the height, twice as many along the bar, one across.
+        Hexahedra through the height, see `quarter_of`.
     """
     width, quarter = (bar.outer - bar.inner) / n, 0.5 * np.pi
-    block = ring_sector(bar.inner, bar.outer, width, quarter, (n, 2 * n, 1))
+    block = quarter_of(bar, n)
     here, there = (
         [node_at(block.points, [0.0, r * np.cos(t), r * np.sin(t)]) for r in (bar.inner, bar.outer)]
         for t in (0.0, quarter)
@@ -80,17 +87,15 @@ def bent_and_pulled(
     return BentAndPulled(bent, pulled, width, there[0], there[1], float(turned))
 
 
-def missed_at_surface(field: Callable[[Floats], Floats], r: float, h: float, step: float) -> float:
-    """What a linear field through the Gauss points misses at the surface, s'' h^2 / 12.
+def curvature_of(field: Callable[[Floats], Floats], r: float, step: float) -> float:
+    """Size of a field's second derivative, by a difference quotient.
 
     Parameters
     ----------
     field : Callable
-        Stress of (n,) radii [m].
-    r, h : float
-        Radius of the surface, and height of the element there [m].
-    step : float
-        Of the difference quotient for s'' [m].
+        Of (n,) radii [m].
+    r, step : float
+        Where, and how far the quotient reaches to both sides [m].
     """
     around = field(np.array([r - step, r, r + step]))
-    return float(abs(around[0] - 2.0 * around[1] + around[2]) / step**2 * h**2 / 12.0)
+    return float(abs(around[0] - 2.0 * around[1] + around[2]) / step**2)

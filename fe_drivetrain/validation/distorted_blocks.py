@@ -59,6 +59,15 @@ class Patch:
         """Nodes inside."""
         return np.setdiff1d(np.arange(len(self.block.points)), self.outer)
 
+    def size(self) -> dict[str, str | int | float]:
+        """Label, elements, nodes and `jacobian_ratio`, by the headings of a table."""
+        return {
+            "element": self.label,
+            "elements": len(self.block.cells),
+            "nodes": len(self.block.points),
+            "smallest over largest Jacobian in an element": self.jacobian_ratio(),
+        }
+
     def jacobian_ratio(self) -> float:
         """Smallest over largest Jacobian determinant at the assembly's points, of all elements."""
         kind = element_kind(self.block.cells.shape[1])

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
+from fe_drivetrain.validation import published_drivetrains
 from fe_drivetrain.validation.shaft_theory import solid_diameter
 
 SHEAR_MODULUS = 80e9
@@ -32,6 +36,44 @@ class Uniform(NamedTuple):
 def diameter(stiffness: float, length: float) -> float:
     """Diameter [m] of the solid shaft of that stiffness [N m/rad] and length [m], k = G J / L."""
     return solid_diameter(stiffness * length / SHEAR_MODULUS)
+
+
+class OfStiffness(NamedTuple):
+    """Solid shafts that all have the stiffness of a tabled one.
+
+    Attributes
+    ----------
+    stiffness : float
+        k [N m/rad].
+    diameters : dict
+        By length [m]: diameter [m].
+    rated_stress : float
+        Shear stress of the one of 1 m at rated torque [Pa].
+    """
+
+    stiffness: float
+    diameters: dict[float, float]
+    rated_stress: float
+
+
+def of_stiffness(letter: str, lengths: Sequence[float]) -> dict[str, OfStiffness]:
+    """Solid shafts as stiff as those of one of the thesis's drivetrains, by their names.
+
+    Parameters
+    ----------
+    letter : str
+        "A" to "D".
+    lengths : sequence of float
+        Of the shafts, 1 m among them [m].
+    """
+    name, power, rpm = published_drivetrains.RATED[letter]
+    table, torque = published_drivetrains.table(name), power / (rpm * 2 * np.pi / 60)
+    shafts = {}
+    for shaft, ratio in zip(table.shafts, table.speeds, strict=True):
+        at = {L: diameter(shaft.stiffness, L) for L in lengths}
+        stress = float(16 * torque / ratio / (np.pi * at[1.0] ** 3))
+        shafts[shaft.name] = OfStiffness(shaft.stiffness, at, stress)
+    return shafts
 
 
 def implied(stiffness: float, damping: float) -> Uniform:

@@ -116,12 +116,9 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
     found : Pressed
         Of hexahedra of 27 nodes, one along the axis.
     """
-    bore, seat, outside = radii
+    _, seat, outside = radii
     width = (outside - seat) / n
-    parts = [
-        ring_sector(a, b, width, QUARTER, (through, 12 * n, 1))
-        for a, b, through in ((bore, seat, 4 * n), (seat, outside, n))
-    ]
+    parts = quarters(radii, width, n)
     n_shaft = len(parts[0].points)
     points = np.vstack([part.points for part in parts])
     cells = [parts[0].cells, parts[1].cells + n_shaft]
@@ -164,6 +161,25 @@ def press(radii: Sequence[float], misfit: float, materials: Sequence[Material], 
         float(static.energy[0]) / width,
         *profiles,
     )
+
+
+def quarters(radii: Sequence[float], width: float, n: int) -> list[Block]:
+    """A quarter of the shaft and one of the ring; see `press`.
+
+    Parameters
+    ----------
+    radii : sequence of float
+        Of the shaft's bore, the seat, and the ring's outside [m].
+    width : float
+        Along the axis [m].
+    n : int
+        Elements through the ring; the shaft has four times as many.
+    """
+    bore, seat, outside = radii
+    return [
+        ring_sector(a, b, width, QUARTER, (through, 12 * n, 1))
+        for a, b, through in ((bore, seat, 4 * n), (seat, outside, n))
+    ]
 
 
 def _pairs(outer: Floats, inner: Floats) -> Ints:

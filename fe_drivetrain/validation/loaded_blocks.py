@@ -93,6 +93,12 @@ def face_loads(block: Block, **tractions: Traction) -> Floats:
     return F
 
 
+def line_of(block: Block, face: str, axis: int, place: float) -> Ints:
+    """Nodes of a face at a place [m] along an axis (0, 1, 2)."""
+    nodes = block.face_nodes(face)
+    return np.asarray(nodes[np.abs(block.points[nodes, axis] - place) < 1e-9])
+
+
 def edge_nodes(block: Block, first: str, second: str, along: int) -> Ints:
     """Nodes on the edge that two faces share, ascending along an axis (0, 1, 2)."""
     edge = np.intersect1d(block.face_nodes(first), block.face_nodes(second))
@@ -111,11 +117,32 @@ class LoadedBlock:
         Of all of it.
     static : Static
         The solution.
+    F : Floats
+        (3 n,) nodal forces [N] of the load.
+    held : tuple[Constraint, ...]
+        Supports, planes of symmetry, ...
     """
 
     block: Block
     material: Material
     static: Static
+    F: Floats
+    held: tuple[Constraint, ...]
+
+    @property
+    def unknowns(self) -> int:
+        """Degrees of freedom that nothing holds."""
+        return self.block.points.size - sum(len(one.pivots) for one in self.held)
+
+    def load(self, axis: int) -> float:
+        """Resultant of the load along an axis (0, 1, 2) [N]."""
+        return float(self.F[axis::3].sum())
+
+    def imbalance(self, axis: int) -> float:
+        """Resultant of load and reactions along an axis, over that of the load."""
+        reactions = (self.static.reactions[one.name] for one in self.held)
+        carried = sum(float(of.reshape(-1, 3)[:, axis].sum()) for of in reactions)
+        return (carried + self.load(axis)) / self.load(axis)
 
     @property
     def energy(self) -> float:
@@ -168,4 +195,35 @@ def solve_block(block: Block, material: Material, F: Floats, *held: Constraint) 
         Supports, planes of symmetry, ...
     """
     static = solve_solid(block.points, block.cells, material.lame, held, F)
-    return LoadedBlock(block, material, static)
+    return LoadedBlock(block, material, static, F, held)
+
+
+def fourth_power(h: float, r: float) -> str:
+    """Why displacements round a bore are as good: elements of second order.
+
+    Parameters
+    ----------
+    h, r : float
+        Height of the finest mesh's elements at the bore, and its radius [m].
+    """
+    return f"(h/r)^4, with h an element of the finest mesh at the inside, is {(h / r) ** 4:.0e}"
+
+
+def within_surface(curvature: float, h: float) -> tuple[float, str]:
+    """How far stress recovered at a surface may be wrong, in MPa, and why.
+
+    A linear field through the Gauss points, at 0.577 of half the element's height, misses s'' h^2 /
+    12 of a stress s at the surface. The element's own error is of that size: four times it is
+    allowed.
+
+    Parameters
+    ----------
+    curvature : float
+        Second derivative s'' of the stress across the surface [MPa/m^2].
+    h : float
+        Height of the element there [m].
+    """
+    missed = curvature * h**2 / 12.0
+    why = f"four times s'' h^2 / 12 = {missed:.2g} MPa, what a linear stress through the Gauss "
+    why += "points of an element misses at its surface; the element's own error is of that size"
+    return 4.0 * missed, why

@@ -147,6 +147,26 @@ class SharingStage:
         meshes = [n for n in system.spring_names if "-planet" in n]
         return static(system, load, gaps, meshes if only_press else ())
 
+    def over_mean(self, error: float, shares: Floats) -> Floats:
+        """Mesh forces over their mean, by the torque, where teeth only press.
+
+        Parameters
+        ----------
+        error : float
+            Tangential, of the first pin [m].
+        shares : ndarray
+            (n,) mean load of a mesh over the load that the error alone presses a branch with.
+
+        Returns
+        -------
+        over : ndarray
+            (n, planets).
+        """
+        scale = self.branch * 2 * cos(self.ANGLE) * error
+        solved = (self.solved(share * scale, {1: error}, only_press=True) for share in shares)
+        forces = np.array([self.mesh_forces(found) for found in solved])
+        return np.asarray(forces / forces.mean(axis=1, keepdims=True))
+
     def mesh_forces(self, found: Static) -> Floats:
         """(planets,) of the sun's meshes [N]."""
         return np.array([found.force(f"sun-planet {k + 1}") for k in range(self.planets)])

@@ -86,6 +86,21 @@ def nrel_5mw() -> dict[str, Pair]:
     }
 
 
+OTHERS_750KW = (
+    ("Guo et al. 2012", 16.9e9, "N/m", "sun", ""),
+    ("Guo et al. 2012", 19.2e9, "N/m", "ring", ""),
+    ("Link et al. 2013", 4.35e12, "N m/rad", "ring", "the unit cannot be right"),
+    ("Hong et al. 2014", 5e8, "N/m", "sun", ""),
+    ("Bruce et al. 2015", 13.1e9, "N/m^2", "sun", "per face width, one pair at a time"),
+    ("Bruce et al. 2015", 13.1e9, "N/m^2", "ring", "per face width, one pair at a time"),
+    ("thesis, Table 4.2", 5.86e7, "N m/rad", "ring", "about the planet's axis"),
+)
+"""Mesh stiffness that others took for the planetary stage of the NREL 750 kW gearbox.
+
+Source, value, unit, mesh and remark, as Al-Hamadani 2018 has them in Tables 4.2 and 6.3.
+"""
+
+
 def nrel_750kw() -> dict[str, Pair]:
     """Four meshes of the NREL 750 kW gearbox, as the table of that machine has them.
 

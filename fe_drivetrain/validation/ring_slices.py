@@ -150,6 +150,12 @@ class PressedBore(NamedTuple):
     radial: float
 
 
+def eighth_of(ring: Lame, nodes: int, n: int) -> Block:
+    """An eighth of a ring, one element wide; see `pressed_ring`."""
+    width = (ring.outer - ring.inner) / n
+    return ring_sector(ring.inner, ring.outer, width, EIGHTH, (n, n, 1), nodes)
+
+
 def pressed_ring(
     ring: Lame, material: Material, nodes: int, n: int, free_ends: bool = False
 ) -> PressedBore:
@@ -169,7 +175,7 @@ def pressed_ring(
         Whether one side is free, and not held as in plane strain.
     """
     width = (ring.outer - ring.inner) / n
-    block = ring_sector(ring.inner, ring.outer, width, EIGHTH, (n, n, 1), nodes)
+    block = eighth_of(ring, nodes, n)
     free = held_nodes("end", block.face_nodes("z0"), [0], block.points.size) if free_ends else None
     F = face_loads(block, x0=pressure(ring.inside))
     held = [*sector_symmetry(block, EIGHTH), free or plane_strain_hold(block)]

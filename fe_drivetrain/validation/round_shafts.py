@@ -18,6 +18,16 @@ SHEAR_MODULUS = LAME[1]
 INNER, OUTER = 0.15, 0.35  # radii [m]
 
 
+FIRST_VARIATION = "first variation of J: on a circle it sees the mean of the missing depth alone, "
+FIRST_VARIATION += "R (pi / n)^2 / 3 of a polygon of n sides, so dJ / J = -4 (pi / n)^2 / 3"
+"""Where `polygon_deficit` comes from."""
+
+
+def polygon_deficit(sides: int) -> float:
+    """Torsional rigidity of a polygon less that of the circle round it, relative, of many sides."""
+    return -4.0 / 3.0 * (np.pi / sides) ** 2
+
+
 def slice_of_tube(wall: int) -> Block:
     """Curved ten-node tetrahedra of a slice of a tube about x, as thick as an element is wide.
 

@@ -169,7 +169,7 @@ def within_lean(per_turn: int) -> tuple[float, str]:
     )
 
 
-def within_arcs(per_turn: int, what: str, power: int) -> tuple[float, str]:
+def within_arcs(per_turn: int, what: str, power: int, held: bool = True) -> tuple[float, str]:
     """How much of a section's property parabolic arcs round a turn may miss, relative, and why.
 
     Parameters
@@ -180,15 +180,35 @@ def within_arcs(per_turn: int, what: str, power: int) -> tuple[float, str]:
         The property: "I".
     power : int
         Its power of the radius: 2 of an area, 4 of a second moment.
+    held : bool
+        Whether the elements hold the exact field, but for their arcs.
 
     Returns
     -------
     within, why : float, str
-        Twice what `parabola_shortfall` says, and that in words.
+        Twice what `parabola_shortfall` says, three times of a field that the elements do not hold,
+        and that in words.
     """
     missed = power * parabola_shortfall(per_turn)
-    why = f"{per_turn} parabolic arcs round a turn: {what} is {missed:.2g} too low by their "
-    return 2 * missed, why + "formula; twice that is allowed"
+    why = f"{per_turn} parabolic arcs round a turn: {what} is {missed:.2g} too low by their formula"
+    if held:
+        return 2 * missed, f"{why}; twice that is allowed"
+    return 3 * missed, f"{why}; three times that is allowed, since elements do not hold this field"
+
+
+def missed_at_held_edge(edge: float) -> tuple[float, str]:
+    """How much of the energy beside a held edge of a steel shaft elements may miss, and why.
+
+    Stress goes as the distance from the edge to the power 0.71 - 1, and the error of the energy as
+    the elements' length to twice 0.71.
+
+    Parameters
+    ----------
+    edge : float
+        Length of the elements there, over the radius.
+    """
+    why = "stress is singular along held edges, of exponent 0.71 in steel: what elements of "
+    return edge**1.4, f"{why}{edge:.2g} radii there miss goes as that to the power 1.4"
 
 
 def pure_bending_field(points: Floats, curvature: float, poisson_ratio: float) -> Floats:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.common import Floats
+from fe_drivetrain.mesh import Block
 from fe_drivetrain.scene import Material
 from fe_drivetrain.validation.loaded_blocks import face_loads, solve_block
 from fe_drivetrain.validation.plane_rings import Lame, Plane, even_amplitudes, harmonics
@@ -191,6 +192,10 @@ class SqueezedRing:
             OUTSIDE: float(found.polar.hoop[outside]),
             STIFFNESS: 0.5 * self.force**2 / (4.0 * found.energy / width),
         }
+
+    def quarter(self) -> Block:
+        """A quarter between planes of symmetry, evenly divided, to be shown."""
+        return ring_sector(self.inner, self.outer, 0.1, 0.5 * np.pi, (4, 12, 1))
 
     def boundaries(self, level: int) -> Floats:
         """Angles [rad] that divide a quarter: one element under the load, growing ones to the end.

@@ -10,7 +10,7 @@ import numpy as np
 from fe_drivetrain.compare import GridConvergence, grid_convergence
 from fe_drivetrain.mesh import Grading
 from fe_drivetrain.scene import Material
-from fe_drivetrain.validation.shaft_theory import parabola_shortfall
+from fe_drivetrain.validation.shaft_theory import parabola_shortfall, within_arcs
 from fe_drivetrain.validation.solid_shafts import mesh_band, solid, stepped, straight, twist
 
 POISSON = 0.3
@@ -46,15 +46,12 @@ class TwistedTube:
     @property
     def tolerance(self) -> float:
         """Twice the relative deficit of J that comes of parabolas in place of the circle."""
-        return 2 * 4 * parabola_shortfall(self.per_turn)
+        return within_arcs(self.per_turn, "J", 4)[0]
 
     @property
     def reason(self) -> str:
         """Why `tolerance` is what it is."""
-        return (
-            f"{self.per_turn} parabolic arcs round a turn: J is {self.tolerance / 2:.1g} too "
-            "low by their formula; twice that is allowed"
-        )
+        return within_arcs(self.per_turn, "J", 4)[1]
 
 
 def material_of(shear_modulus: float, density: float = 7800.0) -> Material:

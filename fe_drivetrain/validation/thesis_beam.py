@@ -9,7 +9,6 @@ from fe_drivetrain.bearing import Bearing, catalogue_bearing
 from fe_drivetrain.common import Floats
 from fe_drivetrain.coupled import LinearBody, factors_of, in_housings, linear_body
 from fe_drivetrain.hub_loads import Condition, hub_load_set
-from fe_drivetrain.suite import Page
 
 #: Mean wind speeds of the thesis's wind files 1 to 4 [m/s].
 WIND_SPEEDS = (12.0, 14.0, 18.0, 24.0)
@@ -27,6 +26,20 @@ BEARINGS = {
     "X, 20 deg": "bearing_s_x20",
     "O, 20 deg": "bearing_s_o20",
 }
+
+#: What the thesis does not give, as `Page.assume` takes it.
+ASSUMED = (
+    ("contact angle", 38.0, "deg", "not printed; fitted to K_R; other pages of it use 20 deg"),
+    ("arrangement", "X, face to face", "", "Table 4.1 says 'double inner'; O beside it"),
+    ("shaft diameter", 0.635, "m", "changed in chapter 4 without a value; bore of the bearing"),
+    (
+        "hub loads",
+        "surrogate",
+        "",
+        "generic 2 MW rotor in place of the thesis's 1.5 MW turbine; the same mean wind speeds, "
+        "medium turbulence, shear 0.2",
+    ),
+)
 
 
 @lru_cache
@@ -57,24 +70,6 @@ def histories(duration: float, rate: float, speeds: tuple[float, ...] = WIND_SPE
     loads = hub_load_set(conditions, duration, rate).loads
     flat = factors_of(loads.reshape(-1, 6), BEAM.gearbox_weight)
     return flat.reshape(len(speeds), -1, flat.shape[1])
-
-
-def state_assumptions(page: Page) -> None:
-    """What the thesis does not give, on a page."""
-    page.assume(
-        "contact angle", 38.0, "deg", "not printed; fitted to K_R; other pages of it use 20 deg"
-    )
-    page.assume("arrangement", "X, face to face", "", "Table 4.1 says 'double inner'; O beside it")
-    page.assume(
-        "shaft diameter", 0.635, "m", "changed in chapter 4 without a value; bore of the bearing"
-    )
-    page.assume(
-        "hub loads",
-        "surrogate",
-        "",
-        "generic 2 MW rotor in place of the thesis's 1.5 MW turbine; the same mean wind speeds, "
-        "medium turbulence, shear 0.2",
-    )
 
 
 def radial(vectors: Floats) -> Floats:

@@ -7,7 +7,6 @@ from functools import lru_cache
 from fe_drivetrain.bearing import Bearing, Races, catalogue_bearing
 from fe_drivetrain.rings import housing_races
 from fe_drivetrain.scene import Scene, change_scene, library_scene
-from fe_drivetrain.suite import Page
 
 NAME = "main_bearing"
 
@@ -16,6 +15,17 @@ ENLARGED = 939.8 / 650.0
 
 #: Raceway where the contact lines of the rollers' middles end, width, and shaft [m].
 RACEWAY, WIDTH, SHAFT = 0.848, 0.3048, 0.635
+
+#: Where these numbers are from, as `Page.assume` takes it.
+ASSUMED_HOUSING = (
+    (
+        "housing",
+        f"library's pillow block, {ENLARGED:.3f} times",
+        "-",
+        "in proportion to the outside diameter, 939.8 mm (Stirling 2023, Table 4.1) over 650 mm",
+    ),
+    ("diameter of the raceway", RACEWAY, "m", "pitch diameter + D cos(20 deg), rounded"),
+)
 
 _SIZES = (
     "centre_height",
@@ -62,14 +72,3 @@ def housed_scene(size: Size = (1.0, None)) -> Scene:
 def housed_races(size: Size = (1.0, None), arrangement: str = "o") -> Races:
     """Its housing under the rollers of bearing S."""
     return housing_races(housed_scene(size), NAME, bearing_s(arrangement))
-
-
-def state_housing(page: Page) -> None:
-    """Where the numbers are from."""
-    page.assume(
-        "housing",
-        f"library's pillow block, {ENLARGED:.3f} times",
-        "-",
-        "in proportion to the outside diameter, 939.8 mm (Stirling 2023, Table 4.1) over 650 mm",
-    )
-    page.assume("diameter of the raceway", RACEWAY, "m", "pitch diameter + D cos(20 deg), rounded")
