@@ -26,9 +26,9 @@ def compare_runs_command(
 ) -> None:
     """Compare all checks and figures of two runs of the cases.
 
-    Lists cases and checks that were lost, added or renamed, verdicts and values that changed, and
-    counts what is the same to the last digit. The exit status is 0 if no case, no check and no
-    passed verdict was lost, 1 otherwise.
+    Lists cases and checks that were lost, added or renamed, verdicts, values and what checks allow
+    that changed, the most serious first, and counts what is the same to the last digit. The exit
+    status is 0 if no case, no check and no passed verdict was lost, 1 otherwise.
     """
 
     def work() -> int:
@@ -55,7 +55,8 @@ def _text(found: RunComparison) -> str:
     lines += [
         f"{found.cases} cases in both runs; of {found.checks} checks of the first, {found.equal} "
         "are the same to the last digit",
-        f"{found.equal_numbers} of {found.numbers} numbers among the figures are the same",
+        f"{found.equal_numbers} of {found.numbers} numbers among the figures are the same, "
+        f"{found.near_numbers} more but for rounding",
     ]
     if kinds:
         lines.append("; ".join(f"{kind}: {count}" for kind, count in kinds.items()))
@@ -63,11 +64,17 @@ def _text(found: RunComparison) -> str:
 
 
 def _line(change: Change) -> str:
-    text = f"{change.kind:<10}  {change.case}: {change.what}"
+    text = f"{change.kind:<10}  {change.case}"
+    if change.what:
+        text += f": {change.what}"
     if change.before is not None and change.after is not None:
         text += f": {_shown(change.before)} -> {_shown(change.after)}"
-    if not math.isnan(change.error):
-        text += f" ({change.error:.1e} of it)"
+    notes = [] if math.isnan(change.error) else [f"{change.error:.1e} of it"]
+    if change.shares is not None:
+        used = (f"{100 * share:.2g} %" for share in change.shares)
+        notes.append(f"{' -> '.join(used)} of the tolerance")
+    if notes:
+        text += f" ({'; '.join(notes)})"
     return text
 
 
