@@ -24,6 +24,7 @@ from fe_drivetrain.peers.launching import (
     Outcome,
     Variant,
 )
+from fe_drivetrain.suite import Page
 from fe_drivetrain.suite.case import find_cases
 from fe_drivetrain.suite.result_folders import run_case
 from fe_drivetrain.suite.run import Run
@@ -534,6 +535,14 @@ def test_the_case_runs_and_its_page_says_what_is_missing(tmp_path, monkeypatch):
     page = (tmp_path / "out" / "report.html").read_text()
     assert "this project: auto" in page
     assert "apt-get install calculix-ccx" in page
+
+
+def test_without_an_answer_of_our_own_the_case_fails():
+    auto, page = Variant("this_project", "auto"), Page()
+    exact = problems.hollow_shaft().exact
+    solved = row(auto, 50_000, 2.0, stiffness=exact)
+    peers.check(page, problems.hollow_shaft(), [row(auto, 10_000, trouble="over 30 s"), solved])
+    assert [v.passed for v in page.verdicts] == [False, True]
 
 
 def test_growth_of_each_body_is_shown_with_the_goal_of_its_memory(tmp_path):
