@@ -251,6 +251,62 @@ def test_faces_that_do_not_fit_are_refused_in_one_sentence(tied_blocks, tmp_path
     assert str(error.value).count(". ") == 0
 
 
+def perforated(n, radii, up=True):
+    """Nodes (z = 0) and facets between a round hole and polygons round it, n edges a turn."""
+    angles = 2 * np.pi * np.arange(n) / n
+    ray = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    corners = np.concatenate([radius * ray for radius in radii])
+    a, b = (n * np.arange(len(radii) - 1)[:, None] + (np.arange(n) + step) % n for step in (0, 1))
+    triangles = np.concatenate(
+        [np.stack(t, -1).reshape(-1, 3) for t in ((a, a + n, b + n), (a, b + n, b))]
+    )
+    triangles = triangles if up else triangles[:, ::-1]
+    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    ends, middle = np.unique(edges, axis=0, return_inverse=True)
+    middles = corners[ends].mean(axis=1)
+    rim = (ends < n).all(axis=1)
+    middles[rim] *= radii[0] / np.linalg.norm(middles[rim], axis=1)[:, None]
+    facets = np.hstack([triangles, len(corners) + middle.reshape(-1, 3)])
+    return np.concatenate([corners, middles]), facets
+
+
+def on_one_another(one, two):
+    (points, face), (others, other) = one, two
+    return np.concatenate([points, others]), face, other + len(points)
+
+
+@pytest.mark.parametrize(
+    ("own", "other", "relaxed"),
+    [(6, 6, 1), (12, 12, 1), (12, 12, 12), (12, 8, 1), (6, 16, 0), (8, 12, 0), (16, 12, 0)],
+)
+def test_rims_of_one_hole_may_be_divided_and_curved_in_their_own_ways(own, other, relaxed):
+    hole = 0.5
+    near = 1.05 * hole / np.cos(2 * np.pi / own)  # there the facets at the rim are nearly flat
+    foot, facets = perforated(own, (hole, near, 1.5), up=False)
+    for k in range(relaxed):  # middles of edges are drawn half way to their chords
+        turn = 2 * np.pi * (k + 0.5) / own
+        middle = np.linalg.norm(foot - [hole * np.cos(turn), hole * np.sin(turn), 0], axis=1)
+        foot[middle.argmin()] *= (1 + np.cos(np.pi / own)) / 2
+    points, face, under = on_one_another((foot, facets), perforated(other, (hole, 1.2, 3.0)))
+    assert touching("tie", points, under, face).tolist() == face.tolist()
+    found = touching("tie", points, face, under)
+    assert slave_first(points, found, face)[0] is face
+    tied = np.unique(tie_of("tie", points, face, found).pivots // 3)
+    assert tied.tolist() == np.unique(face).tolist()
+
+
+@pytest.mark.parametrize(
+    ("foot", "plate"),
+    [((0.39, 0.7, 1.0), (0.4, 0.7, 3.0)), ((0.4, 0.7, 1.002), (0.3, 0.7, 1.0))],
+)
+def test_what_reaches_over_a_hole_or_an_edge_is_refused_beside_curved_rims(foot, plate):
+    one, other = perforated(24, foot, up=False), perforated(24, plate)
+    points, face, under = on_one_another(one, other)
+    for picked, outside in ((face, under), (under, face)):
+        with pytest.raises(InputError, match="and neither covers the other whole"):
+            touching("tie", points, picked, outside)
+
+
 # scenes
 
 SCENE = """

@@ -32,7 +32,7 @@ from fe_drivetrain.foreign.holes import pressed_facets
 from fe_drivetrain.geometry import Bearing, FurtherPart, MeshSizes
 from fe_drivetrain.interfaces.constraints import Constraint
 from fe_drivetrain.interfaces.mortar import mortar_tie
-from fe_drivetrain.interfaces.overlap import common_pieces, curvature
+from fe_drivetrain.interfaces.overlap import Pieces, common_pieces, curvature, left_by_rims
 from fe_drivetrain.mesh.checks import triple_keys
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import Mesh, boundary
@@ -165,14 +165,13 @@ def touching(name: str, points: Floats, face: Ints, outside: Ints) -> Ints:
         )
     under = near[np.unique(pieces.master)]
     allowed = _WHOLE + curvature(points, face) + curvature(points, under)
-    own = _shares(points, face, pieces.slave, pieces.area)
-    back = common_pieces(points, under, face)
-    share = _shares(points, under, back.slave, back.area)
-    on, whole = under[share > _TOUCHED], (share[share > _TOUCHED] > 1.0 - allowed).all()
-    if len(on) and whole and not (own > 1.0 - allowed).all():
-        return on
-    if (own > 1.0 - allowed).all():
-        return on if len(on) and whole else under
+    own, left = _shares(points, face, under, pieces)
+    share, other_left = _shares(points, under, face, common_pieces(points, under, face))
+    on = share > _TOUCHED
+    covered = (own > 1.0 - allowed - left).all()
+    whole = on.any() and (share > 1.0 - allowed - other_left)[on].all()
+    if covered or whole:
+        return under[on] if whole else under
     areas = facet_points(points, face).areas.sum(axis=1)
     raise InputError(
         f"{name}: {100 * float(own @ areas) / float(areas.sum()):.4g} % of the face lies on it, "
@@ -341,9 +340,11 @@ def _near(points: Floats, face: Ints, outside: Ints) -> Ints:
     return np.asarray(outside[~beside.any(axis=1)], dtype=np.int64)
 
 
-def _shares(points: Floats, facets: Ints, owner: Ints, area: Floats) -> Floats:
-    areas = facet_points(points, facets).areas.sum(axis=1)
-    return np.asarray(np.bincount(owner, area, len(facets)) / areas, dtype=np.float64)
+def _shares(points: Floats, face: Ints, other: Ints, pieces: Pieces) -> tuple[Floats, Floats]:
+    """Shares of a face's facets that another face covers, and that rims may leave uncovered."""
+    areas = facet_points(points, face).areas.sum(axis=1)
+    covered = np.bincount(pieces.slave, pieces.area, len(face))
+    return covered / areas, left_by_rims(points, face, other) / areas
 
 
 def _xyz(place: Floats) -> str:

@@ -49,6 +49,7 @@ from fe_drivetrain.interfaces.overlap import (
     common_pieces,
     curvature,
     facet_normals,
+    left_by_rims,
     near_pairs,
     nodal_normals,
     opposite_points,
@@ -331,8 +332,12 @@ def _check_coverage(name: str, points: Floats, slave: Ints, master: Ints, pieces
     share = float(covered.sum() / areas.sum())
     # Where curved facets end in a curved edge, the pieces end in its chords: by so much the areas
     # of curved facets and of their windows differ.
-    curved = sum(curvature(points, facets) for facets in (slave, master))
-    if abs(share - 1.0) > _COVERED + curved or (covered < 0.5 * areas).any():
+    allowed = _COVERED + sum(curvature(points, facets) for facets in (slave, master))
+    missing = 1.0 - share
+    if missing > allowed:
+        rims = np.clip(areas - covered, 0.0, left_by_rims(points, slave, master))
+        missing -= float(rims.sum() / areas.sum())
+    if max(share - 1.0, missing) > allowed or (covered < 0.5 * areas).any():
         far = common_pieces(points, slave, master, _FAR)
         if share < 1.0 and far.area.sum() > 1.01 * covered.sum():
             fix = (

@@ -22,6 +22,10 @@ _SLIVER = 1e-14  # of a window: pieces that are smaller are none
 _STEP = 1e-12  # of a facet: Newton's last step, which squares itself once more
 _STEPS = 20
 _DEGREE = {3: 1, 6: 2, 4: 2, 8: 3, 9: 4}  # of the shape functions on a straight facet
+_DIVISIONS = 8  # of half an edge: of what lies beyond half chords a sixty-fourth is left out
+# Of what lies between an arc of up to 60 degrees and its chord, a parabola misses as much whose
+# middle node is off the middle by a quarter of the way to an end, as optimised meshes may have it.
+_OFF_MIDDLE = 0.14
 _OUTLINE = {
     3: (0, 1, 2),
     6: (0, 3, 1, 4, 2, 5),
@@ -309,6 +313,92 @@ def opposite_points(kind: FacetKind, nodes: Floats, x: Floats, direction: Floats
 def curvature(points: Floats, facets: Ints) -> float:
     """Relative difference between the areas of facets and of their windows."""
     windows = _placed(points, facets, _windows(points, facets)).reshape(-1, 3, 3)
-    sides = windows[:, 1:] - windows[:, :1]
-    plane = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
-    return float(abs(facet_points(points, facets).areas.sum() / plane - 1.0))
+    return float(abs(facet_points(points, facets).areas.sum() / _areas(windows).sum() - 1.0))
+
+
+def left_by_rims(points: Floats, slave: Ints, master: Ints) -> Floats:
+    """(ns,) areas of the slave's facets that rims alone may leave uncovered [m^2].
+
+    Two faces with the same curved outline reach beyond each other where their rims are divided in
+    different ways, or where mid-side nodes of one are drawn towards the chords. What is left so
+    lies between an edge and its chord: within a slave facet whose edge bulges outward, or beside a
+    master facet whose edge bulges inward. The cut itself is made along half chords, beyond which
+    an inward edge of the slave has no area, and an outward one of the master still has some.
+    """
+    owner, within = _bulges(points, slave, outward=True)
+    _, beside = _bulges(points, master, outward=False)
+    everything = np.concatenate([points, within.reshape(-1, 3), beside.reshape(-1, 3)])
+    numbers = np.arange(len(points), len(everything)).reshape(-1, 3)
+    own, other = numbers[: len(within)], numbers[len(within) :]
+    bare = _areas(within)
+    for cover in (master, other):
+        bare -= _covered(everything, own, cover)
+    within_own = np.bincount(owner, np.maximum(bare, 0.0), len(slave))
+    left = within_own + _covered(everything, slave, other)
+    return np.asarray((1.0 + _OFF_MIDDLE) * left, dtype=np.float64)
+
+
+def _covered(points: Floats, slave: Ints, master: Ints) -> Floats:
+    """(ns,) areas of the slave's facets that the master covers [m^2]."""
+    if len(slave) == 0 or len(master) == 0:
+        return np.zeros(len(slave))
+    pieces = common_pieces(points, slave, master)
+    return np.asarray(np.bincount(pieces.slave, pieces.area, len(slave)))
+
+
+def _bulges(points: Floats, facets: Ints, outward: bool) -> tuple[Ints, Floats]:
+    """Triangles between the curved edges that bound a face and their chords and half chords.
+
+    Parameters
+    ----------
+    points : Floats
+        (n, 3) nodes [m].
+    facets : Ints
+        (nf, k) the face.
+    outward : bool
+        Chords of edges that bulge outward and half chords of others, or the other way round.
+
+    Returns
+    -------
+    owner, triangles
+        (m,) facets, and (m, 3, 3) corners, turned as the facets [m].
+    """
+    if facets.shape[1] in (3, 4):
+        return np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3))
+    ring = np.array(_OUTLINE[facets.shape[1]])
+    edges = facets[:, np.stack([ring[::2], ring[1::2], np.roll(ring[::2], -1)], axis=1)]
+    ends = np.sort(edges[:, :, [0, 2]].reshape(-1, 2), axis=1)
+    _, number, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
+    facet, side = np.nonzero((count == 1)[number.ravel()].reshape(edges.shape[:2]))
+    edge = points[edges[facet, side]]
+    start, middle, end = edge.transpose(1, 0, 2)
+    normals = facet_normals(points, facets)[facet]
+    # What bulges along the normal leaves nothing uncovered.
+    along = np.einsum("ei,ei->e", middle - (start + end) / 2, normals)
+    edge[:, 1] -= along[:, None] * normals
+    bulge = np.einsum("ei,ei->e", np.cross(edge[:, 1] - start, end - start), normals)
+    least = _STRAIGHT * np.einsum("ei,ei->e", end - start, end - start)
+    out, into = bulge > least, bulge < -least
+    beyond = np.concatenate([_fan(0.0, 0.5, _DIVISIONS), _fan(0.5, 1.0, _DIVISIONS)])
+    # The cut of a master ends in its half chords.
+    whole = _fan(0.0, 1.0, 2 * _DIVISIONS if outward else 2)
+    kinds = [(out, whole if outward else beyond), (into, beyond if outward else whole)]
+    owner, triangles = (
+        [np.repeat(facet[chosen], len(fan)) for chosen, fan in kinds],
+        [np.einsum("hvk,eki->ehvi", fan, edge[chosen]).reshape(-1, 3, 3) for chosen, fan in kinds],
+    )
+    triangles[1] = triangles[1][:, [0, 2, 1]]
+    return np.concatenate(owner), np.concatenate(triangles)
+
+
+def _fan(first: float, last: float, n: int) -> Floats:
+    """(n - 1, 3, 3) triangles between a part of a parabola and its chord, of its three nodes."""
+    t = np.linspace(first, last, n + 1)
+    at = np.stack([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)], axis=1)
+    return np.stack([np.broadcast_to(at[0], (n - 1, 3)), at[1:-1], at[2:]], axis=1)
+
+
+def _areas(triangles: Floats) -> Floats:
+    """(n,) areas of triangles (n, 3, 3) [m^2]."""
+    sides = triangles[:, 1:] - triangles[:, :1]
+    return np.asarray(0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1))
