@@ -196,3 +196,12 @@ def test_a_known_healing_is_done_again_without_looking_for_faults(tmp_path, monk
     assert found["healing"] == "as before"
     assert found["after"]["volume"] == pytest.approx(1e9)
     assert not seen
+
+
+def test_loose_faces_that_are_known_are_sewn_without_looking_for_faults(tmp_path, monkeypatch):
+    path, seen = loose_faces(tmp_path / "loose.step", gap=1e-7), []
+    first = survey_of(path)
+    monkeypatch.setattr(step_heal, "fault", lambda: seen.append(1) or "")
+    again = survey_of(path, known=first["healed"])
+    assert (again["healing"], again["after"]) == (first["healing"], first["after"])
+    assert not seen

@@ -46,12 +46,15 @@ def run(run: Run, page: Page) -> None:
         share = ratio - 1.0 if sign == PLUS else 2.0 - ratio
         for key, expected in zip(MEASURED, (*levels, share, ratio), strict=True):
             name = key.partition(" [")[0]
-            target = Target(name, expected, 5e-3, jumps, mirrored, "", False, "identity")
+            target = Target(
+                name, expected, 5e-3, jumps, mirrored, relative=False, measure="identity"
+            )
             page.meets(row[key], target, of=f"contact ratio {ratio:g}, {sign}")
     overshoot = float(square_wave_series(1.0, 1.5, ORDERS).at(np.arange(40000) / 40000).max()) - 2
-    gibbs = 0.08949, 1e-3, "sampled at 40,000 phases", "Gibbs: Si(pi) / pi - 1/2"
+    why, gibbs = "sampled at 40,000 phases", "Gibbs: Si(pi) / pi - 1/2"
     title = "overshoot of the series, over the jump"
-    page.meets(overshoot, Target(title, *gibbs, "", False, "identity"))
+    target = Target(title, 0.08949, 1e-3, why, gibbs, relative=False, measure="identity")
+    page.meets(overshoot, target)
     page.section("Waves")
     eight = square_wave_series(1.0, 1.7, 8)
     shown = np.arange(0.0, 1.0001, 0.002)

@@ -39,7 +39,8 @@ def run(run: Run, page: Page) -> None:
             ("overlap ratio", pair.overlap_ratio, printed.overlap_ratio),
         ):
             if expected:
-                target = Target(quantity, expected, 5e-4, DIGITS, REPORTS, "", False, "identity")
+                half = 5e-4, DIGITS, REPORTS
+                target = Target(quantity, expected, *half, relative=False, measure="identity")
                 page.meets(value, target, of=name)
         if printed.torque is not None:
             force, why = pair.tangential_force(printed.torque), "torques are printed to 0.1 N m"

@@ -45,8 +45,9 @@ def run(run: Run, page: Page) -> None:
         page.meets(pair.first.shift + pair.second.shift - pair.shift_sum, SHIFTS, of=name)
         for gear in (pair.first, pair.second):
             title = f"root diameter of {abs(gear.teeth)} teeth [mm]"
-            whole = 0.6, "published in whole millimetres", PUBLISHED, "", False
-            page.meets(2e3 * gear.root_radius, Target(title, ROOTS[gear.teeth], *whole), of=name)
+            why = "published in whole millimetres"
+            target = Target(title, ROOTS[gear.teeth], 0.6, why, PUBLISHED, relative=False)
+            page.meets(2e3 * gear.root_radius, target, of=name)
     page.section("Meshes")
     page.table("Four meshes; tips are assumed at a clearance of 0.4 modules", rows)
     page.section("Mesh stiffness of others")

@@ -10,6 +10,7 @@ import platform
 import re
 from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cache as once
+from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -40,6 +41,27 @@ def source_hash(rooms: Mapping[str, Set[str] | None]) -> str:
             if file.name.endswith(".py") and (names is None or file.name in names):
                 code.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
     return code.hexdigest()
+
+
+@lru_cache(maxsize=256)
+def _digest(path: str, modified: int, size: int) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def file_digest(path: str) -> str:
+    """SHA-256 of a file; "" where there is none.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+    """
+    try:
+        found = Path(path).stat()
+        return _digest(str(path), found.st_mtime_ns, found.st_size)
+    except OSError:
+        return ""
 
 
 @once

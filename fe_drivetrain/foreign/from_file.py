@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache, user_cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.made_by import file_digest
 from fe_drivetrain.foreign.bolted import MOST_BETWEEN_RIMS, SIDES, joined_between_rims, opened
-from fe_drivetrain.foreign.known_healing import file_digest, read_step, reader_versions
+from fe_drivetrain.foreign.known_healing import read_step, reader_versions
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
 from fe_drivetrain.geometry import ForeignFile, Pick

@@ -5,17 +5,16 @@ Whether a solid is sound is seen by meshing it, which takes as long as the mesh 
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import cache as once
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.common.cache import user_cache
-from fe_drivetrain.common.made_by import machine, source_hash
+from fe_drivetrain.common.made_by import file_digest, machine, source_hash, versions
 from fe_drivetrain.foreign.reading import Arrays, read_in_process
 
 
@@ -57,32 +56,9 @@ def read_step(action: str, path: str | Path, request: Mapping[str, Any]) -> Arra
     return found
 
 
-@lru_cache(maxsize=256)
-def _digest(path: str, modified: int, size: int) -> str:
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def file_digest(path: str) -> str:
-    """SHA-256 of a file; "" where there is none.
-
-    Parameters
-    ----------
-    path : str
-        The file.
-    """
-    try:
-        found = Path(path).stat()
-        return _digest(str(path), found.st_mtime_ns, found.st_size)
-    except OSError:
-        return ""
-
-
-def reader_versions() -> dict[str, str]:
-    """Versions of all that reads and meshes a file, and of the machine that it runs on."""
-    import gmsh
-    import meshio
-
+@once
+def reader_versions() -> dict[str, Any]:
+    """All that reads and meshes a file: packages, sources, and the machine that it runs on."""
     code = source_hash({"fe_drivetrain.geometry": None, "fe_drivetrain.foreign": None})
-    versions = {"gmsh": gmsh.__version__, "meshio": meshio.__version__, "numpy": np.__version__}
-    return versions | {"machine": machine(), "code": code}
+    packages = versions(("gmsh", "meshio", "numpy"))
+    return {"packages": packages, "machine": machine(), "code": code}

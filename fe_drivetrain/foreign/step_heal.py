@@ -272,7 +272,7 @@ def _as_before(before: dict[str, Any], after: dict[str, Any]) -> bool:
     )
 
 
-def sewn(read: Callable[[], None]) -> str:
+def sewn(read: Callable[[], None], sound: bool) -> str:
     """Make solids of faces that enclose some but are not sewn together; what was done, or "".
 
     The solids must have all of the faces' area, since there is no volume to compare with.
@@ -281,11 +281,13 @@ def sewn(read: Callable[[], None]) -> str:
     ----------
     read : callable
         Puts what is in the file into an empty model.
+    sound : bool
+        Whether the solids are known to be sound; else that is found out.
     """
     before = counted()
     after = _tried(read, _STEPS[3], 0.0)
     same = abs(after["area"] / before["area"] - 1) <= VOLUME_TOLERANCE
-    if after["solids"] and same and not fault():
+    if after["solids"] and same and (sound or not fault()):
         return f"healed: {before['faces']} loose faces were sewn to {after['words']}"
     gmsh.clear()
     read()

@@ -65,7 +65,7 @@ def opened(
     faces, closed = [t for _, t in gmsh.model.getEntities(2)], ""
     if faces and not gmsh.model.getEntities(3):
         _refuse_many_faces(name, len(faces))
-        if not (closed := sewn(lambda: _read(path))):
+        if not (closed := sewn(lambda: _read(path), sound=known is not None)):
             open_at = free_edges(faces)
             raise InputError(
                 f"{name} has {len(faces)} faces that enclose no solid"
@@ -94,7 +94,7 @@ def opened(
     def again() -> None:
         _read(path)
         if closed:
-            sewn(lambda: _read(path))
+            sewn(lambda: _read(path), sound=True)
         if part is not None:
             keep(name, part)
 

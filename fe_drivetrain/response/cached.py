@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
-from fe_drivetrain.foreign.known_healing import file_digest
+from fe_drivetrain.common.made_by import file_digest
 from fe_drivetrain.response.makers import mesh_hash, solved_by
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
