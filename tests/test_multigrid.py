@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from conftest import coarse_scene
-from scipy import linalg
+from scipy import linalg, sparse
 
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.interfaces.constraints import eliminate, fixed, rigid_face, rigid_point
@@ -247,3 +247,16 @@ def test_the_smoother_knows_the_largest_eigenvalue_where_a_ring_is_soft_or_stiff
     found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-9)
     assert found.energy_error <= 1e-9
     assert found.iterations < 30
+
+
+@pytest.mark.parametrize(("foreseen", "converges"), [(0, False), (60, True), (200, False)])
+def test_a_few_soft_motions_are_waited_for_where_so_many_iterations_were_foreseen(
+    foreseen, converges
+):
+    values = np.concatenate([np.geomspace(1e-5, 1e-4, 3), np.linspace(0.05, 1.0, 297)])
+    K = sparse.diags_array(values).tobsr((3, 3))
+    energy = np.concatenate([np.full(3, 1e-3 / 3), np.full(297, 1 / 300)])
+    F = np.sqrt(values * energy)[:, None]
+    found = multigrid.conjugate_gradients(K, F, np.copy, 1e-5, lambda: foreseen)
+    assert (found.energy_error <= 1e-5) == converges
+    assert (found.iterations == 40) != converges

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.performance import peer_settings, peers
+from fe_drivetrain.cases.performance import peer_settings, peers, two_million_unknowns
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.interpreter import interpreters
 from fe_drivetrain.mesh.mesh import FACETS
@@ -543,6 +543,21 @@ def test_without_an_answer_of_our_own_the_case_fails():
     solved = row(auto, 50_000, 2.0, stiffness=exact)
     peers.check(page, problems.hollow_shaft(), [row(auto, 10_000, trouble="over 30 s"), solved])
     assert [v.passed for v in page.verdicts] == [False, True]
+
+
+def test_growth_is_that_of_one_solver():
+    """Fitted over a direct solver's size, too, a slender shaft's exponent was 0.35."""
+    auto = Variant("this_project", "auto")
+
+    def solved(unknowns, seconds, method):
+        one = row(auto, unknowns, seconds)
+        return replace(one, found=[found | {"notes": {"method": method}} for found in one.found])
+
+    rows = [solved(10**5 * 10**k, 2.0 * 10**k, "multigrid") for k in range(2)]
+    first = solved(30_000, 5.0, "superlu")
+    time_law, _ = two_million_unknowns.laws_of([first, *rows])
+    assert time_law.exponent == pytest.approx(1.0)
+    assert two_million_unknowns.laws_of([first, rows[0]]) is None
 
 
 def test_growth_of_each_body_is_shown_with_the_goal_of_its_memory(tmp_path):

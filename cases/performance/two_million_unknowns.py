@@ -62,7 +62,8 @@ def run(run: Run, page: Page) -> None:
         found[name] = measured(run, benchmark, sizes, Plan(repetitions, limits))
         check(page, benchmark, found[name])
     done = {name: [row for row in rows if row.found] for name, rows in found.items()}
-    laws = {name: laws_of(rows) for name, rows in done.items() if len(rows) > 1}
+    grown = {name: laws_of(rows) for name, rows in done.items() if rows}
+    laws = {name: both for name, both in grown.items() if both is not None}
     goals = [goal(BENCHMARKS[name]().title, rows[-1]) for name, rows in done.items() if rows]
     answer(page, done, laws)
     page.section("Goal")
@@ -70,7 +71,8 @@ def run(run: Run, page: Page) -> None:
     page.section("Growth")
     page.table(
         "Exponents of the number of unknowns, fitted to medians in logarithms, and between what "
-        "they are found with a chance of 95 %, the sizes being all of the scatter",
+        "they are found with a chance of 95 %, the sizes being all of the scatter. Of those sizes "
+        "that were solved by the same solver as the largest",
         [exponents(BENCHMARKS[name]().title, *both) for name, both in laws.items()],
         ["body", "from unknowns", "to unknowns", "time", "between", "memory", "between "],
     )
@@ -111,12 +113,23 @@ def measured(run: Run, benchmark: Benchmark, sizes: Sequence[int], plan: Plan) -
     return rows
 
 
-def laws_of(rows: Sequence[Row]) -> tuple[PowerLaw, PowerLaw]:
-    """Time and memory over the number of unknowns."""
-    unknowns = [row.unknowns for row in rows]
+def solver_of(row: Row) -> str:
+    """By which the runs of a size were solved in the end."""
+    return str(row.found[0]["notes"]["method"])
+
+
+def laws_of(rows: Sequence[Row]) -> tuple[PowerLaw, PowerLaw] | None:
+    """Time and memory over the number of unknowns, of the solver that the largest size has.
+
+    Another solver on smaller sizes grows otherwise. None where there is but one size.
+    """
+    same = [row for row in rows if solver_of(row) == solver_of(rows[-1])]
+    if len(same) < 2:
+        return None
+    unknowns = [row.unknowns for row in same]
     return (
-        power_law(unknowns, [row.seconds or 0.0 for row in rows]),
-        power_law(unknowns, [row.bytes or 0 for row in rows]),
+        power_law(unknowns, [row.seconds or 0.0 for row in same]),
+        power_law(unknowns, [row.bytes or 0 for row in same]),
     )
 
 
@@ -178,7 +191,7 @@ def line(body: str, row: Row) -> Record:
     return {
         "body": body,
         "unknowns": row.unknowns,
-        "solver": row.found[0]["notes"]["method"] if row.found else None,
+        "solver": solver_of(row) if row.found else None,
         "runs": len(row.found),
         "least [s]": min(seconds, default=None),
         "median [s]": row.seconds,
@@ -209,7 +222,7 @@ def answer(
             )
         page.answer(
             f"{BENCHMARKS[name]().title}: {last.unknowns:,} unknowns take {last.seconds:.2g} s "
-            f"and {(last.bytes or 0) / GIB:.2g} GiB by {last.found[0]['notes']['method']}{grows}."
+            f"and {(last.bytes or 0) / GIB:.2g} GiB by {solver_of(last)}{grows}."
         )
 
 

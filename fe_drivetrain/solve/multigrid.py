@@ -367,6 +367,7 @@ def conjugate_gradients(
     F: Floats,
     precondition: Callable[[Floats], Floats],
     tolerance: float,
+    foreseen: Callable[[], float] = lambda: 0.0,
 ) -> Iteration:
     """Solve K x = F for all columns at once, until the energy error is small enough.
 
@@ -381,6 +382,9 @@ def conjugate_gradients(
     tolerance : float
         Relative error |x - x_k|_K / |x|_K to stop at. Squared, it is the relative error of the
         stiffness that belongs to a load.
+    foreseen : callable
+        Gives the number of iterations that it was thought to take: patience with a slow beginning,
+        see `stopping.is_hopeless`.
 
     Returns
     -------
@@ -389,7 +393,7 @@ def conjugate_gradients(
         where the tolerance is not reached.
     """
     found = [
-        _solved(K, F[:, columns], precondition, tolerance)
+        _solved(K, F[:, columns], precondition, tolerance, foreseen)
         for columns in np.array_split(np.arange(F.shape[1]), -(-F.shape[1] // _COLUMNS))
     ]
     return Iteration(
@@ -400,7 +404,11 @@ def conjugate_gradients(
 
 
 def _solved(
-    K: sparse.bsr_array, F: Floats, precondition: Callable[[Floats], Floats], tolerance: float
+    K: sparse.bsr_array,
+    F: Floats,
+    precondition: Callable[[Floats], Floats],
+    tolerance: float,
+    foreseen: Callable[[], float],
 ) -> Iteration:
     """Conjugate gradients for a few columns, as `conjugate_gradients`."""
     count = F.shape[1]
@@ -412,7 +420,7 @@ def _solved(
         for found in iterates(K, F, precondition):
             errors.append(found.energy_error)
             too_long = found.iterations == MAX_ITERATIONS
-            too_long |= is_hopeless(errors, tolerance, MAX_ITERATIONS)
+            too_long |= is_hopeless(errors, tolerance, MAX_ITERATIONS, foreseen)
             if found.energy_error <= tolerance or too_long:
                 break
     return replace(found, x=found.x[:, :count])

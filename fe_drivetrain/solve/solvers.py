@@ -6,13 +6,14 @@ Symmetric positive definite systems only: interfaces are eliminated before, and 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.solve import direct_solvers, multigrid, petsc, schwarz
-from fe_drivetrain.solve.cost_model import predict
+from fe_drivetrain.solve.cost_model import iterations, predict
 from fe_drivetrain.solve.element_system import ElementSystem
 from fe_drivetrain.solve.reduction import System
 from fe_drivetrain.solve.rounding import Judged, judged
@@ -230,8 +231,14 @@ def factorise(
         made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
         held = made.bytes
 
+        @cache
+        def foreseen() -> float:
+            return iterations(system) if method == "multigrid" else 0.0
+
         def iterate(F: Floats) -> multigrid.Iteration:
-            return multigrid.conjugate_gradients(system.K, F, made.precondition, tolerance)
+            return multigrid.conjugate_gradients(
+                system.K, F, made.precondition, tolerance, foreseen
+            )
 
     else:
         factor = direct_solvers.factorise(system.K, method)
