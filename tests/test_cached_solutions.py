@@ -85,6 +85,7 @@ def test_what_a_solution_depends_on_is_in_its_key(change: dict[str, Any]) -> Non
     [
         {"title": "another"},
         {"gearbox.weight": 3e5},
+        {"bearing_units.0.catalogue": "bearing_x"},
         {"uncertainty": {"shaft.front": {"uniform": 0.001}}},
     ],
 )
