@@ -16,6 +16,7 @@ import hypothesis
 import numba
 import numpy as np
 import pytest
+from coarse_scenes import coarse_scene
 from tiny_case import SCRIPT, Result, count
 from xdist.remote import Producer
 from xdist.scheduler import LoadScopeScheduling
@@ -28,8 +29,7 @@ from fe_drivetrain.mesh.mesh import Mesh
 from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.reading import change_scene, library_scene
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.result_folders import new_folder, put_in_place, result_folder, run_into
@@ -43,31 +43,6 @@ hypothesis.settings.register_profile(
 )
 hypothesis.settings.register_profile("thorough", max_examples=1000, deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
-
-#: A short, coarse main bearing: thesis proportions, a tenth of the unknowns.
-COARSE = {
-    "mesh.shaft": 0.3,
-    "mesh.bearing": 0.14,
-    "mesh.housing": 0.18,
-    "mesh.bearing_edge": 0.14,
-    "mesh.elements_per_turn": 8,
-    "shaft.front": -1.0,
-    "shaft.sections.0.length": 2.2,
-}
-
-#: Finer than `COARSE`: coarser meshes for a series can be made of it.
-FINER = {
-    "mesh.bearing": 0.1,
-    "mesh.housing": 0.1,
-    "mesh.bearing_edge": 0.1,
-    "mesh.elements_per_turn": 12,
-}
-
-
-def coarse_scene(kind: str, **changes: object) -> Scene:
-    """The library's main bearing, made small."""
-    return change_scene(library_scene(f"main_bearing_{kind}"), COARSE | changes)
-
 
 #: Programs that tests start; all else that they need is a Python package.
 PROGRAMS = ("ccx", "chromium", "mpiexec")

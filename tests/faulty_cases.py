@@ -21,7 +21,7 @@ def fill(run: Run, page: Page, mark: str = NEW) -> None:
 
 
 def mesh_a_scene(run: Run, page: Page) -> None:
-    from conftest import coarse_scene
+    from coarse_scenes import coarse_scene
 
     from fe_drivetrain.response.model import mesh_scene
 
@@ -31,7 +31,7 @@ def mesh_a_scene(run: Run, page: Page) -> None:
 
 def gmsh_fails(run: Run, page: Page) -> None:
     import gmsh
-    from conftest import coarse_scene
+    from coarse_scenes import coarse_scene
 
     from fe_drivetrain.response.model import mesh_scene
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common.scaling import largest_difference
 from fe_drivetrain.fidelity.bearing_units import banded_unit, unit_stiffness

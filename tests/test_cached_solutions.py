@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common import made_by
 from fe_drivetrain.common.cache import Cache

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rich.progress  # noqa: F401 - once here, not in each of hundreds of forked children
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 from faulty_cases import NEW, crash, fill, gmsh_fails, mesh_a_scene
 from hypothesis import given
 from hypothesis import strategies as st
@@ -444,7 +444,7 @@ from fe_drivetrain.commands import main_of_case
 from fe_drivetrain.suite import Case
 
 def work(run, page):
-    from conftest import coarse_scene
+    from coarse_scenes import coarse_scene
     from fe_drivetrain.mesh import write
     from fe_drivetrain.response import build_model, mesh_scene, unit_load_response
     with run.step("mesh"):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import COARSE, FINER
+from coarse_scenes import COARSE, FINER
 
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.typeset import typeset

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import yaml
-from conftest import COARSE, FINER, coarse_scene
+from coarse_scenes import COARSE, FINER, coarse_scene
 
 from fe_drivetrain.cases.main_bearing import loads, study
 from fe_drivetrain.common.errors import InputError
