@@ -26,6 +26,7 @@ from fe_drivetrain.common import cache, threads
 from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.report.pictures import off_screen
 from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
@@ -253,6 +254,14 @@ def kept_between_runs(kept_folder: Path) -> Iterator[None]:
     """Keep meshes and solutions of a file whose tests patch nothing for the next run of them."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(cache.CACHE_VARIABLE, str(kept_folder))
+        yield
+
+
+@pytest.fixture(scope="module")
+def without_pictures() -> Iterator[None]:
+    """Draw nothing, as on a machine that cannot; of quick cases a third of the time is drawing."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(off_screen, "_refusal", lambda interpreter: "no picture is asked for")
         yield
 
 
