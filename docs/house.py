@@ -37,7 +37,7 @@ def imports(path: Path, name: str) -> tuple[str, ...]:
 
 def _imports(path: Path, name: str) -> Iterator[str]:
     package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in _statements(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom):
             if node.level:
                 base = package[: len(package) - node.level + 1]
@@ -52,6 +52,14 @@ def _imports(path: Path, name: str) -> Iterator[str]:
             for alias in node.names:
                 if alias.name.partition(".")[0] == PACKAGE:
                     yield alias.name.partition(".")[2]
+
+
+def _statements(block: ast.AST) -> Iterator[ast.AST]:
+    """Every statement in a block, without what it computes, which is most of a program."""
+    for part in ("body", "orelse", "handlers", "finalbody", "cases"):
+        for node in getattr(block, part, ()):
+            yield node
+            yield from _statements(node)
 
 
 def room_of(name: str) -> str:

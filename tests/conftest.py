@@ -16,6 +16,10 @@ import hypothesis
 import numba
 import numpy as np
 import pytest
+from coarse_scenes import coarse_scene
+from numba.core.caching import NullCache
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.dispatcher import Dispatcher
 from tiny_case import SCRIPT, Result, count
 from xdist.remote import Producer
 from xdist.scheduler import LoadScopeScheduling
@@ -25,11 +29,11 @@ from fe_drivetrain.common import cache, threads
 from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.mesh.mesh import Mesh
+from fe_drivetrain.report.pictures import off_screen
 from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
-from fe_drivetrain.scene.reading import change_scene, library_scene
-from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.scene.reading import change_scene
 from fe_drivetrain.suite import case as case_module
 from fe_drivetrain.suite.case import Case
 from fe_drivetrain.suite.result_folders import new_folder, put_in_place, result_folder, run_into
@@ -43,31 +47,6 @@ hypothesis.settings.register_profile(
 )
 hypothesis.settings.register_profile("thorough", max_examples=1000, deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
-
-#: A short, coarse main bearing: thesis proportions, a tenth of the unknowns.
-COARSE = {
-    "mesh.shaft": 0.3,
-    "mesh.bearing": 0.14,
-    "mesh.housing": 0.18,
-    "mesh.bearing_edge": 0.14,
-    "mesh.elements_per_turn": 8,
-    "shaft.front": -1.0,
-    "shaft.sections.0.length": 2.2,
-}
-
-#: Finer than `COARSE`: coarser meshes for a series can be made of it.
-FINER = {
-    "mesh.bearing": 0.1,
-    "mesh.housing": 0.1,
-    "mesh.bearing_edge": 0.1,
-    "mesh.elements_per_turn": 12,
-}
-
-
-def coarse_scene(kind: str, **changes: object) -> Scene:
-    """The library's main bearing, made small."""
-    return change_scene(library_scene(f"main_bearing_{kind}"), COARSE | changes)
-
 
 #: Programs that tests start; all else that they need is a Python package.
 PROGRAMS = ("ccx", "chromium", "mpiexec")
@@ -117,6 +96,29 @@ def apart_from_the_user(shared_folder: Path) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch, threads.held_to_one_thread():
         patch.setenv(cache.CACHE_VARIABLE, str(shared_folder / "cache"))
         patch.setenv(threads.CORES_VARIABLE, "1")
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled_once(shared_folder: Path) -> Iterator[None]:
+    """Let a process that needs a loop which another one compiles wait, and load what that keeps.
+
+    On a fresh clone all of them began with the same loops, and each compiled them for itself.
+    """
+    folder = shared_folder / "loops"
+    folder.mkdir(exist_ok=True)
+    compile_ = Dispatcher.compile
+
+    def once(loop: Dispatcher, signature: Any) -> Any:
+        if isinstance(loop._cache, NullCache):
+            return compile_(loop, signature)
+        name = f"{loop.py_func.__module__}.{loop.py_func.__qualname__}.lock"
+        # numba's own lock first, so that no thread waits for a file with what another one needs
+        with global_compiler_lock, filelock.FileLock(folder / name, is_singleton=True):
+            return compile_(loop, signature)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Dispatcher, "compile", once)
         yield
 
 
@@ -278,6 +280,14 @@ def kept_between_runs(kept_folder: Path) -> Iterator[None]:
     """Keep meshes and solutions of a file whose tests patch nothing for the next run of them."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(cache.CACHE_VARIABLE, str(kept_folder))
+        yield
+
+
+@pytest.fixture(scope="module")
+def without_pictures() -> Iterator[None]:
+    """Draw nothing, as on a machine that cannot; of quick cases a third of the time is drawing."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(off_screen, "_refusal", lambda interpreter: "no picture is asked for")
         yield
 
 

@@ -1,7 +1,7 @@
 """Systems that nobody has assembled: the library's main bearing, and blocks tied by a mortar."""
 
 import numpy as np
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.interfaces.constraints import eliminate, fixed, held_nodes
 from fe_drivetrain.interfaces.mortar import mortar_tie

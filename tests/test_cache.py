@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import COARSE, coarse_scene
+from coarse_scenes import COARSE, coarse_scene
 
 from fe_drivetrain.common import cache as cache_module
 from fe_drivetrain.common.cache import CACHE_VARIABLE, Cache, key, switched_off, user_cache

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common import made_by
 from fe_drivetrain.common.cache import Cache
@@ -85,6 +85,7 @@ def test_what_a_solution_depends_on_is_in_its_key(change: dict[str, Any]) -> Non
     [
         {"title": "another"},
         {"gearbox.weight": 3e5},
+        {"bearing_units.0.catalogue": "bearing_x"},
         {"uncertainty": {"shaft.front": {"uniform": 0.001}}},
     ],
 )

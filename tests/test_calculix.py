@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FINER, coarse_scene
+from coarse_scenes import FINER, coarse_scene
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 

@@ -16,7 +16,7 @@ import cluster_jobs
 import numpy as np
 import pytest
 from cluster_jobs import WAIT
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 from test_commands_life import write_history
 from test_docs_blocks import blocks
 from test_docs_pages import DOCS

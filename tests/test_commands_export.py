@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain import export
 from fe_drivetrain.commands.app import main

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.condensed_housing import condensed_housing

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.io import mmread

@@ -15,13 +15,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import gmsh
 import numpy as np
 import pytest
-from conftest import coarse_scene
+import rich.progress  # noqa: F401 - once here, not in each of hundreds of forked children
+from coarse_scenes import coarse_scene
+from faulty_cases import NEW, crash, fill, gmsh_fails, mesh_a_scene
 from hypothesis import given
 from hypothesis import strategies as st
-from tiny_case import check_one
 
 from fe_drivetrain.commands import terminal
 from fe_drivetrain.commands.run import run_and_print
@@ -46,7 +46,7 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning"),
 ]
 
-OLD, NEW, MISSING = "old", "new", "missing"
+OLD, MISSING = "old", "missing"
 UNHARMED = 50
 #: What the interpreter announces before it touches the disk.
 OPERATIONS = ("open", "os.", "shutil.", "tempfile.", "ctypes.dlsym")
@@ -60,15 +60,6 @@ def marked(mark: str) -> Case:
             fill(run, page, mark)
 
     return Case("a/b", "t", "s", work)
-
-
-def fill(run: Run, page: Page, mark: str = NEW) -> None:
-    """Write the mark to the page and two files."""
-    (run.folder / "one.txt").write_text(mark)
-    (run.folder / "two").mkdir()
-    (run.folder / "two" / "three.txt").write_text(mark * 1000)
-    page.answer(mark)
-    check_one(page)
 
 
 def state(out: Path) -> str:
@@ -387,29 +378,6 @@ def test_a_cache_that_can_only_be_read_gives_what_it_has(
 # --- one case of many ----------------------------------------------------------------------------
 
 
-def mesh_a_scene(run: Run, page: Page) -> None:
-    assert len(mesh_scene(coarse_scene("bonded")).cells) > 100
-    fill(run, page)
-
-
-def gmsh_fails(run: Run, page: Page) -> None:
-    generate, gmsh.model.mesh.generate = gmsh.model.mesh.generate, _no_mesh
-    try:
-        mesh_scene(coarse_scene("bonded", **{"mesh.shaft": 0.28}))
-    finally:
-        gmsh.model.mesh.generate = generate
-    page.answer(NEW)
-
-
-def _no_mesh(dimension: int) -> None:
-    raise Exception("PLC Error: A segment and a facet intersect at point")  # as gmsh raises it
-
-
-def crash(run: Run, page: Page) -> None:
-    (run.folder / "half.txt").write_text("half")
-    os.kill(os.getpid(), signal.SIGSEGV)
-
-
 @pytest.mark.parametrize("cores", ["1", "2"])
 def test_one_case_that_fails_in_gmsh_keeps_no_other_from_finishing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cores: str
@@ -476,7 +444,7 @@ from fe_drivetrain.commands import main_of_case
 from fe_drivetrain.suite import Case
 
 def work(run, page):
-    from conftest import coarse_scene
+    from coarse_scenes import coarse_scene
     from fe_drivetrain.mesh import write
     from fe_drivetrain.response import build_model, mesh_scene, unit_load_response
     with run.step("mesh"):

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import COARSE, coarse_scene
+from coarse_scenes import COARSE, coarse_scene
 from test_own_drivetrain import write_loads
 
 from fe_drivetrain.cases.main_bearing import general, rmse, study

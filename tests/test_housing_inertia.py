@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 from typer.testing import CliRunner
 
 from fe_drivetrain.commands.app import app

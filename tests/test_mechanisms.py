@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.cases.main_bearing import shown, study
 from fe_drivetrain.common.errors import InputError

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 from scipy import linalg, sparse
 
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import yaml
-from conftest import COARSE, FINER, coarse_scene
+from coarse_scenes import COARSE, FINER, coarse_scene
 
 from fe_drivetrain.cases.main_bearing import loads, study
 from fe_drivetrain.common.errors import InputError
@@ -36,8 +36,8 @@ SLOW = {"secant_stiffness"}
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory) -> dict[str, Results]:
-    """Results of each case on a small scene with a sliding bearing."""
+def pages(tmp_path_factory, without_pictures) -> dict[str, Results]:
+    """Results of each case on a small scene with a sliding bearing; what they say is asked."""
     folder = tmp_path_factory.mktemp("own")
     scene = coarse_scene("spherical", title="Turbine of mine", **FINER).model_dump(mode="json")
     (folder / "mine.yaml").write_text(yaml.safe_dump(scene))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.operator import kernels
 from fe_drivetrain.operator.incompressible import assemble_materials, assemble_unlocked

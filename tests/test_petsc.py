@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 from element_systems import SYSTEMS
 
 from fe_drivetrain.common.errors import InputError

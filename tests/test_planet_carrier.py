@@ -146,7 +146,6 @@ def test_on_a_thick_wall_the_solid_is_the_beams_but_for_the_pins_roots() -> None
         "planet_carrier.pin_diameter": diameter,
         "planet_carrier.gap": length,
         "planet_carrier.hub_diameter": 2.2,
-        "mesh.edge": 0.06,
     }
     component = coarse("planet_carrier", **changes)
     beams, solid = (

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.cases.main_bearing import reactions
 from fe_drivetrain.cases.main_bearing.loads import HubLoads

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.beam.closed_forms import pinned_model
 from fe_drivetrain.beam.of_scene import main_bearing_beam

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.errors import InputError

@@ -13,13 +13,22 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from tiny_case import check_one
+from suite_cases import (
+    a_case,
+    count,
+    fault,
+    last,
+    miss,
+    need_a_tool,
+    off,
+    read_the_index,
+    refuse,
+)
 
 from fe_drivetrain.commands.run import results_text
-from fe_drivetrain.common.cache import user_cache
-from fe_drivetrain.common.errors import InputError, MissingToolError
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import OVERALL
-from fe_drivetrain.common.threads import CORES_VARIABLE, cores
+from fe_drivetrain.common.threads import CORES_VARIABLE
 from fe_drivetrain.report.history import FILE
 from fe_drivetrain.report.index import write_index
 from fe_drivetrain.report.junit import write_junit
@@ -30,55 +39,6 @@ from fe_drivetrain.suite.result_folders import run_case
 from fe_drivetrain.suite.resuming import finished_cases
 from fe_drivetrain.suite.run import Run
 from fe_drivetrain.suite.suite import run_cases
-
-
-# module-level, because other processes import them
-def count(run: Run, page: Page) -> None:
-    start = time.time()
-    with run.step("count"):
-        (run.folder / "one.txt").write_text("1")
-        time.sleep(0.3)
-    run.times.update(count=1.5, saved=-0.25)
-    check_one(page)
-    page.data("began", start)
-    page.data("ended", time.time())
-    page.data("pid", os.getpid())
-    page.data("cores", cores())
-    page.data("kept", user_cache().folder is not None)
-
-
-def last(run: Run, page: Page) -> None:
-    check_one(page)
-    page.data("began", time.monotonic())
-
-
-def miss(run: Run, page: Page) -> None:
-    run.times.update(count=1.5, saved=-0.25)
-    check_one(page, 2.0)
-
-
-def refuse(run: Run, page: Page) -> None:
-    (run.folder / "half.txt").write_text("half")
-    raise InputError("shaft: length is -1 <m>: give a length")
-
-
-def fault(run: Run, page: Page) -> None:
-    check_one(page, 1 / 0)
-
-
-def off(run: Run, page: Page) -> None:
-    for computed in (1.25, 0.75):
-        check_one(page, computed, within=1.0, measure="stiffness", band=0.05 * computed)
-
-
-def wait(run: Run, page: Page) -> None:
-    (run.folder / f"pid-{os.getpid()}").touch()
-    with run.step("wait"):
-        time.sleep(600)
-
-
-def a_case(name: str, work: Callable[[Run, Page], None], alone: bool = False) -> Case:
-    return Case(name, f"Title of <{name}>", "nobody", work, alone, settings=("k",))
 
 
 @pytest.fixture(params=["1", "2"])
@@ -122,10 +82,6 @@ def test_a_case_that_cannot_run_keeps_no_other_from_running(
     assert "1 of 3 cases pass" in page
     assert "shaft: length is -1 &lt;m&gt;: give a length" in page
     assert sorted(os.listdir(tmp_path / "a")) == ["one"]
-
-
-def need_a_tool(run: Run, page: Page) -> None:
-    raise MissingToolError("ccx is not installed: apt-get install calculix-ccx")
 
 
 def test_a_case_without_its_tool_is_skipped_and_none_fails_for_it(tmp_path: Path) -> None:
@@ -261,16 +217,6 @@ def test_results_that_cannot_be_read_are_listed_as_such(tmp_path: Path) -> None:
     assert "cannot be read: run it again" in page
 
 
-def read_the_index(run: Run, page: Page) -> None:
-    page.answer((run.folder.parents[1] / "index.html").read_text())
-    count(run, page)  # which is a step
-    end = time.monotonic() + 10.0
-    while "1 running" not in (said := (run.folder.parents[1] / "index.html").read_text()):
-        assert time.monotonic() < end
-        time.sleep(0.02)
-    page.answer(said)
-
-
 def test_a_run_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
     def with_files(name: str, work: Callable[[Run, Page], None]) -> Case:
         return replace(a_case(name, work), settings=("k", "scene"))
@@ -344,7 +290,7 @@ def test_stopping_keeps_what_is_done_and_leaves_nothing_half_written(
 ) -> None:
     program = (
         "import sys; sys.argv[:] = ['fe-drivetrain', 'run', '--all']\n"
-        "import test_suite as t\n"
+        "import suite_cases as t\n"
         "from fe_drivetrain.commands import main\n"
         "from fe_drivetrain.suite import case\n"
         "found = [t.a_case('a/one', t.count), t.a_case('a/wait', t.wait)]\n"

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import coarse_scene
+from coarse_scenes import coarse_scene
 from numpy.testing import assert_allclose
 from scipy import stats
 

@@ -284,7 +284,8 @@ def advise(
     if not done:
         springs, done = _run_on_springs(scene, quantity, levels, add, report)
     if not done:
-        model, seconds, (band,) = banded_assembly(scene, [quantity], report)
+        # its time is a result, so it is solved
+        model, seconds, (band,) = banded_assembly(scene, [quantity], report, UNCACHED)
         add(model, seconds, band.half_width, band)
     return _judged(quantity, tolerance, results, springs)
 
@@ -359,7 +360,10 @@ def parts_of_band(values: Floats, bound: Floats, cheaper: Floats) -> tuple[float
 
 
 def banded_assembly(
-    scene: Scene, quantities: Sequence[Quantity], report: Callable[[str], object] = silent
+    scene: Scene,
+    quantities: Sequence[Quantity],
+    report: Callable[[str], object] = silent,
+    cache: Cache | None = None,
 ) -> tuple[LevelModel, float, list[AssemblyBand]]:
     """Solve the assembly, and two on coarser meshes that give its values their bands.
 
@@ -371,13 +375,15 @@ def banded_assembly(
         What is asked for.
     report : callable
         Called with what is being done.
+    cache : Cache or None
+        Where solutions may come from; the user's if not given.
 
     Returns
     -------
     LevelModel
         The assembly on the finest mesh.
     float
-        Wall time of that alone [s].
+        Wall time of that alone [s]; of reading it, where it was kept.
     list[AssemblyBand]
         Of each quantity.
     """
@@ -387,14 +393,14 @@ def banded_assembly(
         report(f"level 4: assembly of solids ({number} of {len(COARSER) + 1})")
         coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
         try:
-            level, coarse, _ = solved_assembly(coarser, UNCACHED)
+            level, coarse, _ = solved_assembly(coarser, cache)
         except InputError:  # too coarse for a wall
             continue
         sizes.append(mean_size(coarse.mesh))
         levels.append(level)
     report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
     start = time.perf_counter()
-    level, model, response = solved_assembly(scene, UNCACHED)
+    level, model, response = solved_assembly(scene, cache)
     seconds = time.perf_counter() - start
     sizes.append(mean_size(model.mesh))
     levels.append(level)

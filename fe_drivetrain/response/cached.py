@@ -68,7 +68,7 @@ def cached_response(
 
 
 def solved_content(scene: Scene) -> dict[str, Any]:
-    """What of a scene a solution depends on: all but its title, weights, sizes and spreads.
+    """What of a scene a solution depends on: not title, weights, sizes, spreads, catalogue names.
 
     Parameters
     ----------
@@ -82,6 +82,7 @@ def solved_content(scene: Scene) -> dict[str, Any]:
     """
     content = scene.model_dump(mode="json", exclude={"title", "uncertainty", "mesh"})
     for unit, described in zip(scene.bearing_units, content["bearing_units"], strict=True):
+        del described["catalogue"]  # which is for lives
         if unit.foreign is not None:  # what is in the file counts, not where it is
             described["housing"] |= {"step": None, "mesh": file_digest(unit.foreign.file)}
         for part, data in zip(unit.parts, described["parts"], strict=True):
