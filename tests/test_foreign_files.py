@@ -180,7 +180,6 @@ def test_a_file_that_takes_too_long_is_stopped(samples):
         "centre": None,
         "size": 20.0,
         "per_turn": 200,
-        "optimise": True,
     }
     with pytest.raises(InputError, match="more than 1 s of processor time"):
         read_in_process("mesh step", folder / "split_housing.step", request, limits)
