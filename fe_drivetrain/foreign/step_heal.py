@@ -27,7 +27,7 @@ VOLUME_TOLERANCE = 1e-4
 _SAME = 1e-6  # of a solid's size: edges and gaps that are nothing
 _COARSE, _FINE, _PER_TURN = 25, 500, 16  # of its size, and elements of a turn: to see if it meshes
 _FINER = 2.5
-_DELAUNAY, _HXT = 1, 10  # gmsh's numbers; HXT takes a tenth of the time, Delaunay says what is wrong
+_DELAUNAY, _HXT = 1, 10  # gmsh's numbers: HXT is ten times as fast, Delaunay says what is wrong
 
 
 class Step(NamedTuple):
