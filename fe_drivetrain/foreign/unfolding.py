@@ -60,7 +60,7 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
     if not near.any():
         return mesh
     for _ in range(_LAYERS):
-        near = np.isin(mesh.cells, mesh.cells[near]).any(axis=1)
+        near = np.asarray(np.isin(mesh.cells, mesh.cells[near]).any(axis=1))
     nodes, local = np.unique(mesh.cells[near], return_inverse=True)
     cells = local.reshape(-1, mesh.cells.shape[1])
     curved = mesh.points[nodes]
