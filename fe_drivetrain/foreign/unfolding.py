@@ -69,13 +69,12 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
 
     free = _free(mesh)[nodes]
     free[np.isin(nodes, mesh.cells[~near])] = 0.0
-    P = sparse.block_diag(free, format="csc")
-    held = np.eye(3) - free
+    P, held = _blocks(free), np.eye(3) - free
     given = np.einsum("nij,nj->ni", held, curved - straight).ravel()
     K = sparse.csc_array(assemble(straight, cells, _LAME, given.size))
-    rest = float(K.diagonal().mean()) * sparse.block_diag(held, format="csc")
+    rest = float(K.diagonal().mean()) * _blocks(held)
 
-    least, best = np.inf, curved
+    least, best = _missing(curved, cells, floor), curved
     for _ in range(_ROUNDS):
         factor = splu(
             sparse.csc_array(P @ K @ P + rest),
@@ -84,12 +83,11 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
             options={"SymmetricMode": True},
         )
         now = straight + (given - factor.solve(P @ (K @ given))).reshape(-1, 3)
-        scaled = scaled_jacobians(now, cells)
-        missing = float(np.maximum(floor - scaled, 0.0).sum())
-        if missing >= least:
+        missing = _missing(now, cells, floor)
+        if missing.sum() >= least.sum():
             break
         least, best = missing, now
-        low = scaled < floor
+        low = missing > 0.0
         if not low.any():
             break
         K += (_STIFFER - 1) * sparse.csc_array(assemble(straight, cells[low], _LAME, given.size))
@@ -98,6 +96,17 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
     all_move = replace(mesh, points=points, faces={})
     eased = relax_flat_cells(all_move, floor, _PASSES, _SHARE)
     return replace(eased, faces=mesh.faces)
+
+
+def _missing(points: Floats, cells: Ints, floor: float) -> Floats:
+    """Of each cell's scaled Jacobian to the floor."""
+    return np.asarray(np.maximum(floor - scaled_jacobians(points, cells), 0.0))
+
+
+def _blocks(blocks: Floats) -> sparse.csc_array:
+    """A matrix with these blocks (n, 3, 3) on its diagonal."""
+    n = len(blocks)
+    return sparse.csc_array(sparse.bsr_array((blocks, np.arange(n), np.arange(n + 1))))
 
 
 def _free(mesh: Mesh) -> Floats:
