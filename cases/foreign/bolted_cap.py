@@ -17,7 +17,7 @@ from fe_drivetrain.suite import Page, Record, Run
 
 HOLE = 18  # mm, radius of the holes of the sample's four bolts M33
 PRESSED, QUICK_PRESSED = (60, 75, 90, 110), (60, 90)  # mm
-SIZES, QUICK_SIZES = (0.1, 0.07), (0.12, 0.1)  # m
+SIZES, QUICK_SIZES = (0.1, 0.07), (0.2, 0.16)  # m
 MOTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 UNIT = "bearing_units.main_bearing.housing"
 
@@ -47,7 +47,7 @@ def run(run: Run, page: Page) -> None:
     """Condense the split housing with its cap joined in ever smaller places."""
     write_sample("cap_and_base", run.folder / "cap_and_base.step")
     write_sample("split_housing", run.folder / "split_housing.step")
-    (coarse, fine), turn = (QUICK_SIZES, 10) if run.quick else (SIZES, 12)
+    (coarse, fine), turn = (QUICK_SIZES, 8) if run.quick else (SIZES, 12)
     widths = QUICK_PRESSED if run.quick else PRESSED
     whole = {f"{UNIT}.step": str(run.folder / "split_housing.step")}
     with run.step("one solid"):

@@ -24,7 +24,7 @@ WAYS = {
 }
 MOMENT = 1e6  # N m, which tilts the seat about y
 PRINTED = (1.25, 2.07)  # minutes of arc
-SIZES, QUICK_SIZES = (0.07, 0.05), (0.1,)  # m; larger ones fold over, which takes longer to repair
+SIZES, QUICK_SIZES = (0.07, 0.05), (0.1,)  # m
 STIFF = (1e13, 5e12)  # Pa: housings that are stiff against their bolts, of two moduli
 
 _SCENE = """

@@ -21,6 +21,7 @@ from fe_drivetrain.foreign.bolted import MOST_BETWEEN_RIMS, SIDES, joined_betwee
 from fe_drivetrain.foreign.known_healing import read_step, reader_versions
 from fe_drivetrain.foreign.picking import Surface
 from fe_drivetrain.foreign.reading import read_in_process
+from fe_drivetrain.foreign.unfolding import unfolded
 from fe_drivetrain.geometry import ForeignFile, Pick
 from fe_drivetrain.mesh.checks import refuse_unsound
 from fe_drivetrain.mesh.generation import ATTEMPTS, GMSH_TO_VTK, REFINEMENT, relax_flat_cells
@@ -145,12 +146,13 @@ def meshed_step(
         found = read_step(action, source.file, request)
         survey: dict[str, Any] = json.loads(str(found["survey"]))
         mesh = _placed_mesh(found, source, shift(survey), survey)
+        if len(inverted_cells(mesh)):
+            mesh = unfolded(mesh)
         if len(inverted_cells(mesh)) == 0:
             break
-        if request["optimise"]:  # in vain: finer, as `fe_drivetrain.mesh.generation.generate`
-            request["size"] /= REFINEMENT
-            request["per_turn"] = math.ceil(request["per_turn"] * REFINEMENT)
-        request["optimise"] = True
+        # finer, as `fe_drivetrain.mesh.generation.generate`
+        request["size"] /= REFINEMENT
+        request["per_turn"] = math.ceil(request["per_turn"] * REFINEMENT)
     solid, meshed = survey["after"]["volume"] * source.scale**3, volume(mesh)
     if survey["splines"]:  # of which OpenCASCADE's integrals are inexact, by the same of both
         for when in ("before", "after"):

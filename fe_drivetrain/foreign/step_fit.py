@@ -121,14 +121,20 @@ def lies_on(tag: int, face: dict[str, Any], size: float) -> bool:
     size : float
         Of all solids together [mm].
     """
-    at, _ = _inside(tag)
-    points = np.concatenate([at, on_edges(tag)])
     allowed = 2.0 * face.get("off", 0.0) + _SAME * size
-    axis, away = np.array(face.get("axis", (0.0, 0.0, 0.0))), points - np.array(face["centre"])
-    heights = away @ axis
-    off = np.linalg.norm(away - heights[:, None] * axis, axis=1) - face["radius"]
-    beyond = np.abs(heights) - face.get("length", 0.0) / 2
-    return bool(len(at) and np.abs(off).max() <= allowed and beyond.max() <= allowed)
+    axis, centre = np.array(face.get("axis", (0.0, 0.0, 0.0))), np.array(face["centre"])
+
+    def lie(points: Floats) -> bool:
+        away = points - centre
+        heights = away @ axis
+        off = np.linalg.norm(away - heights[:, None] * axis, axis=1) - face["radius"]
+        beyond = np.abs(heights) - face.get("length", 0.0) / 2
+        return bool(np.maximum(np.abs(off), beyond).max(initial=-math.inf) <= allowed)
+
+    if not lie(on_edges(tag)):  # most faces lie elsewhere, and to find points inside takes long
+        return False
+    at, _ = _inside(tag)
+    return len(at) > 0 and lie(at)
 
 
 def on_edges(tag: int) -> Floats:
