@@ -71,8 +71,6 @@ def meridian_triangles(
         gmsh.option.setNumber("Mesh.MeshSizeFromPoints", 0)
         gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
         gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-        # places of nodes along the outline: gmsh's 1e-9 takes ten times as long as all else
-        gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
         field = gmsh.model.mesh.field
         fields = []
         for formula in _sizes(path, per_fillet, corner):
