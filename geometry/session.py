@@ -45,7 +45,7 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", threads)
         gmsh.option.setNumber("Mesh.RandomSeed", 1)
-        # places of nodes along curves, of an edge: gmsh's 1e-9 takes ten times as long as all else
+        # places of nodes along curves, in edges: gmsh's 1e-9 may take ten times as long as all else
         gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
         gmsh.model.add(name)
         try:
