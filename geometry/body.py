@@ -14,6 +14,7 @@ from fe_drivetrain.common.errors import InputError
 from .element_sizes import GROWTH, MOST_ELEMENTS
 from .faces import CAD_TOLERANCE
 from .part import Part, dimension
+from .session import integrate_sizes
 
 Vector = tuple[float, float, float]
 
@@ -87,6 +88,7 @@ def name_and_size(
     ):
         gmsh.option.setNumber(option, value)
     if edges:
+        integrate_sizes()
         field = gmsh.model.mesh.field
         distance = field.add("Distance")
         field.setNumbers(distance, "CurvesList", edges)

@@ -45,8 +45,6 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", threads)
         gmsh.option.setNumber("Mesh.RandomSeed", 1)
-        # places of nodes along curves, in edges: gmsh's 1e-9 may take ten times as long as all else
-        gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
         gmsh.model.add(name)
         try:
             yield
@@ -61,6 +59,14 @@ def gmsh_session(name: str = "drivetrain", threads: int = 1) -> Iterator[None]:
             ) from error
     finally:
         gmsh.finalize()
+
+
+def integrate_sizes() -> None:
+    """Let fields of sizes place nodes along curves to 1e-4 of an edge.
+
+    gmsh's own 1e-9 may take ten times as long as all else of a coarse mesh.
+    """
+    gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
 
 
 def numbered_nodes() -> tuple[Floats, Ints]:
