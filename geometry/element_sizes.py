@@ -12,6 +12,7 @@ from fe_drivetrain.common.errors import InputError
 
 from .faces import boundary, parameters, revolved_ranges
 from .part import Part, dimension
+from .session import integrate_sizes
 
 GROWTH = 0.4
 """Growth of the element size with the distance from a tightly curved face, m per m."""
@@ -106,6 +107,7 @@ def apply_sizes(sizes: MeshSizes, parts: Mapping[str, int], faces: Mapping[str, 
         ("Mesh.MeshSizeExtendFromBoundary", -3),
     ):
         gmsh.option.setNumber(option, value)
+    integrate_sizes()
     field = gmsh.model.mesh.field
     fields = []
     for name, tag in parts.items():

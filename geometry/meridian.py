@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.errors import InputError
 
 from .part import LENGTH_TOLERANCE
-from .session import gmsh_session
+from .session import gmsh_session, integrate_sizes
 from .shaft import Segment, Shaft
 
 HIGHEST_ORDER = 6
@@ -71,8 +71,7 @@ def meridian_triangles(
         gmsh.option.setNumber("Mesh.MeshSizeFromPoints", 0)
         gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
         gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-        # places of nodes along the outline: gmsh's 1e-9 takes ten times as long as all else
-        gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
+        integrate_sizes()
         field = gmsh.model.mesh.field
         fields = []
         for formula in _sizes(path, per_fillet, corner):

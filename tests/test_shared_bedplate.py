@@ -116,9 +116,12 @@ def test_tied_housings_give_as_one_solid_of_everything(file, tmp_path):
 
 def test_a_bedplate_that_does_not_give_couples_nothing(file):
     """1000 times as stiff as the housings, it leaves what these give on the ground."""
+    # coarser meshes of the same housings apart and together differ by more than is asked here
+    sizes = {"mesh.housing": 0.2}
     ground = change_scene(
         scene_of(file, housing="soft"),
-        {
+        sizes
+        | {
             f"bearing_units.{name}.{key}": value
             for name in GROUP
             for key, value in (("stands_on", "ground"), ("parts", []))
@@ -131,7 +134,8 @@ def test_a_bedplate_that_does_not_give_couples_nothing(file):
     scale = np.sqrt(np.outer(*2 * [apart.diagonal()]))
     off = []
     for material in ("soft", "hard", "harder"):
-        given = np.linalg.inv(together(scene_of(file, material=material, housing="soft")))
+        scene = change_scene(scene_of(file, material=material, housing="soft"), sizes)
+        given = np.linalg.inv(together(scene))
         assert np.linalg.eigvalsh((given - apart) / scale)[0] > -1e-3  # it gives only more
         off.append(np.abs((given - apart) / scale).max())
     assert off[0] > 0.5

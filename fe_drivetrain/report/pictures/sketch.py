@@ -95,40 +95,37 @@ def sketch(*bodies: Body | Shaft | list[Faces]) -> bytes:
     """
     from PIL import Image, ImageDraw
 
-    groups, colours = [], []
     parts = [part for body in bodies for part in _parts(body)]
-    for k, part in enumerate(parts):
-        if isinstance(part, list):
-            faces = part
-        else:
-            faces = revolved(part) if isinstance(part, Shaft) else surface(part.points, part.cells)
-        groups += faces
-        colours += [PALETTE[k % len(PALETTE)]] * sum(len(group.loops) for group in faces)
-    flat = [loop for group in groups for loop in group.loops]
-    lines = [sides for group in groups for sides in group.sides]
-    points = np.concatenate([group.loops.reshape(-1, 3) for group in groups])
-    low, high = _seen(points).min(axis=0), _seen(points).max(axis=0)
+    groups = [(k, faces) for k, part in enumerate(parts) for faces in _faces(part)]
+    seen = [_seen(faces.loops) for _, faces in groups]
+    points = np.concatenate([at.reshape(-1, 2) for at in seen])
+    low, high = points.min(axis=0), points.max(axis=0)
     room = np.array([WIDTH, _MOST]) - 2 * MARGIN
     scale = float((room / np.maximum(high - low, 1e-12 * float(np.abs(points).max()))).min())
     height = max(_LEAST, round(scale * (high - low)[1]) + 2 * MARGIN)
-    middle = 0.5 * (low + high)
+    middle, half = 0.5 * (low + high), 0.5 * np.array([WIDTH, height])
     image = Image.new("RGB", (_FINER * WIDTH, _FINER * (height + STRIP)), "white")
     draw = ImageDraw.Draw(image)
-    normals = np.concatenate([_normals(group.loops) for group in groups])
-    depths = np.concatenate([(group.loops @ _EYE).mean(axis=1) for group in groups])
-    bright = normals @ _LIGHT
-    half = 0.5 * np.array([WIDTH, height])
-    order = np.argsort(depths)
-    for k in order[normals[order] @ _EYE > 1e-9]:
-        at = _FINER * (half + scale * (_seen(flat[k]) - middle) * (1.0, -1.0))
-        corners = [tuple(p) for p in at.tolist()]
-        fill, edge = (_shaded(colours[k], float(bright[k]) - dark) for dark in (0.0, 0.6))
-        draw.polygon(corners, fill=fill, outline=fill)
-        for side in np.flatnonzero(lines[k]):
-            draw.line([corners[side], corners[(side + 1) % len(at)]], fill=edge, width=_FINER)
+    corners, lines, depths, bright, colours = [], [], [], [], []
+    for (k, faces), at in zip(groups, seen, strict=True):
+        normals = _normals(faces.loops)
+        front = normals @ _EYE > 1e-9
+        at = _FINER * (half + scale * (at[front] - middle) * (1.0, -1.0))
+        corners += [[tuple(corner) for corner in loop] for loop in at.tolist()]
+        lines += faces.sides[front].tolist()
+        depths.append((faces.loops[front] @ _EYE).mean(axis=1))
+        bright.append(normals[front] @ _LIGHT)
+        colours += [PALETTE[k % len(PALETTE)]] * len(at)
+    fills, edges = (_shaded(colours, np.concatenate(bright) - dark) for dark in (0.0, 0.6))
+    for k in np.argsort(np.concatenate(depths)).tolist():
+        draw.polygon(corners[k], fill=fills[k], outline=fills[k])
+        following = [*corners[k][1:], corners[k][0]]
+        for start, end, is_line in zip(corners[k], following, lines[k], strict=True):
+            if is_line:
+                draw.line([start, end], fill=edges[k], width=_FINER)
     _axes(draw, height + STRIP)
     _scale_bar(draw, scale, height + STRIP)
-    small = image.resize((WIDTH, height + STRIP), Image.Resampling.LANCZOS)
+    small = image.reduce(_FINER)
     file = io.BytesIO()
     small.quantize(128).save(file, "PNG", optimize=True)
     return file.getvalue()
@@ -256,6 +253,12 @@ def _parts(body: Body | Shaft | list[Faces]) -> list[Piece | Shaft | list[Faces]
     return [Piece(body.points, cells) for cells in several]
 
 
+def _faces(part: Piece | Shaft | list[Faces]) -> list[Faces]:
+    if isinstance(part, list):
+        return part
+    return revolved(part) if isinstance(part, Shaft) else surface(part.points, part.cells)
+
+
 def _seen(points: Floats) -> Floats:
     """(..., 2) to the right and up."""
     return np.stack([points @ _RIGHT, points @ _UP], axis=-1)
@@ -269,13 +272,13 @@ def _normals(loops: Floats) -> Floats:
     return np.asarray(np.divide(area, size, out=area, where=size > 0.0))
 
 
-def _shaded(colour: str, towards_light: float) -> tuple[int, int, int]:
-    """A colour made paler, and darker where it is turned away from the light."""
-    own = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
-    bright = 0.62 + 0.38 * max(towards_light, -1.0)
-    mixed = (0.45 * own + 0.55 * 235.0) * bright
-    red, green, blue = (int(v) for v in np.clip(mixed, 0, 255))
-    return red, green, blue
+def _shaded(colours: Sequence[str], towards_light: Floats) -> list[tuple[int, int, int]]:
+    """Colours made paler, and darker where they are turned away from the light."""
+    red_green_blue = {c: [int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in set(colours)}
+    own = np.array([red_green_blue[colour] for colour in colours])
+    bright = 0.62 + 0.38 * np.maximum(towards_light, -1.0)
+    mixed = (0.45 * own + 0.55 * 235.0) * bright[:, None]
+    return [(r, g, b) for r, g, b in np.clip(mixed, 0, 255).astype(int).tolist()]
 
 
 def _font(size: int) -> Any:
