@@ -24,7 +24,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
@@ -308,6 +307,8 @@ def operating_point(rotor: Rotor, wind_speed: float) -> OperatingPoint:
                 f"rotor at {wind_speed} m/s gives more than rated_power {rotor.rated_power} W at "
                 "any pitch up to 40 degrees; raise rated_power or shrink the rotor"
             )
+        from scipy.optimize import brentq  # which kept loads need not wait for
+
         pitch = float(brentq(excess, 0.0, feathered, xtol=1e-10))
     return steady_state(rotor, wind_speed, speed, pitch)
 
