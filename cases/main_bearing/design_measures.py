@@ -39,8 +39,10 @@ def section(run: Run, page: Page, hub: HubLoads, found: Comparison) -> None:
 
     with run.step("damage, extremes, time at level"):
         truth = {kind: radial(reaction) for kind, reaction in found.fe.items()}
+        models = {id(model): model for _, model in found.pairs.values()}  # two are of one beam
+        of_model = {key: radial(model) for key, model in models.items()}
         errors = {
-            label: model_errors(radial(model), truth[kind])
+            label: model_errors(of_model[id(model)], truth[kind])
             for label, (kind, model) in found.pairs.items()
         }
     rows: list[Record] = [

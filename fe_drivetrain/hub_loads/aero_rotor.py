@@ -24,7 +24,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
@@ -162,14 +161,18 @@ def polar(rotor: Rotor, attack: ArrayLike) -> tuple[Floats, Floats]:
     turns square to the chord, towards that of a flat plate.
     """
     alpha = np.asarray(attack, dtype=float)
-    from_zero_lift = alpha - rotor.zero_lift_angle
+    return _polar(rotor, alpha, np.sin(alpha), np.cos(alpha))
+
+
+def _polar(rotor: Rotor, attack: Floats, sin: Floats, cos: Floats) -> tuple[Floats, Floats]:
+    """`polar`, where sine and cosine of the angle are known, which take most of the time."""
     stall = rotor.stall_angle - rotor.zero_lift_angle
-    past = (np.abs(from_zero_lift) - stall) / rotor.stall_width
+    past = (np.abs(attack - rotor.zero_lift_angle) - stall) / rotor.stall_width
     fade = np.exp(-np.abs(past))
     root_attached = np.sqrt(np.where(past <= 0.0, 1.0 - 0.3 * fade, 0.04 + 0.66 * fade))
-    full = rotor.lift_slope * np.sin(from_zero_lift)
+    sin_zero, cos_zero = math.sin(rotor.zero_lift_angle), math.cos(rotor.zero_lift_angle)
+    full = rotor.lift_slope * (sin * cos_zero - cos * sin_zero)
     normal = full * (0.5 * (1.0 + root_attached)) ** 2
-    sin, cos = np.sin(alpha), np.cos(alpha)
     suction = full * sin * root_attached
     return normal * cos + suction * sin, rotor.least_drag + normal * sin - suction * cos
 
@@ -304,6 +307,8 @@ def operating_point(rotor: Rotor, wind_speed: float) -> OperatingPoint:
                 f"rotor at {wind_speed} m/s gives more than rated_power {rotor.rated_power} W at "
                 "any pitch up to 40 degrees; raise rated_power or shrink the rotor"
             )
+        from scipy.optimize import brentq  # which kept loads need not wait for
+
         pitch = float(brentq(excess, 0.0, feathered, xtol=1e-10))
     return steady_state(rotor, wind_speed, speed, pitch)
 
@@ -329,6 +334,7 @@ def aerodynamic_hub_loads(
     psi = np.asarray(azimuth, dtype=float)
     r, weight = rotor.element_radius()
     chord, twist = rotor.chord(r), rotor.twist(r) + point.pitch
+    sin_twist, cos_twist = np.sin(twist), np.cos(twist)
     cos_tilt, sin_tilt = np.cos(rotor.shaft_tilt), np.sin(rotor.shaft_tilt)
     induced = point.axial * point.wind_speed * cos_tilt
     swirl = point.rotor_speed * r * (1.0 + point.tangential)
@@ -339,8 +345,11 @@ def aerodynamic_hub_loads(
         through = u[blade] * cos_tilt - induced
         # Tilt turns part of the wind up the rotor plane: against the blade that comes down.
         along = swirl + u[blade] * sin_tilt * sin[:, None]
-        lift, drag = polar(rotor, np.arctan2(through, along) - twist)
-        speed = np.hypot(through, along)
+        speed = np.sqrt(through**2 + along**2)
+        attack = np.arctan2(through, along) - twist
+        sin_attack = (through * cos_twist - along * sin_twist) / speed
+        cos_attack = (along * cos_twist + through * sin_twist) / speed
+        lift, drag = _polar(rotor, attack, sin_attack, cos_attack)
         pressure = 0.5 * rotor.air_density * chord * weight * speed
         normal = pressure * (lift * along + drag * through)
         tangent = pressure * (lift * through - drag * along)

@@ -57,7 +57,7 @@ __all__ = [
 ]
 
 
-VERSION = 2
+VERSION = 3
 """Raise whenever a change alters the histories: kept ones of another version are not used."""
 
 _KIND: Literal["hub-loads"] = "hub-loads"

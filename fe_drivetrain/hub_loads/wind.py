@@ -229,7 +229,8 @@ def at_azimuth(coefficients: Singles, azimuth: ArrayLike) -> Floats:
     """
     psi = np.asarray(azimuth, dtype=float)
     m = (len(coefficients) - 1) // 2
-    turns = np.outer(np.arange(1, m + 1), psi)
-    waves = np.concatenate((np.ones((1, psi.size)), np.cos(turns), np.sin(turns)))
+    # sines and cosines of 2 M multiples would take most of the time: powers of one turn instead
+    turns = np.multiply.accumulate(np.broadcast_to(np.exp(1j * psi), (m, psi.size)), axis=0)
+    waves = np.concatenate((np.ones((1, psi.size)), turns.real, turns.imag))
     wind = np.einsum("mrt,mt->tr", coefficients, waves.astype(np.float32))
     return np.asarray(wind, dtype=np.float64)

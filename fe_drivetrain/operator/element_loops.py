@@ -27,9 +27,9 @@ def is_straight(points: Floats, cells: Index | Ints) -> Bools:
     return found
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def _find_straight(points: Floats, cells: Index, edges: NDArray[np.int64], found: Bools) -> None:
-    for e in prange(len(cells)):
+    for e in range(len(cells)):  # so little to do that threads would take longer to compile
         found[e] = True
         for edge in range(len(edges)):
             length = off = 0.0

@@ -4,7 +4,7 @@ Compiled by numba at the first call (seconds), then kept in its cache on disk.
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 
 from fe_drivetrain.operator.kernels import Index
@@ -39,7 +39,7 @@ def places(
     return found
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def _find_places(
     indptr: Index,
     indices: Index,
@@ -47,7 +47,7 @@ def _find_places(
     columns: NDArray[np.int64],
     found: NDArray[np.int64],
 ) -> None:
-    for k in prange(len(rows)):
+    for k in range(len(rows)):
         for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
             if indices[p] == columns[k]:
                 found[k] = p

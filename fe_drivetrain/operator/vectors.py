@@ -109,6 +109,45 @@ def plus(typing: Any, vector: Any, number: Any, other: Any) -> Any:
 
 
 @_in_loops
+def less_block(
+    typing: Any, f: Any, g: Any, h: Any, blocks: Any, place: Any, array: Any, index: Any, row: Any
+) -> Any:
+    """Three vectors less a 3x3 block times three rows of an array, each entry as `plus` adds it.
+
+    One statement: as one for each entry, loops would take twice as long to compile.
+
+    Parameters
+    ----------
+    f, g, h : Vector
+        The vectors.
+    blocks, place : array, uint64
+        Flat, and where in it the block begins.
+    array, index, row : array, uint64, uint64
+        Flat, where in it the first of the rows begins, and how many numbers a row has.
+    """
+    sums = types.UniTuple(_VECTOR, 3)  # type: ignore[no-untyped-call]
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        *found, blocks, place, array, index, row = given
+        kind, of_rows = signature.args[3], signature.args[5]
+        data = context.make_array(kind)(context, builder, blocks).data
+        others = []
+        for _ in range(3):
+            address = _address(context, builder, of_rows, array, index, _LANES)
+            others.append(builder.load(address, align=8))
+            index = builder.add(index, row)
+        for entry in range(9):
+            k = builder.add(place, ir.Constant(place.type, entry))
+            number = builder.fneg(builder.load(builder.gep(data, [k])))
+            spread = _spread(builder, kind.dtype, number)
+            product = builder.fmul(spread, others[entry % 3], flags=("contract",))
+            found[entry // 3] = builder.fadd(found[entry // 3], product, flags=("contract",))
+        return context.make_tuple(builder, sums, found)
+
+    return sums(f, g, h, blocks, place, array, index, row), generate
+
+
+@_in_loops
 def zeros(typing: Any) -> Any:
     """A vector of zeros."""
 
