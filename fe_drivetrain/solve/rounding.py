@@ -11,8 +11,8 @@ from fe_drivetrain.operator.kernels import in_lanes, pattern_of, residual
 # An entry is a sum over a handful of elements and the points of their quadrature.
 _EPS = 4.0 * float(np.finfo(float).eps)
 
-# Block rows at a time: some megabytes of magnitudes, which threads share seldom enough.
-_ROWS = 8192
+# Block rows at a time: two megabytes of magnitudes, which stay in a cache.
+_ROWS = 1024
 
 
 @dataclass(frozen=True)
