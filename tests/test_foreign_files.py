@@ -115,7 +115,7 @@ def test_what_gmsh_cannot_mesh_is_said_with_its_place(tmp_path, monkeypatch):
 
         monkeypatch.setattr(gmsh.model.mesh, "generate", failing)
         with pytest.raises(InputError) as error:
-            mesh_solid(found, 300.0, 8)
+            mesh_solid(found, 300.0, 8, False)
     at = next(face["middle"] for face in found["faces"] if face["tag"] == 2)
     assert "face 2, a plane, round ({:.4g}, {:.4g}, {:.4g}) mm".format(*at) in str(error.value)
 
@@ -128,7 +128,7 @@ def test_a_mesh_of_too_many_elements_is_refused_before_it_is_made(tmp_path):
         with pytest.raises(
             InputError, match=r"elements of 1 mm make about .* choose 28 mm or more"
         ):
-            mesh_solid(found, 1.0, 8)
+            mesh_solid(found, 1.0, 8, False)
 
 
 def test_an_unreasonably_large_count_in_a_binary_msh_costs_no_memory(tmp_path):
@@ -180,6 +180,7 @@ def test_a_file_that_takes_too_long_is_stopped(samples):
         "centre": None,
         "size": 20.0,
         "per_turn": 200,
+        "optimise": True,
     }
     with pytest.raises(InputError, match="more than 1 s of processor time"):
         read_in_process("mesh step", folder / "split_housing.step", request, limits)

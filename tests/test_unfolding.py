@@ -11,7 +11,6 @@ from fe_drivetrain.mesh.generation import read_gmsh
 from fe_drivetrain.mesh.measures import area, inverted_cells, scaled_jacobians, volume
 
 RADIUS, WIDE = 0.3, 0.65  # of a plate with a bore, whose webs are 25 mm wide [m]
-SAGITTA = RADIUS * (1 - np.cos(np.pi / 10))  # of the bore's edges, ten on a turn
 FLOOR = 0.1
 
 
@@ -71,12 +70,10 @@ def test_a_sound_mesh_stays_as_it_is(thick):
     assert unfolded(sound) is sound
 
 
-def test_a_bore_gives_way_by_little_where_elements_are_flat_on_it():
+def test_elements_flat_on_a_bore_stay_folded_and_the_bore_where_it_is():
     plate = bored_plate(0.05)
     assert len(inverted_cells(plate)) > 0
     mesh = unfolded(plate)
-    assert scaled_jacobians(mesh.points, mesh.cells).min() > FLOOR
-    off = away_from_bore(mesh)
-    assert 0 < off.max() < SAGITTA / 2
-    assert np.count_nonzero(off > 1e-9) < 0.2 * len(off)
-    assert volume(mesh) == pytest.approx(volume(plate), rel=5e-3)
+    assert away_from_bore(mesh).max() < 1e-12
+    assert 0 < len(inverted_cells(mesh)) < len(inverted_cells(plate))
+    assert volume(mesh) == pytest.approx(volume(plate), rel=1e-12)

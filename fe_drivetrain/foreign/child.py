@@ -128,7 +128,7 @@ def _mesh_step(request: dict[str, Any]) -> dict[str, Any]:
             else []
         )
         step_mesh.cut(survey, request)
-        step_mesh.mesh(survey, request["size"], request["per_turn"])
+        step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
         arrays = _grouped()
         survey["splines"] = step_solid.has_splines(survey)
         survey.pop("faces")
@@ -163,7 +163,7 @@ def _mesh_further_part(request: dict[str, Any]) -> dict[str, Any]:
     with gmsh_session():
         survey = _opened(request)
         step_mesh.name_faces(survey, request)
-        step_mesh.mesh(survey, request["size"], request["per_turn"])
+        step_mesh.mesh(survey, request["size"], request["per_turn"], request["optimise"])
         arrays = _grouped()
         survey["splines"] = step_solid.has_splines(survey)
         survey.pop("faces")

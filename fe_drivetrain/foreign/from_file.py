@@ -150,9 +150,10 @@ def meshed_step(
             mesh = unfolded(mesh)
         if len(inverted_cells(mesh)) == 0:
             break
-        # finer, as `fe_drivetrain.mesh.generation.generate`
-        request["size"] /= REFINEMENT
-        request["per_turn"] = math.ceil(request["per_turn"] * REFINEMENT)
+        if request["optimise"]:  # in vain: finer, as `fe_drivetrain.mesh.generation.generate`
+            request["size"] /= REFINEMENT
+            request["per_turn"] = math.ceil(request["per_turn"] * REFINEMENT)
+        request["optimise"] = True
     solid, meshed = survey["after"]["volume"] * source.scale**3, volume(mesh)
     if survey["splines"]:  # of which OpenCASCADE's integrals are inexact, by the same of both
         for when in ("before", "after"):

@@ -99,6 +99,7 @@ def _of_step(part: FurtherPart, shift: Floats, sizes: MeshSizes) -> dict[str, ND
         "held": [pick_data(pick) for pick in part.held],
         "size": sizes.housing / part.scale,
         "per_turn": sizes.elements_per_turn,
+        "optimise": False,
     }
     mesh, survey = meshed_step("mesh further part", part, request, lambda _: shift)
     return named_arrays(survey["name"], mesh, step_facts(survey, part.scale))

@@ -102,6 +102,7 @@ def _of_step(
         "centre": None if moved is None else (turned.T @ (centre - moved) / scale).tolist(),
         "size": sizes.housing / scale,
         "per_turn": sizes.elements_per_turn,
+        "optimise": False,
     }
 
     def shift(survey: Mapping[str, Any]) -> Floats:

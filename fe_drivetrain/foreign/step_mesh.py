@@ -392,11 +392,11 @@ def _xyz(place: Any) -> str:
     return "({:.4g}, {:.4g}, {:.4g})".format(*place)
 
 
-def mesh(survey: dict[str, Any], size: float, per_turn: int) -> None:
+def mesh(survey: dict[str, Any], size: float, per_turn: int, optimise: bool) -> None:
     """Mesh the solids with curved second-order tetrahedra of a size [mm].
 
-    Some may fold over. gmsh's own optimisation of them takes ten times as long as the mesh, and
-    ends a little elsewhere each time.
+    Having gmsh move nodes where they fold over, along faces, too (optimise), takes ten times as
+    long, and ends a little elsewhere each time.
     """
     name = survey["name"]
     elements = 6 * math.sqrt(2) * survey["after"]["volume"] / size**3
@@ -423,6 +423,8 @@ def mesh(survey: dict[str, Any], size: float, per_turn: int) -> None:
                     "be: leave out small fillets, threads and lettering"
                 )
         gmsh.model.mesh.setOrder(2)
+        if optimise:
+            gmsh.model.mesh.optimize("HighOrder")
     except InputError:
         raise
     except Exception as error:

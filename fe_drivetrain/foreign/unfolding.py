@@ -14,7 +14,6 @@ from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.mesh.checks import triple_keys
-from fe_drivetrain.mesh.generation import relax_flat_cells
 from fe_drivetrain.mesh.measures import area_vectors, scaled_jacobians
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
@@ -23,7 +22,6 @@ from fe_drivetrain.operator.elasticity import assemble
 _LAYERS = 2  # of elements round those that are folded, which give way, too
 _STIFFER = 10.0
 _ROUNDS = 6
-_PASSES, _SHARE = 20, 0.1
 _LAME = (9.0, 1.0)  # nearly incompressible: volumes, and with them Jacobians, give way least
 _FLAT = 1e-6  # how far nodes of a plane facet may be from its plane, relative to its size
 
@@ -33,9 +31,9 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
 
     Round such elements the mesh with straight edges is taken for an elastic solid, whose outside
     is moved to where it is curved. Nodes inside follow; nodes of plane faces slide in them, those
-    of rims stay. Elements that are still too flat are made stiffer, again and again. What stays
-    folded has two facets on one smooth face, and edges that are all tangent to it at a corner:
-    there the outside, with named faces, gives way as in `relax_flat_cells`, as little as will do.
+    of rims stay. Elements that are still too flat are made stiffer, again and again. An element
+    with two facets on one smooth face stays folded, since all its edges are tangent to the face at
+    a corner: there nodes have to move along the face, which a mesh does not know.
 
     Parameters
     ----------
@@ -93,9 +91,7 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
         K += (_STIFFER - 1) * sparse.csc_array(assemble(straight, cells[low], _LAME, given.size))
     points = mesh.points.copy()
     points[nodes] = best
-    all_move = replace(mesh, points=points, faces={})
-    eased = relax_flat_cells(all_move, floor, _PASSES, _SHARE)
-    return replace(eased, faces=mesh.faces)
+    return replace(mesh, points=points)
 
 
 def _missing(points: Floats, cells: Ints, floor: float) -> Floats:

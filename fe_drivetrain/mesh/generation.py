@@ -102,14 +102,14 @@ def _inversion(mesh: Mesh, cells: Ints) -> str:
     )
 
 
-def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4, share: float = 0.5) -> Mesh:
+def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4) -> Mesh:
     """Take curvature back from the edges of cells that curving has flattened.
 
     Where a cell has two facets on one smooth surface, or lies across a sharp fillet, curving its
-    edges to the surface can fold it. Its mid-side nodes are then drawn towards the straight edge,
-    again and again, until it is sound; the shape gives way there by a fraction of an edge's
-    sagitta. Nodes of seats, joints and bases stay exactly where they are; the ends and the bore
-    of the shaft may give way like any other surface.
+    edges to the surface can fold it. Its mid-side nodes are then drawn half way towards the
+    straight edge, again and again, until it is sound; the shape gives way there by a fraction of
+    an edge's sagitta. Nodes of seats, joints and bases stay exactly where they are; the ends and
+    the bore of the shaft may give way like any other surface.
 
     Parameters
     ----------
@@ -118,9 +118,7 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4, share: fl
     floor : float
         Cells of a smaller scaled Jacobian are relaxed.
     passes : int
-        How often at most.
-    share : float
-        Of the curvature that is left, what each pass takes.
+        How often at most; each halves what curvature is left.
     """
     points, moves = mesh.points.copy(), np.ones(len(mesh.points), dtype=bool)
     for name in set(mesh.faces) - {"shaft.front", "shaft.rear", "shaft.bore"}:
@@ -133,7 +131,7 @@ def relax_flat_cells(mesh: Mesh, floor: float = 0.05, passes: int = 4, share: fl
         ends = flat[:, TETRAHEDRON_EDGES].reshape(-1, 2)[first]
         free = moves[mids]
         straight = points[ends[free]].mean(axis=1)
-        points[mids[free]] = (1 - share) * points[mids[free]] + share * straight
+        points[mids[free]] = (points[mids[free]] + straight) / 2
     return replace(mesh, points=points)
 
 
