@@ -17,13 +17,11 @@ from fe_drivetrain.solve.cost_model import iterations, predict
 from fe_drivetrain.solve.element_system import ElementSystem
 from fe_drivetrain.solve.reduction import System
 from fe_drivetrain.solve.rounding import Judged, judged
+from fe_drivetrain.solve.stopping import TOLERANCE
 
 METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz", *petsc.METHODS)
 
 ITERATIVE = ("multigrid", "schwarz", *petsc.METHODS)
-
-TOLERANCE = 1e-9
-"""Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
 
 _USELESS = 1e-2  # a direct solver's residual; 1e-7 is seen in slender solids whose answer is right
 _DOUBTFUL, _LOST = 1e-4, 0.1
@@ -159,7 +157,7 @@ class Solver:
         tried = {"schwarz": ("multigrid", "schwarz"), "multigrid": ("multigrid",)}
         left_out = tried.get(self.method, ())
         system = self.system if isinstance(self.system, System) else self.system.whole()
-        costs = [c for c in predict(system, F.shape[1]) if c.method not in left_out]
+        costs = [c for c in predict(system, F.shape[1], self.tolerance) if c.method not in left_out]
         cost = min(costs, key=lambda c: (not c.fits, c.seconds))
         if not cost.fits:
             what = "patches" if cost.method == "schwarz" else "a direct factor"
@@ -214,7 +212,7 @@ def factorise(
         system = system.whole()
     if method == "auto":
         assert isinstance(system, System)
-        chosen, *others = predict(system, n_rhs)
+        chosen, *others = predict(system, n_rhs, tolerance)
         method = chosen.method
         reason = f"{chosen}; {', '.join(map(str, others))}" if others else f"{chosen}"
     start = time.perf_counter()
@@ -233,7 +231,7 @@ def factorise(
 
         @cache
         def foreseen() -> float:
-            return iterations(system) if method == "multigrid" else 0.0
+            return iterations(system, tolerance) if method == "multigrid" else 0.0
 
         def iterate(F: Floats) -> multigrid.Iteration:
             return multigrid.conjugate_gradients(

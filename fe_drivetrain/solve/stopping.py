@@ -13,6 +13,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+TOLERANCE = 1e-9
+"""Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
+
 LAST_DIGIT = 1e-32
 """Of the squared residual in the preconditioner's norm: below it a column is solved."""
 
