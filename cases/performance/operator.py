@@ -65,7 +65,7 @@ COLUMNS = (1, 4, 6, 8, 10, 12, 16, 24)
 @case(
     "The elastic operator against scikit-fem's generic assembly",
     source="scikit-fem (Gustafsson, McBain 2020), measured in one run",
-    settings={"repeats": "5 (quick 2; from 1)"},
+    settings={"repeats": "5 (quick 1; from 1)"},
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
@@ -81,7 +81,7 @@ def run(run: Run, page: Page) -> None:
             assemble(*box(n_nodes, 1), lame)
 
     with run.step("shaft of curved tetrahedra"):
-        repeats = run.count("repeats", 2 if run.quick else 5)
+        repeats = run.count("repeats", 1 if run.quick else 5)
         ours, own = timed_runs(partial(assemble, points, cells, lame), repeats)
         pattern = sparsity(cells, len(points))
         _, reused = timed_runs(partial(assemble, points, cells, lame, pattern=pattern), repeats)

@@ -139,14 +139,14 @@ def timed(problem: Problem, method: str, repetitions: int) -> Timing:
 @case(
     "Solvers side by side, what auto chooses, and when to stop",
     source="Vanek, Mandel, Brezina 1996; Meurant, Papez, Tichy 2021; measured in one run",
-    settings={"repeats": "5 (quick 2; from 1)"},
+    settings={"repeats": "5 (quick 1; from 1)"},
     alone="full",
 )
 def run(run: Run, page: Page) -> None:
     """Time the grid, try the options, watch the stopping."""
     with run.step("compile"):
         timed(shaft_problem(1.0, 0.5), "multigrid", 1)
-    repeats = run.count("repeats", 2 if run.quick else 5)
+    repeats = run.count("repeats", 1 if run.quick else 5)
     problems, timings = measured(run, repeats)
     worst = compare_choices(page, problems, timings)
     ratio = [t["multigrid"].total(MANY) / t["multigrid"].total(1) for t in timings]

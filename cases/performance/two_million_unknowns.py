@@ -99,7 +99,7 @@ def measured(run: Run, benchmark: Benchmark, sizes: Sequence[int], plan: Plan) -
     ours = [(Variant("this_project", "auto"), sys.executable)]
     with TemporaryDirectory() as name:
         warm_up, file = Path(name) / "warm_up.npz", Path(name) / "problem.npz"
-        write_problem(problems.of_size(problems.hollow_shaft(), WARM_UP), warm_up)
+        write_problem(problems.of_size(problems.hollow_shaft(), min(WARM_UP, *sizes)), warm_up)
         for size in sizes:
             with run.step(f"{benchmark.title}: mesh of {size:,} unknowns"):
                 problem = problems.of_size(benchmark, size)

@@ -3,6 +3,7 @@
 It is a process of its own, so that it may fork: the faults happen to its children.
 """
 
+import gc
 import json
 import os
 import resource
@@ -20,6 +21,7 @@ from xml.etree.ElementTree import ParseError
 import gmsh
 import meshio
 import numpy as np
+import rich.progress  # noqa: F401 - once here, not in each of the forked children
 
 from fe_drivetrain.commands import run_and_print, show_steps
 from fe_drivetrain.common import CACHE_VARIABLE, Cache, rigid_motions
@@ -28,7 +30,8 @@ from fe_drivetrain.geometry import Section as ShaftSection
 from fe_drivetrain.interfaces import dofs
 from fe_drivetrain.mesh import cached_mesh, mesh_content, write
 from fe_drivetrain.operator.kernels import invert
-from fe_drivetrain.report import Environment, Results, read_results
+from fe_drivetrain.report import Results, read_results
+from fe_drivetrain.report.environment import environment
 from fe_drivetrain.report.page import render
 from fe_drivetrain.scene import MATERIALS
 from fe_drivetrain.solve import solve_solid
@@ -371,9 +374,8 @@ def _mesh_arrays(file: Path) -> dict[str, Any]:
 def main() -> None:
     """The experiment, in the folder and with the number of moments of the command line, as JSON."""
     # what a run loads first, once for all children: a compiled kernel (one that starts no threads,
-    # for these do not survive a fork) and the template of the page
+    # for these do not survive a fork), what the program is, and the template of the page
     invert(np.eye(3)[None], np.empty((1, 3, 3)))
-    nothing = Environment(date="", python="", platform="", versions={}, settings={})
     empty = Results(
         case="faults/small",
         title="Small case",
@@ -381,10 +383,12 @@ def main() -> None:
         summary=[OLD],
         verdicts=[],
         sections=[],
-        environment=nothing,
+        environment=environment({}),
     )
-    render(empty, Path(), Path())
-    found = experiment(Path(sys.argv[1]), int(sys.argv[2]))
+    folder = Path(sys.argv[1])
+    render(empty, folder, folder)
+    gc.freeze()  # or the collector of each child would copy all that is shared
+    found = experiment(folder, int(sys.argv[2]))
     print(json.dumps(asdict(found)))
 
 
