@@ -5,7 +5,8 @@ import itertools
 import gmsh
 import numpy as np
 import pytest
-from scipy.sparse.linalg import eigsh
+from scipy import sparse
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
@@ -28,6 +29,7 @@ from fe_drivetrain.response.model import build_model, mesh_scene
 from fe_drivetrain.response.unit_loads import unit_load_response
 from fe_drivetrain.scene.materials import MATERIALS
 from fe_drivetrain.scene.reading import change_scene, parse_scene
+from fe_drivetrain.solve import direct_solvers
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -104,7 +106,11 @@ def test_both_sides_of_an_open_joint_have_nodes_of_their_own(files):
 def test_an_open_joint_keeps_six_free_motions_and_no_more(files):
     mesh = placed(files["split"], BOLTED)
     K = assemble_unlocked(mesh.points, mesh.cells, MATERIALS["steel"].lame, mesh.points.size)
-    values = eigsh(K, 8, sigma=-1e-6 * K.diagonal().mean(), return_eigenvectors=False)
+    shift = 1e-6 * K.diagonal().mean()
+    shifted = (K + shift * sparse.eye_array(len(mesh.points) * 3)).tobsr((3, 3))
+    factor = direct_solvers.factorise(shifted, "superlu")
+    inverse = LinearOperator(K.shape, lambda x: factor.apply(x.reshape(-1, 1)), dtype=float)
+    values = eigsh(K, 8, sigma=-shift, OPinv=inverse, return_eigenvectors=False)
     values = np.sort(np.abs(values))
     assert values[5] < 1e-6 * values[6]
 
@@ -158,8 +164,14 @@ def on_plate(files, bolted, **source):
     return change_scene(scene(files["block"]), keys | {f"{UNIT}.parts": [part | {"tied": [tie]}]})
 
 
-def test_a_bolted_part_gives_as_the_same_solids_in_one_file(files):
-    glued, bolted = (compliance(on_plate(files, joint)) for joint in (None, BOLTED))
+@pytest.fixture(scope="module")
+def bolted(files):
+    """Compliance of the block with the plate bolted to it."""
+    return compliance(on_plate(files, BOLTED))
+
+
+def test_a_bolted_part_gives_as_the_same_solids_in_one_file(files, bolted):
+    glued = compliance(on_plate(files, None))
     for tied, joint in ((glued, None), (bolted, BOLTED)):
         one = compliance(scene(files["both"], UNDER, joint))
         assert tied == pytest.approx(one, rel=0.02)
@@ -173,14 +185,14 @@ def test_an_assembly_of_bolted_parts_is_in_balance(files):
     assert response.equilibrium_error < 1e-8
 
 
-def test_a_bolted_part_from_a_mesh_is_joined_round_the_same_holes(files, tmp_path):
+def test_a_bolted_part_from_a_mesh_is_joined_round_the_same_holes(files, bolted, tmp_path):
     one = on_plate(files, BOLTED)
     (part,) = one.bearing_units[0].parts
     mesh = placed_part(part, one.bearing_units[0].bearing, one.mesh).mesh
     assert area(mesh, "main_bearing.plate.tie 1") == pytest.approx(4 * RING, rel=5e-3)
     write(mesh, str(tmp_path / "plate.msh"))
     again = on_plate(files, BOLTED_M, mesh=str(tmp_path / "plate.msh"), unit="m")
-    assert compliance(again) == pytest.approx(compliance(one), rel=1e-6)
+    assert compliance(again) == pytest.approx(bolted, rel=1e-6)
 
 
 def refused(sentence, make):

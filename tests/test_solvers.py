@@ -79,6 +79,30 @@ def test_recovers_a_known_solution(cube, method, rng):
     assert 0.0 < solution.diagnostics.round_off < 1e-10
 
 
+@pytest.mark.parametrize(("wrong", "taken"), [(1e-3, [40, 1, 40]), (0.0, [40, 1])])
+def test_a_direct_solution_is_refined_unless_it_has_the_few_digits_asked_for(
+    cube, monkeypatch, rng, wrong, taken
+):
+    system, elimination = cube
+    x, F = known(system, elimination, rng, 40)
+    right, columns = direct_solvers.factorise(system.K, "superlu"), []
+
+    def apply(F):
+        columns.append(F.shape[1])
+        return (1.0 + wrong) * right.apply(F)
+
+    factor = direct_solvers.Factor(apply, right.bytes)
+    monkeypatch.setattr(direct_solvers, "factorise", lambda K, method: factor)
+    solution = solve(system, F, "superlu", tolerance=1e-5)
+    assert columns == taken
+    error = np.einsum("nm,nm->m", solution.x - x, system.K @ (solution.x - x))
+    assert np.sqrt(error / np.einsum("nm,nm->m", F, x)).max() < 1e-5
+    assert solution.diagnostics.energy_error == pytest.approx(wrong, rel=0.01, abs=1e-12)
+    columns.clear()
+    solve(system, F, "superlu")
+    assert columns == [40, 40]  # all digits: always refined
+
+
 @pytest.mark.parametrize("method", EACH)
 def test_set_up_once_and_solve_again(cube, method, rng):
     system, elimination = cube

@@ -15,7 +15,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.fidelity.bearing_units import unit_stiffness
 from fe_drivetrain.foreign.fitting import fitted_cylinder, fitted_plane, fitted_sphere
 from fe_drivetrain.foreign.housing import placed_housing
-from fe_drivetrain.foreign.reading import read_in_process
+from fe_drivetrain.foreign.known_healing import read_step
 from fe_drivetrain.geometry import Bearing, ForeignHousing, Housing, MeshSizes, gmsh_session
 from fe_drivetrain.geometry.step_files import write_step
 from fe_drivetrain.mesh.measures import area, area_vectors, enclosed_volume, volume
@@ -102,7 +102,7 @@ def files(tmp_path_factory):
 
 @functools.cache  # a look with its splines takes half a second
 def looked_at(path):
-    return read_in_process("look", path, {"smallest_detail": 0.0})
+    return read_step("look", path, {"smallest_detail": 0.0})
 
 
 def surveyed(path):
