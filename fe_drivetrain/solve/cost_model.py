@@ -38,8 +38,8 @@ class Direct(NamedTuple):
     each: float
 
 
-# Of SuperLU, which the grid leaves out where it is slow, together with 67 systems of 3 to 40 thousand
-# unknowns that the cases solve, fitted in logarithms: from a third to four times what was measured.
+# Of SuperLU, which the grid leaves out where it is slow, fitted in logarithms to 67 systems of 3 to
+# 40 thousand unknowns that cases solve, too: from a third to four times what was measured.
 DIRECT = {
     "superlu": Direct(0.0, 7.8e-8, 2.2e-9, 346.0, 1.3e-10, 7.1e-11),
     "cholmod": Direct(0.0, 7.1e-7, 1.9e-9, 99.0, 3.9e-10, 4.0e-10),
