@@ -1,5 +1,6 @@
 """Studies on a cluster of Dask, one scheduler and two workers on this machine, one being killed."""
 
+import gc
 import json
 import os
 import signal
@@ -213,12 +214,17 @@ def test_mistakes_come_back_in_their_own_words(cluster: Cluster) -> None:
 
 
 def test_a_scheduler_that_is_not_there_is_a_mistake(monkeypatch: pytest.MonkeyPatch) -> None:
+    from distributed import Client
+
     from fe_drivetrain.common import cluster as cluster_module
 
     monkeypatch.setattr(cluster_module, "_CONNECT", 0.2)
     for address in ("tcp://127.0.0.1:1", "nowhere"):
         with pytest.raises(InputError, match="dask scheduler"), scheduled_by(address):
             pass
+        # the collector would close it, maybe in the middle of the next one's start
+        clients = [one for one in gc.get_objects() if isinstance(one, Client)]
+        assert {client.status for client in clients} <= {"closed"}
 
 
 def test_cases_run_on_workers_but_those_that_measure(cluster: Cluster, tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 import os
 import pickle
+import socket
 import sys
 import time
 import uuid
@@ -97,6 +98,7 @@ def connected(address: str) -> Iterator[Client]:
         ) from error
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what goes wrong is raised
     try:
+        _await_listener(address)
         client = Client(address, timeout=_CONNECT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
@@ -111,6 +113,26 @@ def connected(address: str) -> Iterator[Client]:
         os.environ |= {name: value for name, value in before.items() if value is not None}
         for name in (name for name, value in before.items() if value is None):
             os.environ.pop(name, None)
+
+
+def _await_listener(address: str) -> None:
+    """Wait until somebody listens at an address, at most as long as a client would.
+
+    A client that finds nobody is left half made. The collector of garbage closes it some time
+    later, and waits for ever where that is while the next one starts, which holds the same lock.
+    """
+    from distributed.comm import get_address_host_port
+
+    place = get_address_host_port(address)
+    end = time.monotonic() + _CONNECT
+    while True:
+        try:
+            socket.create_connection(place, _CONNECT).close()
+            return
+        except OSError:
+            if time.monotonic() > end:
+                raise
+        time.sleep(0.1)
 
 
 class Cluster:
