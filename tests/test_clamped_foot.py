@@ -256,7 +256,7 @@ def test_hub_loads_that_open_a_foot_are_named_in_one_sentence(clamped, solved):
 )
 def test_a_rigid_seat_costs_multigrid_five_times_its_iterations(monkeypatch, seconds, fits, method):
     costs = [Cost("multigrid", 1.0, 1e6, True), Cost("superlu", seconds, 1e9, fits)]
-    monkeypatch.setattr(foot_contact, "predict", lambda system, n_loads: costs)
+    monkeypatch.setattr(foot_contact, "predict", lambda system, n_loads, tolerance: costs)
     assert foot_contact._chosen(None, 100) == method
 
 

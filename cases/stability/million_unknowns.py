@@ -8,7 +8,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import InputError, peak_memory, timed_runs
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import multigrid, round_off, schwarz, solvers
+from fe_drivetrain.solve import TOLERANCE, multigrid, round_off, schwarz
 from fe_drivetrain.suite import Page, Record, Run, column, grouped
 from fe_drivetrain.validation import thin_bodies as bodies
 from fe_drivetrain.validation.solver_trials import compliance, factor_memory
@@ -64,7 +64,7 @@ def solve(run: Run, body: str, unknowns: int, repeats: int) -> Record:
     def by_patches() -> tuple[schwarz.Schwarz, multigrid.Iteration]:
         patches = schwarz.build(system)
         return patches, multigrid.conjugate_gradients(
-            system.K, problem.F, patches.precondition, solvers.TOLERANCE
+            system.K, problem.F, patches.precondition, TOLERANCE
         )
 
     with run.step(f"{label}: patches"):
@@ -74,9 +74,9 @@ def solve(run: Run, body: str, unknowns: int, repeats: int) -> Record:
     if n < 1.5 * TRIED:
         with run.step(f"{label}: multigrid"):
             other = multigrid.conjugate_gradients(
-                system.K, problem.F, multigrid.build(system).precondition, solvers.TOLERANCE
+                system.K, problem.F, multigrid.build(system).precondition, TOLERANCE
             )
-        converged = other.energy_error <= solvers.TOLERANCE
+        converged = other.energy_error <= TOLERANCE
         by_multigrid = other.iterations if converged else f"gives up after {other.iterations}"
     with run.step(f"{label}: what a factor would take"):
         factor = factor_memory(system.K)
@@ -92,7 +92,7 @@ def solve(run: Run, body: str, unknowns: int, repeats: int) -> Record:
         "memory of patches [GiB]": made.bytes / GIB,
         "memory of a factor [GiB]": None if factor is None else factor / GIB,
         "second compliance": found[1],
-        "converged": solution.energy_error <= solvers.TOLERANCE,
+        "converged": solution.energy_error <= TOLERANCE,
     }
 
 

@@ -23,7 +23,7 @@ from fe_drivetrain.scene import (
     coarser_scene,
     library_scene,
 )
-from fe_drivetrain.solve import System, multigrid, reduce, solvers
+from fe_drivetrain.solve import TOLERANCE, System, multigrid, reduce
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation import layers, slivers
 from fe_drivetrain.validation import solver_trials as trials
@@ -89,8 +89,8 @@ def tried(solid: Callable[[float], Solid], value: float) -> Trial:
     work, iterations, stored = [], [], ""
     for single in (False, True):
         made = multigrid.build(system, replace(OPTIONS, single=single))
-        found = multigrid.conjugate_gradients(system.K, F, made.precondition, solvers.TOLERANCE)
-        arrived = found.energy_error <= solvers.TOLERANCE
+        found = multigrid.conjugate_gradients(system.K, F, made.precondition, TOLERANCE)
+        arrived = found.energy_error <= TOLERANCE
         iterations.append(found.iterations if arrived else -1)
         work.append(np.einsum("nm,nm->m", F, found.x))
         bodies_alone = made.hierarchy if isinstance(made, multigrid.Joined) else made
@@ -278,7 +278,7 @@ def run(run: Run, page: Page) -> None:
     if answers:
         page.at_most(
             "answers of the program where neither converges: error over what is stated, worst",
-            max(t.error / (t.round_off + solvers.TOLERANCE) for t in answers),
+            max(t.error / (t.round_off + TOLERANCE) for t in answers),
             1.0,
             why="another solver takes over, and says what round-off may have done; beyond that the "
             "tolerance of iterations",
@@ -308,7 +308,7 @@ def run(run: Run, page: Page) -> None:
         page.section(name)
         at = [t.value for t in swept if t.double >= 0], [t.value for t in swept if t.single >= 0]
         page.chart(
-            f"Iterations to an energy error of {solvers.TOLERANCE:.0e}",
+            f"Iterations to an energy error of {TOLERANCE:.0e}",
             [
                 trace("double precision", at[0], [t.double for t in swept if t.double >= 0]),
                 trace("single precision", at[1], [t.single for t in swept if t.single >= 0], True),

@@ -9,7 +9,7 @@ import numpy as np
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.compare import FOUR_DIGITS
 from fe_drivetrain.report import trace
-from fe_drivetrain.solve import solvers
+from fe_drivetrain.solve import TOLERANCE, solvers
 from fe_drivetrain.suite import Page, Record
 from fe_drivetrain.validation import solver_trials as trials
 from fe_drivetrain.validation.thin_bodies import Problem
@@ -185,7 +185,7 @@ def show_iterations(page: Page, points: Sequence[Point], x: str, safe: Range) ->
     multigrid = [p.iterations["multigrid"] for p in points]
     stopped = [k for k, found in enumerate(multigrid) if not found.converged]
     page.chart(
-        f"Iterations to an energy error of {solvers.TOLERANCE:.0e}. Shaded: multigrid converges; "
+        f"Iterations to an energy error of {TOLERANCE:.0e}. Shaded: multigrid converges; "
         f"crosses: after {trials.ITERATIONS} it has not",
         [
             trace("multigrid", values, [i.iterations for i in multigrid]),

@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.stability import solver_sweep as sweep
 from fe_drivetrain.common import Floats
 from fe_drivetrain.compare import fitted_exponent
-from fe_drivetrain.solve import multigrid, schwarz, solvers
+from fe_drivetrain.solve import TOLERANCE, multigrid, schwarz
 from fe_drivetrain.suite import Page, Record, Run
 from fe_drivetrain.validation import solver_trials as trials
 from fe_drivetrain.validation import thin_bodies as bodies
@@ -45,7 +45,7 @@ def with_options(problem: bodies.Problem, nodes: int, threshold: float) -> Recor
     """Patches of another size, another coarse space."""
     system = problem.system
     made = schwarz.build(system, schwarz.Options(nodes=nodes, threshold=threshold))
-    found = multigrid.conjugate_gradients(system.K, problem.F, made.precondition, solvers.TOLERANCE)
+    found = multigrid.conjugate_gradients(system.K, problem.F, made.precondition, TOLERANCE)
     return {
         "nodes of a patch": nodes,
         "threshold": threshold,

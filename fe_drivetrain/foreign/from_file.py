@@ -146,9 +146,11 @@ def meshed_step(
         found = read_step(action, source.file, request)
         survey: dict[str, Any] = json.loads(str(found["survey"]))
         mesh = _placed_mesh(found, source, shift(survey), survey)
-        if len(inverted_cells(mesh)):
+        folded = inverted_cells(mesh)
+        if len(folded):
             mesh = unfolded(mesh)
-        if len(inverted_cells(mesh)) == 0:
+            folded = inverted_cells(mesh)
+        if len(folded) == 0:
             break
         if request["optimise"]:  # in vain: finer, as `fe_drivetrain.mesh.generation.generate`
             request["size"] /= REFINEMENT

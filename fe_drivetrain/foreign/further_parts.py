@@ -33,7 +33,7 @@ from fe_drivetrain.geometry import Bearing, FurtherPart, MeshSizes
 from fe_drivetrain.interfaces.constraints import Constraint
 from fe_drivetrain.interfaces.mortar import mortar_tie
 from fe_drivetrain.interfaces.overlap import Pieces, common_pieces, curvature, left_by_rims
-from fe_drivetrain.mesh.checks import triple_keys
+from fe_drivetrain.mesh.checks import are_among
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.scene.bearing_unit import BearingUnit
@@ -289,7 +289,7 @@ def joined(mesh: Mesh, unit: BearingUnit) -> Mesh:
     n = len(mesh.points)
     for own, other in tie_faces(unit):
         for face in (own, other):
-            if np.isin(triple_keys(faces[face][:, :3], n), triple_keys(base[:, :3], n)).any():
+            if are_among(faces[face], base, n).any():
                 raise InputError(
                     f"{own.rpartition('.')[0]} is tied to {other.rpartition('.')[0]} in a face "
                     "that the ground holds, too: give stands_on: parts where parts alone carry "

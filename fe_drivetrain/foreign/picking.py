@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import Pick
-from fe_drivetrain.mesh.checks import triple_keys
+from fe_drivetrain.mesh.checks import are_among
 
 _ON_PLANE = 1e-5  # of the solid's size
 _ON_CURVE = 2e-3  # of a radius: nodes of a face that is meant
@@ -89,9 +89,7 @@ class Surface:
 
     def _labelled(self, label: str, what: str) -> Bools:
         if (corners := self.sets.get(f"face {label}")) is not None:
-            n = len(self.points)
-            keys = triple_keys(self.facets[:, :3], n)
-            return np.asarray(np.isin(keys, triple_keys(corners, n)), dtype=np.bool_)
+            return are_among(self.facets, corners, len(self.points))
         if (nodes := self.sets.get(f"nodes {label}")) is not None:
             return np.asarray(np.isin(self.facets[:, :3], nodes).all(axis=1), dtype=np.bool_)
         raise InputError(

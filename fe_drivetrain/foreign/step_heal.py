@@ -163,17 +163,19 @@ def _unmeshed() -> str:
 def _unmeshed_at(finer: float) -> str:
     surface_mesh(finer)
     why = " ".join(gmsh.logger.getLastError().split())
-    meshers = [] if why else [_HXT, _DELAUNAY]
-    for mesher in meshers:
-        gmsh.option.setNumber("Mesh.Algorithm3D", mesher)
-        gmsh.model.mesh.generate(3)
-        why = " ".join(gmsh.logger.getLastError().split())
-        _, made, _ = gmsh.model.mesh.getElements(3)
-        why = why or ("" if made else "it makes no elements")
-        if not why:
-            break
+    if not why:
+        why = _unfilled(_HXT) and _unfilled(_DELAUNAY)
     gmsh.option.setNumber("Mesh.Algorithm3D", _DELAUNAY)
     return f"gmsh cannot mesh it ({why}{where(why)})" if why else ""
+
+
+def _unfilled(mesher: int) -> str:
+    """Why a mesher fills solids with no elements, in gmsh's words; nothing if it does."""
+    gmsh.option.setNumber("Mesh.Algorithm3D", mesher)
+    gmsh.model.mesh.generate(3)
+    why = " ".join(gmsh.logger.getLastError().split())
+    _, made, _ = gmsh.model.mesh.getElements(3)
+    return why or ("" if made else "it makes no elements")
 
 
 def reason(error: Exception) -> str:

@@ -12,8 +12,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from fe_drivetrain.common.arrays import Bools, Floats, Ints
-from fe_drivetrain.mesh.checks import triple_keys
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.mesh.checks import are_among
 from fe_drivetrain.mesh.measures import area_vectors, scaled_jacobians
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
@@ -69,13 +69,13 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
     free[np.isin(nodes, mesh.cells[~near])] = 0.0
     P, held = _blocks(free), np.eye(3) - free
     given = np.einsum("nij,nj->ni", held, curved - straight).ravel()
-    K = sparse.csc_array(assemble(straight, cells, _LAME, given.size))
+    K = assemble(straight, cells, _LAME, given.size)
     rest = float(K.diagonal().mean()) * _blocks(held)
 
     least, best = _missing(curved, cells, floor), curved
     for _ in range(_ROUNDS):
         factor = splu(
-            sparse.csc_array(P @ K @ P + rest),
+            (P @ K @ P + rest).tocsc(),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
@@ -88,7 +88,7 @@ def unfolded(mesh: Mesh, floor: float = 0.1) -> Mesh:
         low = missing > 0.0
         if not low.any():
             break
-        K += (_STIFFER - 1) * sparse.csc_array(assemble(straight, cells[low], _LAME, given.size))
+        K = K + (_STIFFER - 1) * assemble(straight, cells[low], _LAME, given.size)
     points = mesh.points.copy()
     points[nodes] = best
     return replace(mesh, points=points)
@@ -99,10 +99,10 @@ def _missing(points: Floats, cells: Ints, floor: float) -> Floats:
     return np.asarray(np.maximum(floor - scaled_jacobians(points, cells), 0.0))
 
 
-def _blocks(blocks: Floats) -> sparse.csc_array:
+def _blocks(blocks: Floats) -> sparse.bsr_array:
     """A matrix with these blocks (n, 3, 3) on its diagonal."""
     n = len(blocks)
-    return sparse.csc_array(sparse.bsr_array((blocks, np.arange(n), np.arange(n + 1))))
+    return sparse.bsr_array((blocks, np.arange(n), np.arange(n + 1)))
 
 
 def _free(mesh: Mesh) -> Floats:
@@ -125,15 +125,10 @@ def _free(mesh: Mesh) -> Floats:
     one = first[nodes]
     slides = plane[owner] & (np.einsum("mi,mi->m", normals[owner], normals[one]) > 1 - 1e-9)
     for face in mesh.faces.values():
-        within = _are(facets, face, len(mesh.points))
+        within = are_among(facets, face, len(mesh.points))
         slides &= within[owner] == within[one]
 
     result = np.broadcast_to(np.eye(3), (len(mesh.points), 3, 3)).copy()
     result[nodes] -= np.einsum("mi,mj->mij", normals[one], normals[one])
     result[nodes[~slides]] = 0.0
     return result
-
-
-def _are(facets: Ints, face: Ints, n_nodes: int) -> Bools:
-    """Which facets are those of a face."""
-    return np.isin(triple_keys(facets[:, :3], n_nodes), triple_keys(face[:, :3], n_nodes))

@@ -199,6 +199,12 @@ def triple_keys(corners: Ints, n_nodes: int) -> Ints:
     return result
 
 
+def are_among(facets: Ints, others: Ints, n_nodes: int) -> Bools:
+    """Which facets, by their corners, stand among others, (m, 3 or more) nodes each."""
+    keys, among = (triple_keys(some[:, :3], n_nodes) for some in (facets, others))
+    return np.asarray(np.isin(keys, among), dtype=np.bool_)
+
+
 def _place(point: Floats) -> str:
     return "({:.4g}, {:.4g}, {:.4g}) m".format(*point)
 

@@ -15,13 +15,12 @@ from fe_drivetrain.foreign.housing import placed_housing
 from fe_drivetrain.interfaces import constraints
 from fe_drivetrain.interfaces.constraints import Constraint, ReferencePoint
 from fe_drivetrain.mesh.mesh import Mesh
-from fe_drivetrain.operator import kernels
 from fe_drivetrain.response.makers import mesh_hash, solved_by
 from fe_drivetrain.scene.bearing_unit import BearingUnit
 from fe_drivetrain.scene.component import Attachment
 from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.solve.cost_model import predict
-from fe_drivetrain.solve.coupled_solid import DISPLACEMENTS, coupled_solid
+from fe_drivetrain.solve.coupled_solid import DISPLACEMENTS, compliance_of, coupled_solid
 from fe_drivetrain.solve.reduction import System, reduce
 from fe_drivetrain.solve.solvers import solve
 
@@ -140,16 +139,14 @@ def _condensed(
     system = reduce(mesh.points, solid.cells, solid.stiffness, elimination)
     loads = elimination.T.T @ rows.T.toarray()
     method = _chosen(system, loads.shape[1]) if method == "auto" else method
-    u = solve(system, loads, method, DISPLACEMENTS).x
-    # of second order in the error of the displacements, as of `point_motions_of`
-    C = loads.T @ u + u.T @ (loads - kernels.product(system.K, u))
+    C = compliance_of(system.K, loads, solve(system, loads, method, DISPLACEMENTS).x)
     rigid = rows[:, : mesh.points.size] @ rigid_motions(mesh.points, centre)
     return np.ascontiguousarray(0.5 * (C + C.T)), np.ascontiguousarray(rigid)
 
 
 def _chosen(system: System, n_loads: int) -> str:
     """The solver with the least predicted time, where a face is rigid."""
-    costs = predict(system, n_loads)
+    costs = predict(system, n_loads, DISPLACEMENTS)
     return min(
         [cost for cost in costs if cost.fits] or costs,
         key=lambda cost: cost.seconds * (_RIGID if cost.method == "multigrid" else 1.0),

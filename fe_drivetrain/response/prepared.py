@@ -16,7 +16,8 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.interfaces.constraints import Elimination, eliminate
 from fe_drivetrain.response.model import Model
 from fe_drivetrain.solve.reduction import reduce
-from fe_drivetrain.solve.solvers import TOLERANCE, Diagnostics, Solver, factorise
+from fe_drivetrain.solve.solvers import Diagnostics, Solver, factorise
+from fe_drivetrain.solve.stopping import TOLERANCE
 
 #: Of the energy norm. Forces on supports and their sums are linear in what an iteration leaves, and
 #: not squared as stiffness is: one digit more.

@@ -23,9 +23,9 @@ from .rounding import round_off as round_off
 from .solid import Static as Static
 from .solid import solve_solid as solve_solid
 from .solvers import METHODS as METHODS
-from .solvers import TOLERANCE as TOLERANCE
 from .solvers import Diagnostics as Diagnostics
 from .solvers import Solution as Solution
 from .solvers import Solver as Solver
 from .solvers import factorise as factorise
 from .solvers import solve as solve
+from .stopping import TOLERANCE as TOLERANCE

@@ -280,8 +280,16 @@ def point_motions_of(
     F = solid.loads
     solution = solve(system, elimination.T.T @ F, method, DISPLACEMENTS)
     U = np.asarray(elimination.T @ solution.x)
+    return U, compliance_of(K, F, U)
+
+
+def compliance_of(K: sparse.bsr_array, F: Floats, U: Floats) -> Floats:
+    """Compliance of solutions U of K U = F, all (n, m): F^T U + U^T F - U^T K U, (m, m).
+
+    Its error is the work of the errors of two solutions on each other: of second order.
+    """
     first = F.T @ U
-    return U, first + first.T - U.T @ kernels.product(K, U)
+    return np.asarray(first + first.T - U.T @ kernels.product(K, U))
 
 
 def point_compliance(

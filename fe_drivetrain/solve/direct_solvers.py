@@ -25,6 +25,7 @@ from threadpoolctl import threadpool_limits
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
+from fe_drivetrain.operator.kernels import together
 
 #: The package that each solver needs beside the project's own, fastest solver first.
 PACKAGES = {"pardiso": "pypardiso", "cholmod": "sksparse", "superlu": "scipy"}
@@ -35,8 +36,6 @@ _LIBRARIES = {
     "cholmod": "apt-get install libsuitesparse-dev, then pip install --force-reinstall "
     "--no-binary scikit-sparse 'fe-drivetrain[cholmod]'",
 }
-
-_COLUMNS = 16  # that SuperLU solves for at once: hundreds do not stay in a cache
 
 
 @dataclass(frozen=True)
@@ -147,8 +146,7 @@ def _superlu(K: sparse.bsr_array) -> Factor:
 
     def apply(F: Floats) -> Floats:
         x = np.empty(F.shape, order="F")
-        for first in range(0, F.shape[1], _COLUMNS):
-            some = slice(first, first + _COLUMNS)
+        for some in together(F.shape[1]):
             x[:, some] = factor.solve(np.asfortranarray(F[:, some]))
         return x
 

@@ -33,9 +33,6 @@ LANCZOS_STEPS, _MOST_LEVELS = 12, 10
 _SINGLE = np.finfo(np.float32)
 _SMALLEST, _LARGEST = float(_SINGLE.tiny / _SINGLE.eps), float(_SINGLE.max)
 
-# Right-hand sides whose parts of a row stay in the cache between two smoothing steps.
-_COLUMNS = 16
-
 
 @dataclass(frozen=True)
 class Options:
@@ -226,7 +223,7 @@ def build(system: System, options: Options = DEFAULTS) -> Hierarchy | Joined:
 def _joined(joints: Joints, options: Options) -> Joined:
     hierarchy = _hierarchy(joints.bodies, options)
     rows = joints.sums.rows
-    some = _together(rows.shape[0])
+    some = kernels.together(rows.shape[0])
     spread = np.hstack([hierarchy.precondition(rows[k].T.toarray()) for k in some])
     met = rows @ spread
     try:
@@ -394,22 +391,13 @@ def conjugate_gradients(
     """
     found = [
         _solved(K, F[:, columns], precondition, tolerance, foreseen)
-        for columns in _together(F.shape[1])
+        for columns in kernels.together(F.shape[1])
     ]
     return Iteration(
         np.hstack([part.x for part in found]),
         max(part.iterations for part in found),
         max(part.energy_error for part in found),
     )
-
-
-def _together(count: int) -> list[slice]:
-    """Which columns go through together.
-
-    Not in equal shares: vectors that are not full cost as much, and 21 columns are three of 16 and
-    5, but four of 11 and 10.
-    """
-    return [slice(first, first + _COLUMNS) for first in range(0, count, _COLUMNS)]
 
 
 def _solved(

@@ -17,7 +17,7 @@ _ROWS = 1024
 
 @dataclass(frozen=True)
 class Judged:
-    """What one pass over the stiffness says of solutions.
+    """What the stiffness says of solutions.
 
     Attributes
     ----------

@@ -12,18 +12,16 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
-from fe_drivetrain.solve import direct_solvers, multigrid, petsc, schwarz, stopping
+from fe_drivetrain.solve import direct_solvers, multigrid, petsc, schwarz
 from fe_drivetrain.solve.cost_model import iterations, predict
 from fe_drivetrain.solve.element_system import ElementSystem
 from fe_drivetrain.solve.reduction import System
 from fe_drivetrain.solve.rounding import Judged, judged
+from fe_drivetrain.solve.stopping import TOLERANCE
 
 METHODS = ("auto", "superlu", "cholmod", "pardiso", "multigrid", "schwarz", *petsc.METHODS)
 
 ITERATIVE = ("multigrid", "schwarz", *petsc.METHODS)
-
-TOLERANCE = stopping.TOLERANCE
-"""Energy error at which iterations stop, relative; squared, that of a load's own stiffness."""
 
 _USELESS = 1e-2  # a direct solver's residual; 1e-7 is seen in slender solids whose answer is right
 _SURELY = 1e-2  # of a tolerance: a sum of errors is seldom so much less than the largest
@@ -237,9 +235,8 @@ def factorise(
             return iterations(system, tolerance) if method == "multigrid" else 0.0
 
         def iterate(F: Floats) -> multigrid.Iteration:
-            return multigrid.conjugate_gradients(
-                system.K, F, made.precondition, tolerance, foreseen
-            )
+            by = made.precondition
+            return multigrid.conjugate_gradients(system.K, F, by, tolerance, foreseen)
 
     else:
         factor = direct_solvers.factorise(system.K, method)

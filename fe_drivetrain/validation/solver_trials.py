@@ -10,7 +10,7 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator
 
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.solve import System, direct_solvers, multigrid, schwarz, solvers
+from fe_drivetrain.solve import TOLERANCE, System, direct_solvers, multigrid, schwarz, solvers
 from fe_drivetrain.validation.one_norm import one_norm_estimate
 
 #: Iterations go on to here where the program gives up before.
@@ -46,7 +46,7 @@ class Iterated:
     @property
     def converged(self) -> bool:
         """Whether the estimate reached the tolerance."""
-        return self.energy_error <= solvers.TOLERANCE
+        return self.energy_error <= TOLERANCE
 
 
 def iterated(system: System, F: Floats, method: str) -> Iterated:
@@ -66,7 +66,7 @@ def iterated(system: System, F: Floats, method: str) -> Iterated:
     except InputError:
         return Iterated(ITERATIONS, math.inf, math.inf, np.full(F.shape[1], np.nan))
     for found in multigrid.iterates(system.K, F, made.precondition):
-        if found.energy_error <= solvers.TOLERANCE or found.iterations >= ITERATIONS:
+        if found.energy_error <= TOLERANCE or found.iterations >= ITERATIONS:
             break
     residual = np.linalg.norm(system.K @ found.x - F, axis=0) / np.linalg.norm(F, axis=0)
     return Iterated(

@@ -24,7 +24,7 @@ from fe_drivetrain.mesh import (
 )
 from fe_drivetrain.operator import assemble
 from fe_drivetrain.scene import Material
-from fe_drivetrain.solve import System, direct_solvers, reduce, solvers
+from fe_drivetrain.solve import TOLERANCE, System, direct_solvers, reduce, solvers
 
 STEPS = ("mesh", "assembly", "set-up", "solve")
 
@@ -49,7 +49,7 @@ class Solve(NamedTuple):
     """How a system is solved; the tolerance is the energy error that iterations stop at."""
 
     method: str
-    tolerance: float = solvers.TOLERANCE
+    tolerance: float = TOLERANCE
 
 
 @dataclass(frozen=True)
