@@ -5,12 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies import Body, assemble, stretched
 from fe_drivetrain.dynamics.modes import (
+    AXIAL,
+    LATERAL,
     PLANET,
     ROTATIONAL,
+    TORSIONAL,
     TRANSLATIONAL,
+    direction_kinds,
     distinct,
     divergence_speeds,
     planetary_kinds,
@@ -225,3 +230,25 @@ def test_a_chain_of_discs() -> None:
     ]
     found = system_modes(assemble(bodies, springs)).frequencies
     assert np.allclose(found[1:], [81.21, 141.21, 378.95, 536.36], atol=5.01e-3)
+
+
+def test_free_motions_are_of_one_direction_each_however_the_solver_combines_them(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    ends = [Body(f"disc {k}", (float(k), 0.0, 0.0), 2.0, 0.3, 0.2) for k in range(2)]
+    places = [Place(body.name, body.position) for body in ends]
+    system = assemble(ends, bushing("shaft", *places, (0.5, 0.0, 0.0), (3e6,) * 6))
+    turned = np.linalg.qr(rng.normal(size=(6, 6)))[0]
+    svd = np.linalg.svd
+
+    def another_processor(A: Floats, full_matrices: bool) -> tuple[Floats, Floats, Floats]:
+        left, sizes, right = svd(A, full_matrices=full_matrices)
+        right[6:] = turned @ right[6:]
+        return left, sizes, right
+
+    monkeypatch.setattr(np.linalg, "svd", another_processor)
+    modes = system_modes(system)
+    assert np.array_equal(modes.frequencies[:6], np.zeros(6))
+    assert direction_kinds(system, modes)[:6] == [TORSIONAL, AXIAL, *[LATERAL] * 4]
+    unit = modes.shapes.T @ system.mass @ modes.shapes
+    assert np.abs(unit - np.eye(12)).max() < 1e-12

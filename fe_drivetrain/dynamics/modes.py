@@ -69,7 +69,9 @@ def system_modes(system: System) -> SystemModes:
     """Undamped modes of a system that does not turn.
 
     Without superelements, frequencies are the singular values of ``sqrt(k) H`` over the root of the
-    mass, which keeps the low ones of a system whose highest is thousands of times above.
+    mass, which keeps the low ones of a system whose highest is thousands of times above. Motions
+    without frequency come apart by direction, as far as they do: turning about x first, then moving
+    along it, then the others.
 
     Raises
     ------
@@ -95,9 +97,10 @@ def system_modes(system: System) -> SystemModes:
         order = np.argsort(omega, kind="stable")
         omega, basis = omega[order], right[order].T
     shapes = linalg.solve_triangular(root, basis, lower=True, trans=1)
+    moving = omega > 0.0
+    shapes[:, ~moving] = _by_direction(system, shapes[:, ~moving])
     elongations = system.rows @ shapes
     strain = np.zeros_like(elongations)
-    moving = omega > 0.0
     strain[:, moving] = system.stiffness[:, None] * elongations[:, moving] ** 2 / omega[moving] ** 2
     energy = shapes * (system.mass @ shapes)
     kinetic = np.zeros((len(system.bodies), n))
@@ -111,6 +114,20 @@ def system_modes(system: System) -> SystemModes:
         strain,
         kinetic,
     )
+
+
+def _by_direction(system: System, free: Floats) -> Floats:
+    """Motions of one frequency (n, k), of unit mass, combined so that each is of one direction.
+
+    A solver combines them as its rounding says, which differs between processors.
+    """
+    ranks = np.array([_RANKS.get(name.rpartition(" ")[2], 2.0) for name in system.names])
+    ranked = free.T @ (ranks[:, None] * (system.mass @ free))
+    return np.asarray(free @ np.linalg.eigh((ranked + ranked.T) / 2)[1])
+
+
+#: Of motions about and along the axis; all others come after them.
+_RANKS = {"rx": 0.0, "ux": 1.0}
 
 
 def _mass_root(system: System) -> Floats:
