@@ -427,9 +427,17 @@ def dots(A: Floats, B: Floats) -> Floats:
 def _add_dots(A: Floats, B: Floats, sums: Floats) -> None:
     n, m = A.shape
     for piece in prange(_PIECES):
-        for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
-            for k in range(m):
-                sums[piece, k] += A[i, k] * B[i, k]
+        low, high = piece * n // _PIECES, (piece + 1) * n // _PIECES
+        a, b = A[low:high], B[low:high]
+        if m == 1:  # in a register, not in memory: a tenth of the time
+            one, other, total = a.reshape(-1), b.reshape(-1), 0.0
+            for i in range(len(one)):
+                total += one[i] * other[i]
+            sums[piece, 0] = total
+        else:
+            for i in range(len(a)):
+                for k in range(m):
+                    sums[piece, k] += a[i, k] * b[i, k]
 
 
 @njit(cache=True, parallel=True, fastmath=True)

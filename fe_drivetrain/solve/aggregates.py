@@ -82,8 +82,9 @@ def between_aggregates(K: sparse.bsr_array, prolongation: sparse.bsr_array) -> s
     prolongation : sparse.bsr_array
         (n, n_coarse), in blocks with as many rows.
     """
-    count = _PARTS if len(K.indices) > _MANY else 1
-    cuts = np.linspace(0, len(K.indptr) - 1, count + 1).astype(int)
+    if len(K.indices) <= _MANY:
+        return prolongation.T @ (K @ prolongation)
+    cuts = np.linspace(0, len(K.indptr) - 1, _PARTS + 1).astype(int)
 
     def part(low: int, high: int) -> sparse.bsr_array:
         return _rows(prolongation, low, high).T @ (_rows(K, low, high) @ prolongation)
