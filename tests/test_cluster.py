@@ -219,9 +219,11 @@ def test_a_scheduler_that_is_not_there_is_a_mistake(monkeypatch: pytest.MonkeyPa
     from fe_drivetrain.common import cluster as cluster_module
 
     monkeypatch.setattr(cluster_module, "_CONNECT", 0.2)
+    monkeypatch.setenv(CORES_VARIABLE, "3")
     for address in ("tcp://127.0.0.1:1", "nowhere"):
         with pytest.raises(InputError, match="dask scheduler"), scheduled_by(address):
             pass
+        assert os.environ[CORES_VARIABLE] == "3"
         # the collector would close it, maybe in the middle of the next one's start
         clients = [one for one in gc.get_objects() if isinstance(one, Client)]
         assert {client.status for client in clients} <= {"closed"}

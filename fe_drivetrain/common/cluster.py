@@ -17,7 +17,7 @@ import time
 import uuid
 from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import CancelledError, Future, as_completed
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache as once
 from functools import partial
@@ -88,8 +88,19 @@ def connected(address: str) -> Iterator[Client]:
         There is no scheduler at the address.
     """
     before = {name: os.environ.get(name) for name in (CORES_VARIABLE, *thread_limits(1))}
-    os.environ[CORES_VARIABLE] = "1"
-    hold_threads()
+    try:
+        os.environ[CORES_VARIABLE] = "1"
+        hold_threads()
+        with closing(_client(address)) as client, held_to_one_thread():
+            yield client
+    finally:
+        os.environ |= {name: value for name, value in before.items() if value is not None}
+        for name in (name for name, value in before.items() if value is None):
+            os.environ.pop(name, None)
+
+
+def _client(address: str) -> Client:
+    """A client of the scheduler there, or an error as of `connected`."""
     try:
         from distributed import Client
     except ImportError as error:
@@ -99,20 +110,12 @@ def connected(address: str) -> Iterator[Client]:
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what goes wrong is raised
     try:
         _await_listener(address)
-        client = Client(address, timeout=_CONNECT, set_as_default=False)
+        return Client(address, timeout=_CONNECT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
             f"--scheduler {address}: no scheduler answers within {_CONNECT:g} s: start one with "
             "'dask scheduler' and give the address that it prints, as tcp://127.0.0.1:8786"
         ) from error
-    try:
-        with held_to_one_thread():
-            yield client
-    finally:
-        client.close()
-        os.environ |= {name: value for name, value in before.items() if value is not None}
-        for name in (name for name, value in before.items() if value is None):
-            os.environ.pop(name, None)
 
 
 def _await_listener(address: str) -> None:
