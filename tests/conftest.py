@@ -159,21 +159,23 @@ class QuickRun:
         """Results of a case; the test is skipped where a program is missing that it needs."""
         case = case_module.all_cases()[name]
         with filelock.FileLock(self.folder / f"{name.replace('/', '-')}.lock"):
-            if not self._stands(case):
+            results = self._standing(case)
+            if results is None:
                 with pytest.MonkeyPatch.context() as patch:
                     patch.setenv(cache.CACHE_VARIABLE, str(self.made))
                     self._run(case)
-        return self._results(case)
+                results = self._results(case)
+        return results
 
     def _results(self, case: Case) -> Results:
         return read_results(result_folder(self.folder, case) / "results.json")
 
-    def _stands(self, case: Case) -> bool:
-        """Whether the same program, with the same packages, has made its results."""
-        finished = finished_cases([case], self.folder, quick=True)
-        if not finished or self.given:
-            return bool(finished)
-        return all(v.passed for v in self._results(case).verdicts)
+    def _standing(self, case: Case) -> Results | None:
+        """Results that the same program has made, with the same packages."""
+        if not finished_cases([case], self.folder, quick=True):
+            return None
+        results = self._results(case)
+        return results if self.given or all(v.passed for v in results.verdicts) else None
 
     def _run(self, case: Case) -> None:
         if case.runs_alone(quick=True):

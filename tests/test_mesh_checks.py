@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.mesh.checks import FLATTEST, find_faults, flatness, refuse_unsound, triple_keys
+from fe_drivetrain.mesh.checks import FLATTEST, find_faults, flatness, refuse_unsound
+from fe_drivetrain.mesh.shared_facets import triple_keys
 from fe_drivetrain.response.model import build_model, mesh_scene, needed_faces
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.validation import (

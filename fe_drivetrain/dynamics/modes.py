@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
@@ -121,13 +121,10 @@ def _by_direction(system: System, free: Floats) -> Floats:
 
     A solver combines them as its rounding says, which differs between processors.
     """
-    ranks = np.array([_RANKS.get(name.rpartition(" ")[2], 2.0) for name in system.names])
+    parts = _directions(system)
+    ranks = 1.0 * parts[AXIAL] + 2.0 * parts[LATERAL]
     ranked = free.T @ (ranks[:, None] * (system.mass @ free))
     return np.asarray(free @ np.linalg.eigh((ranked + ranked.T) / 2)[1])
-
-
-#: Of motions about and along the axis; all others come after them.
-_RANKS = {"rx": 0.0, "ux": 1.0}
 
 
 def _mass_root(system: System) -> Floats:
@@ -240,18 +237,20 @@ def direction_kinds(system: System, modes: SystemModes, most: float = 0.9) -> li
     system's torsional modes may move its gears a little.
     """
     energy = modes.shapes * (system.mass @ modes.shapes)
-    motions = [name.rpartition(" ")[2] for name in system.names]
-    of = {
-        AXIAL: [m == "ux" for m in motions],
-        TORSIONAL: [m == "rx" for m in motions],
-        LATERAL: [m not in ("ux", "rx") for m in motions],
-    }
-    shares = np.array([energy[np.array(part)].sum(axis=0) for part in of.values()])
-    names = list(of)
+    parts = _directions(system)
+    shares = np.array([energy[part].sum(axis=0) for part in parts.values()])
+    names = list(parts)
     return [
         names[int(column.argmax())] if column.max() >= most else MIXED
         for column in (shares / shares.sum(axis=0)).T
     ]
+
+
+def _directions(system: System) -> dict[str, Bools]:
+    """Which degrees of freedom (n,) are of each direction."""
+    motions = np.array([name.rpartition(" ")[2] for name in system.names])
+    axial, torsional = motions == "ux", motions == "rx"
+    return {AXIAL: axial, TORSIONAL: torsional, LATERAL: ~(axial | torsional)}
 
 
 ROTATIONAL, TRANSLATIONAL, PLANET, OTHER = "rotational", "translational", "planet", "no pure kind"

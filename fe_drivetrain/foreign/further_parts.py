@@ -33,9 +33,9 @@ from fe_drivetrain.geometry import Bearing, FurtherPart, MeshSizes
 from fe_drivetrain.interfaces.constraints import Constraint
 from fe_drivetrain.interfaces.mortar import mortar_tie
 from fe_drivetrain.interfaces.overlap import Pieces, common_pieces, curvature, left_by_rims
-from fe_drivetrain.mesh.checks import are_among
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import Mesh, boundary
+from fe_drivetrain.mesh.shared_facets import are_among
 from fe_drivetrain.scene.bearing_unit import BearingUnit
 
 _WHOLE = 1e-5  # share of a facet that may be left uncovered: files have round-off

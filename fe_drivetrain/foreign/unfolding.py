@@ -13,10 +13,10 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.mesh.checks import are_among
 from fe_drivetrain.mesh.measures import area_vectors, scaled_jacobians
 from fe_drivetrain.mesh.mesh import Mesh, boundary
 from fe_drivetrain.mesh.shapes import TETRAHEDRON_EDGES
+from fe_drivetrain.mesh.shared_facets import are_among
 from fe_drivetrain.operator.elasticity import assemble
 
 _LAYERS = 2  # of elements round those that are folded, which give way, too

@@ -9,11 +9,12 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.geometry import WIDEST, refuse_millimetres
 from fe_drivetrain.mesh.measures import inverted_cells
 from fe_drivetrain.mesh.mesh import FACETS, Mesh, part_of
+from fe_drivetrain.mesh.shared_facets import SharedFacets
 
 FLATTEST = 1e-6
 """Height over longest edge of the flattest element that is solved: flatter ones make solvers fail,
@@ -91,7 +92,7 @@ def find_faults(mesh: Mesh, faces: Iterable[str] = (), joints: Joints | None = N
     faults = _positions(mesh)
     if faults:
         return faults
-    facets = _Facets.of(mesh)
+    facets = SharedFacets.of(mesh)
     bearings = {n.removesuffix(".outer") for n in mesh.faces if n.endswith(".outer")}
     apart: Joints = bearings if joints is None else set(joints)
     return [
@@ -125,84 +126,6 @@ def flatness(points: Floats, cells: Ints) -> Floats:
 def _cross(a: Floats, b: Floats) -> Floats:
     (ax, ay, az), (bx, by, bz) = a.T, b.T  # numpy.cross takes three times as long
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
-
-
-@dataclass(frozen=True)
-class _Facets:
-    """Facets of all cells, 4 a cell, and the pairs of them that have the same corners.
-
-    Attributes
-    ----------
-    n_nodes : int
-        Of the mesh.
-    keys : Ints
-        (4 ne,) one number for each triple of corners, ascending.
-    order : Ints
-        (4 ne,) the facets that they belong to.
-    first, second : Ints
-        (k,) facets of the pairs.
-    more : Ints
-        Facets that a third cell has as well.
-    alone : Ints
-        (m,) facets of one cell only.
-    """
-
-    n_nodes: int
-    keys: Ints
-    order: Ints
-    first: Ints
-    second: Ints
-    more: Ints
-    alone: Ints
-
-    @staticmethod
-    def of(mesh: Mesh) -> _Facets:
-        keys = triple_keys(mesh.cells[:, FACETS[:, :3]].reshape(-1, 3), len(mesh.points))
-        order = np.argsort(keys, kind="stable")
-        keys = keys[order]
-        same = np.zeros(len(keys) + 1, dtype=bool)
-        same[1:-1] = keys[1:] == keys[:-1]
-        starts, follows = ~same[:-1], same[1:]
-        return _Facets(
-            len(mesh.points),
-            keys,
-            order,
-            order[:-1][same[1:-1]],
-            order[1:][same[1:-1]],
-            order[1:][same[1:-1] & same[:-2]],
-            order[starts & ~follows],
-        )
-
-    def found(self, corners: Ints, part: Ints, wanted: int) -> Bools:
-        """Which (m, 3) triples of corners are a facet of a cell of part number `wanted`."""
-        keys = triple_keys(corners, self.n_nodes)
-        at = np.searchsorted(self.keys, keys)
-        result = np.zeros(len(keys), dtype=bool)
-        for k in (at, at + 1):
-            there = np.minimum(k, len(self.keys) - 1)
-            result |= (self.keys[there] == keys) & (part[self.order[there] // 4] == wanted)
-        return result
-
-
-def triple_keys(corners: Ints, n_nodes: int) -> Ints:
-    """One number for each (m, 3) triple of nodes, whatever their order.
-
-    Exact up to two million nodes; beyond, what 64 bits hold of it, which is wrong only where two
-    triples differ by a multiple of 2^64.
-    """
-    low = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
-    high = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
-    middle = corners.sum(axis=1) - low - high
-    n = np.int64(n_nodes)
-    with np.errstate(over="ignore"):
-        result: Ints = (low * n + middle) * n + high
-    return result
-
-
-def are_among(facets: Ints, others: Ints, n_nodes: int) -> Bools:
-    """Which facets, by their corners, stand among others, (m, 3 or more) nodes each."""
-    keys, among = (triple_keys(some[:, :3], n_nodes) for some in (facets, others))
-    return np.asarray(np.isin(keys, among), dtype=np.bool_)
 
 
 def _place(point: Floats) -> str:
@@ -323,7 +246,7 @@ def _flat(mesh: Mesh) -> list[Fault]:
     )
 
 
-def _neighbours(mesh: Mesh, facets: _Facets) -> list[Fault]:
+def _neighbours(mesh: Mesh, facets: SharedFacets) -> list[Fault]:
     """Facets of three cells; and neighbours whose common edge has two mid-side nodes."""
     faults = _of_cells(
         mesh,
@@ -402,7 +325,7 @@ def _cracks(mesh: Mesh, joints: Joints) -> list[Fault]:
     )
 
 
-def _hanging(mesh: Mesh, facets: _Facets) -> list[Fault]:
+def _hanging(mesh: Mesh, facets: SharedFacets) -> list[Fault]:
     n = len(mesh.points)
     corner, middle = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
     corner[mesh.cells[:, :4]] = True
@@ -433,7 +356,7 @@ def _hanging(mesh: Mesh, facets: _Facets) -> list[Fault]:
     )
 
 
-def _pieces(mesh: Mesh, facets: _Facets) -> list[Fault]:
+def _pieces(mesh: Mesh, facets: SharedFacets) -> list[Fault]:
     """Parts whose cells do not hang together facet by facet."""
     ne = len(mesh.cells)
     one, two = facets.first // 4, facets.second // 4
@@ -461,7 +384,7 @@ def _pieces(mesh: Mesh, facets: _Facets) -> list[Fault]:
     return faults
 
 
-def _faces(mesh: Mesh, facets: _Facets, needed: Iterable[str]) -> list[Fault]:
+def _faces(mesh: Mesh, facets: SharedFacets, needed: Iterable[str]) -> list[Fault]:
     faults = []
     for name in needed:
         if len(mesh.faces.get(name, ())) == 0:

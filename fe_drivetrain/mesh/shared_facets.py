@@ -1,0 +1,89 @@
+"""Which facets have the same corners: what two cells share, and what one has alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Bools, Ints
+from fe_drivetrain.mesh.mesh import FACETS, Mesh
+
+
+def triple_keys(corners: Ints, n_nodes: int) -> Ints:
+    """One number for each (m, 3) triple of nodes, whatever their order.
+
+    Exact up to two million nodes; beyond, what 64 bits hold of it, which is wrong only where two
+    triples differ by a multiple of 2^64.
+    """
+    low = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
+    high = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
+    middle = corners.sum(axis=1) - low - high
+    n = np.int64(n_nodes)
+    with np.errstate(over="ignore"):
+        result: Ints = (low * n + middle) * n + high
+    return result
+
+
+def are_among(facets: Ints, others: Ints, n_nodes: int) -> Bools:
+    """Which facets, by their corners, stand among others, (m, 3 or more) nodes each."""
+    keys, among = (triple_keys(some[:, :3], n_nodes) for some in (facets, others))
+    return np.asarray(np.isin(keys, among), dtype=np.bool_)
+
+
+@dataclass(frozen=True)
+class SharedFacets:
+    """Facets of all cells, 4 a cell, and the pairs of them that have the same corners.
+
+    Attributes
+    ----------
+    n_nodes : int
+        Of the mesh.
+    keys : Ints
+        (4 ne,) one number for each triple of corners, ascending.
+    order : Ints
+        (4 ne,) the facets that they belong to.
+    first, second : Ints
+        (k,) facets of the pairs.
+    more : Ints
+        Facets that a third cell has as well.
+    alone : Ints
+        (m,) facets of one cell only.
+    """
+
+    n_nodes: int
+    keys: Ints
+    order: Ints
+    first: Ints
+    second: Ints
+    more: Ints
+    alone: Ints
+
+    @staticmethod
+    def of(mesh: Mesh) -> SharedFacets:
+        """Those of a mesh of tetrahedra."""
+        keys = triple_keys(mesh.cells[:, FACETS[:, :3]].reshape(-1, 3), len(mesh.points))
+        order = np.argsort(keys, kind="stable")
+        keys = keys[order]
+        same = np.zeros(len(keys) + 1, dtype=bool)
+        same[1:-1] = keys[1:] == keys[:-1]
+        starts, follows = ~same[:-1], same[1:]
+        return SharedFacets(
+            len(mesh.points),
+            keys,
+            order,
+            order[:-1][same[1:-1]],
+            order[1:][same[1:-1]],
+            order[1:][same[1:-1] & same[:-2]],
+            order[starts & ~follows],
+        )
+
+    def found(self, corners: Ints, part: Ints, wanted: int) -> Bools:
+        """Which (m, 3) triples of corners are a facet of a cell of part number `wanted`."""
+        keys = triple_keys(corners, self.n_nodes)
+        at = np.searchsorted(self.keys, keys)
+        result = np.zeros(len(keys), dtype=bool)
+        for k in (at, at + 1):
+            there = np.minimum(k, len(self.keys) - 1)
+            result |= (self.keys[there] == keys) & (part[self.order[there] // 4] == wanted)
+        return result
