@@ -7,7 +7,7 @@ import pytest
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.mesh.checks import FLATTEST, find_faults, flatness, refuse_unsound
-from fe_drivetrain.mesh.shared_facets import triple_keys
+from fe_drivetrain.mesh.shared_facets import facet_keys
 from fe_drivetrain.response.model import build_model, mesh_scene, needed_faces
 from fe_drivetrain.scene.reading import change_scene, library_scene
 from fe_drivetrain.validation import (
@@ -116,9 +116,9 @@ def test_faults_do_not_depend_on_the_numbering(faulty):
         np.testing.assert_allclose(one[0].place, two[0].place, atol=1e-12)
 
 
-def test_triples_have_one_key_whatever_their_order():
+def test_facets_have_one_key_whatever_their_order():
     corners = np.array([[3, 1, 2], [2, 3, 1], [1, 2, 4], [0, 5, 5]])
-    keys = triple_keys(corners, 6)
+    keys = facet_keys(corners, 6)
     assert keys[0] == keys[1]
     assert len(set(keys.tolist())) == 3
 

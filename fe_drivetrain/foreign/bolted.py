@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from fe_drivetrain.common.arrays import Bools, Ints
 from fe_drivetrain.mesh.facets import facet_points
 from fe_drivetrain.mesh.mesh import FACETS, Mesh
-from fe_drivetrain.mesh.shared_facets import triple_keys
+from fe_drivetrain.mesh.shared_facets import facet_keys
 
 MOST_BETWEEN_RIMS = 0.1
 """Share of the open facets that may stay joined without a warning."""
@@ -45,9 +45,9 @@ def opened(mesh: Mesh, open_: Ints, pressed: Ints) -> Mesh:
     # a facet between rims alone would be divided in its middle nodes, not at its corners
     rims = np.isin(open_[:, :3], pressed).all(axis=1)
     open_, pressed = open_[~rims], np.concatenate([pressed, open_[rims]])
-    keys = triple_keys(cells[:, FACETS[:, :3]].reshape(-1, 3), n)
-    open_keys = triple_keys(open_[:, :3], n)
-    between = np.isin(keys, np.concatenate([open_keys, triple_keys(pressed[:, :3], n)]))
+    keys = facet_keys(cells[:, FACETS[:, :3]].reshape(-1, 3), n)
+    open_keys = facet_keys(open_[:, :3], n)
+    between = np.isin(keys, np.concatenate([open_keys, facet_keys(pressed[:, :3], n)]))
     solid = _solids(keys, ~between, len(cells))
     split = np.zeros(n, dtype=np.bool_)
     split[open_] = True
@@ -67,7 +67,7 @@ def opened(mesh: Mesh, open_: Ints, pressed: Ints) -> Mesh:
     order = np.lexsort((np.repeat(solid, 4), keys))
 
     def of_cells(face: Ints) -> Ints:
-        wanted = triple_keys(face[:, :3], n)
+        wanted = facet_keys(face[:, :3], n)
         return np.asarray(facets[order[np.searchsorted(keys[order], wanted)]], dtype=np.int64)
 
     faces = {name: of_cells(face) for name, face in mesh.faces.items()}

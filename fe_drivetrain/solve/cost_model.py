@@ -19,6 +19,7 @@ from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.mesh.facets import local_facets
 from fe_drivetrain.mesh.shapes import element_kind
+from fe_drivetrain.mesh.shared_facets import facet_keys
 from fe_drivetrain.operator import graph
 from fe_drivetrain.solve import direct_solvers
 from fe_drivetrain.solve.reduction import Elements, System
@@ -193,7 +194,7 @@ def thinness(elements: Elements) -> float:
     corners = elements.cells[:, : kind.n_corners]
     local = local_facets(kind.n_corners)
     facets = corners[:, local].reshape(-1, local.shape[1])
-    outer = elements.points[facets[_alone(facets)]]
+    outer = elements.points[facets[_alone(facets, len(elements.points))]]
     diagonal = outer[:, 2] - outer[:, 0]
     # of a triangle half the product of two sides, of a quadrilateral that of its diagonals
     beside = outer[:, 1] - outer[:, 0] if outer.shape[1] == 3 else outer[:, 3] - outer[:, 1]
@@ -207,13 +208,9 @@ def thinness(elements: Elements) -> float:
     return float(longest / wall * math.sqrt(extent / (2.0 * wall)))
 
 
-def _alone(facets: Ints) -> Ints:
+def _alone(facets: Ints, n_nodes: int) -> Ints:
     """Which facets no other one has the nodes of."""
-    # column by column: NumPy takes ten times as long along so short an axis
-    low, high, total = (ufunc.reduce(list(facets.T)) for ufunc in (np.minimum, np.maximum, np.add))
-    n = int(high.max()) + 1
-    # one number of all: beyond two million nodes it may overflow, and two in 2^64 be the same
-    key = (low * n + (total - low - high)) * n + high
+    key = facet_keys(facets, n_nodes)
     order = np.argsort(key)
     same = np.diff(key[order]) == 0
     return np.asarray(order[~(np.append(same, False) | np.append(False, same))])
