@@ -42,3 +42,36 @@ def test_freed_memory_is_taken_again(
     done = run_python("-c", ASKED_FOR.format(first=first), environment=user)
     assert done.returncode == 0, done.stderr
     assert (int(done.stdout) < 100) == again
+
+
+#: How often all was gone through while objects that last were made, whether a cycle that was
+#: made among them is gone, and how many objects the last collection found.
+COLLECTED = """
+import gc
+import sys
+import weakref
+from fe_drivetrain.common.memory import collect_lasting_seldom
+{first}
+
+class Cycle:
+    def __init__(self):
+        self.itself = self
+
+before = gc.get_stats()[2]["collections"]
+cycle = weakref.ref(Cycle())
+lasting = [[k] for k in range(500_000)]
+print(gc.get_stats()[2]["collections"] - before, cycle() is None)
+last = Cycle()
+del last
+gc.callbacks.append(lambda phase, info: phase == "stop" and print(info["collected"]))
+"""
+
+
+@pytest.mark.parametrize(("first", "seldom"), [("", False), ("collect_lasting_seldom()", True)])
+def test_a_program_seldom_looks_for_garbage_among_what_lasts(first: str, seldom: bool) -> None:
+    done = run_python("-c", COLLECTED.format(first=first))
+    assert done.returncode == 0, done.stderr
+    whole, young_is_gone, *found = done.stdout.split()
+    assert young_is_gone == "True"
+    assert (int(whole) <= 1) == seldom
+    assert (int(found[0]) == 0) == seldom

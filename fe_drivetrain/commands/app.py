@@ -41,6 +41,7 @@ from fe_drivetrain.commands.studies import (
 )
 from fe_drivetrain.commands.terminal import prepare_streams, write
 from fe_drivetrain.commands.validate import validate_command
+from fe_drivetrain.common.memory import collect_lasting_seldom
 
 if TYPE_CHECKING:
     from fe_drivetrain.suite.case import Case
@@ -100,6 +101,7 @@ def main(arguments: list[str] | None = None) -> None:
         The words after the name of the program; those of the shell where left out.
     """
     prepare_streams()
+    collect_lasting_seldom()
     _command()(arguments, prog_name="fe-drivetrain")
 
 
@@ -136,4 +138,5 @@ def main_of_case(case: Case) -> None:
         raise typer.Exit(run_and_print(lambda: [typed], out, set_ or (), quick))
 
     prepare_streams()
+    collect_lasting_seldom()
     script()

@@ -21,6 +21,7 @@ from types import ModuleType
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.memory import collect_lasting_seldom
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.threads import CORES_VARIABLE
 
@@ -140,6 +141,7 @@ def _begin(environment: dict[str, str], output: str, steps: Connection) -> None:
     os.dup2(file, 1)
     os.dup2(file, 2)
     sys.stdout = sys.stderr  # which does not wait with what it has
+    collect_lasting_seldom()
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
