@@ -121,7 +121,8 @@ def run(run: Run, page: Page) -> None:
     page.answer(
         f"Of {number} shapes at and beyond their limits {refused} are refused in one sentence with "
         "the allowed range, and all others are meshed without a fault, with volumes and named "
-        "areas exact but for the parabolas that make the circles.",
+        "areas exact but for the parabolas that make the circles, and for rims of the shaft's ends "
+        "that are drawn back where an element would fold.",
         f"Meshed as asked: {'; '.join(bounds)}.",
     )
     collared = extreme_parts.collared(0.05).shaft
@@ -153,10 +154,11 @@ def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
     inside, both = extreme_parts.meshed(found), extreme_parts.meshed(every)
     page.at_most(
         f"{parameter}: error of volumes and named areas over what parabolas round a circle allow, "
-        "worst of what was meshed",
+        "and rims drawn back, worst of what was meshed",
         max(o.allowed for o in every if not o.sentence),
         1.0,
-        why="circles of parabolas, three quarters of the elements a turn asked for",
+        why="circles of parabolas, three quarters of the elements a turn asked for; rims are drawn "
+        "back where an element would fold, by as much as their nodes are off the circle",
         source="exact volumes and areas (cylinders, spheres, Pappus)",
     )
     page.vanishes(
@@ -190,7 +192,8 @@ def show(page: Page, sweep: Sweep, found: Outcomes, fine: Outcomes) -> str:
         parameter + (f" (gaps: {', '.join(map(short, gaps))})" if gaps else ""),
         low=safe[0],
         high=safe[1],
-        criterion="volume and areas exact but for parabolas round circles; no fault",
+        criterion="volume and areas exact but for parabolas round circles and rims drawn back; no "
+        "fault",
         beyond="refused in one sentence; nothing is meshed wrong",
         program=sweep.program,
         remedy=sweep.remedy + (f": meshed from {both[0]:g} to {both[-1]:g}" if fine else ""),
