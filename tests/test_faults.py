@@ -537,3 +537,20 @@ def test_a_stop_that_a_librarys_callback_drops_is_raised_again(
     assert dropped == [SystemExit]
     assert cleaned == ["wholly"]
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("cause", [KeyboardInterrupt, ValueError])
+def test_ctrl_c_in_compiled_code_stops_as_any_other(
+    cause: type[BaseException], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Python says so of a function in C that came back with an exception, and of nothing else."""
+
+    def work() -> int:
+        raise SystemError("returned a result with an exception set") from cause()
+
+    if cause is not KeyboardInterrupt:
+        with pytest.raises(SystemError):
+            terminal.guarded(work)
+        return
+    assert terminal.guarded(work) == terminal.STOPPED
+    assert capsys.readouterr().err.startswith("fe-drivetrain: stopped; ")

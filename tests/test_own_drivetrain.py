@@ -236,6 +236,13 @@ def test_check_says_what_a_scene_is(
     assert shaft["mass [kg]"] == pytest.approx(7850 * volume, rel=1e-3)
     assert housing["density [kg/m³]"] == 7800
     assert found["Bearings"][0]["carries moments"] == "no: spherical joint"
+    assert "against turning" not in out
+
+
+def test_check_says_that_a_bonded_bearing_takes_torque(invoke: Callable[..., Result]) -> None:
+    status, out, _ = invoke("check", "main_bearing_bonded", "--out", "page", *QUICK)
+    assert status == 0
+    assert "main_bearing: bonded, so held against turning, too" in out
 
 
 def test_forecast_is_of_the_systems_that_are_solved(
@@ -352,7 +359,12 @@ def test_reactions_of_a_study_balance_loads_and_weights(
     for name, start in (("calm", 0.0), ("storm", 60.0)):
         columns, values, head = table_of(folder / f"reactions_{name}.csv")
         assert values[0, 0] == start
-        for word in ("frame = x downwind", "origin of moments", "weight = included along -z"):
+        for word in (
+            "frame = x downwind",
+            "origin of moments",
+            "weight = included along -z",
+            "the weight of its own housing, which its rollers do not feel",
+        ):
             assert word in head
         for component, column in zip(("Fx", "Fy", "Fz"), range(3), strict=True):
             total = sum(

@@ -97,7 +97,7 @@ def describe(page: Page, model: Model) -> None:
     page.table("Parts; masses are those of the mesh", parts)
     if scene.bearing_units:
         page.table(
-            "Bearings",
+            "Bearings" + _of_torque(scene),
             [_bearing_row(unit) for unit in scene.bearing_units],
         )
     if scene.nose is not None:
@@ -170,6 +170,18 @@ def _size(scene: Scene, part: str) -> str:
 def _range(values: set[float]) -> str:
     low, high = min(values), max(values)
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
+
+
+def _of_torque(scene: Scene) -> str:
+    """Which bearings take hub torque that goes on to the gearbox where a bearing turns."""
+    bonded = [u.bearing.name for u in scene.bearing_units if u.interface == "bonded"]
+    if not bonded:
+        return ""
+    return (
+        f"; {' and '.join(bonded)}: bonded, so held against turning, too, with hub torque in the "
+        "housing as far as that is stiffer there than the gearbox. Where torque or "
+        "hub.stiffness.rx counts, take the interface rollers, or spring with 0 about x"
+    )
 
 
 def _bearing_row(unit: BearingUnit) -> Record:

@@ -222,8 +222,15 @@ def _weights(model: Model, gravity: float) -> str:
     points = "".join(f", {p.name} {p.weight / 1e3:.4g} kN" for p in model.scene.load_points)
     return (
         f"included along -z: {parts}, gearbox {model.scene.gearbox.weight / 1e3:.4g} kN{points}; "
-        "that of the rotor as far as the hub loads have it" + _of_nose(model)
+        "that of the rotor as far as the hub loads have it" + _of_housings(model) + _of_nose(model)
     )
+
+
+def _of_housings(model: Model) -> str:
+    """Which of the weights no roller feels."""
+    if not any(part.endswith(".housing") for part in model.part_mass):
+        return ""
+    return "; a bearing's reaction has the weight of its own housing, which its rollers do not feel"
 
 
 def _of_nose(model: Model) -> str:

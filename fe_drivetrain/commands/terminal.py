@@ -67,6 +67,11 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
         if "Symlink loop" not in str(error):
             raise
         message, status = f"cannot write: {error}: give another folder with --out", MISTAKE
+    except SystemError as error:
+        # what Python makes of Ctrl-C in compiled code of a library, as numba's that loads loops
+        if not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
+        message, status = f"stopped; {kept}", STOPPED
     write(sys.stderr, f"fe-drivetrain: {message}\n")
     return status
 
