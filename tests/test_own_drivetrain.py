@@ -17,6 +17,7 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
+from fe_drivetrain.commands.study_errors import slight_reactions
 from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -436,6 +437,11 @@ def test_a_study_says_which_level_each_reaction_needs(
             assert within <= 5.0
         if level.startswith(("2", "4")):
             assert within > 5.0
+
+
+def test_levels_are_judged_by_what_is_more_than_a_thousandth_of_the_largest_reaction() -> None:
+    sizes = {"front, force": 1.2e6, "rear, moment": 1.3e3, "gearbox, force": 7.5}
+    assert slight_reactions(sizes) == ["gearbox, force"]
 
 
 def test_a_study_exports_what_other_programs_read(study: tuple[Path, dict[str, Floats]]) -> None:

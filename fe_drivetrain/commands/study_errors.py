@@ -26,6 +26,10 @@ from fe_drivetrain.suite.records import Record
 ENOUGH = 0.05
 """Of the root mean square: what the study takes for accurate enough."""
 
+SLIGHT = 1e-3
+"""Of the largest reaction, a moment over the shaft's length: what is less decides no level."""
+
+_KINDS = ("force", "moment")
 _SHOWN_UNITS = 3 * ("kN",) + 3 * ("kN\u00a0m",)
 
 
@@ -59,6 +63,7 @@ def errors(
     weight, length = scene.gearbox.weight, scene.shaft.length
     absolute: list[Record] = []
     shares: dict[str, dict[str, float]] = {}
+    sizes: dict[str, float] = {}
     for name in levels.reference.reaction_matrices:
         reference = reaction_history(levels.reference, name, hub, weight, loads.gravity)
         rmse: dict[str, Floats] = {}
@@ -68,10 +73,13 @@ def errors(
             rmse[label] = weighted_rms(found - reference, weights)
             relative[label] = relative_errors(reference, found, length, weights)
         size = weighted_rms(reference, weights)
-        for k, kind in enumerate(("force", "moment")):
+        for k, kind in enumerate(_KINDS):
             if np.isnan(relative[others[0]][k]):
                 continue
             shares[f"{name}, {kind}"] = {label: float(relative[label][k]) for label in others}
+            sizes[f"{name}, {kind}"] = float(
+                np.linalg.norm(size[3 * k : 3 * k + 3]) / (1.0, length)[k]
+            )
             for c in range(3 * k, 3 * k + 3):
                 if size[c] <= ROUND_OFF * size[3 * k : 3 * k + 3].max():
                     continue
@@ -102,18 +110,41 @@ def errors(
         )
     else:
         note += f"The mesh cannot be {COARSER:g} times coarser, so its own error is not shown. "
+    slight = slight_reactions(sizes)
+    if slight:
+        note += (
+            f"{' and '.join(slight)}: less than {100 * SLIGHT:g} % of the largest reaction "
+            "(a moment over the shaft's length), by which no level is judged for all. "
+        )
     page.text(f"{note}Forces and moments that are the mesh's noise are left out.")
     page.data("error_percent", rows)
     page.data("rmse_kN", absolute)
-    worst = {label: max(of[label] for of in shares.values()) for label in others}
+    judged = [reaction for reaction in shares if reaction not in slight]
+    worst = {label: max(shares[reaction][label] for reaction in judged) for label in others}
     page.answer(_enough(worst, levels.bounds))
     _advice(page, levels, shares)
-    measures(page, scene, levels, loads, slopes, ENOUGH)
+    measures(page, scene, levels, loads, slopes, ENOUGH, judged)
     # the last of each number has housings as springs, where there are housings
     sampled = {int(label[0]): label for label in levels.bounds}
     errors_of = {n: max(worst[m] for m in levels.bounds[label]) for n, label in sampled.items()}
     enough = [level for level, error in errors_of.items() if error <= ENOUGH]
     return enough[0] if enough else min(errors_of, key=lambda level: errors_of[level])
+
+
+def slight_reactions(sizes: Mapping[str, float]) -> list[str]:
+    """Reactions that are too small beside the largest for a level to be judged by.
+
+    Parameters
+    ----------
+    sizes : Mapping[str, float]
+        Root mean square of each force, and of each moment over the shaft's length [N].
+
+    Returns
+    -------
+    list[str]
+        Those of less than `SLIGHT` of the largest.
+    """
+    return [name for name, size in sizes.items() if size < SLIGHT * max(sizes.values())]
 
 
 def _advice(page: Page, levels: Levels, shares: Mapping[str, Mapping[str, float]]) -> None:

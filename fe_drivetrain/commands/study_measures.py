@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from fe_drivetrain.fidelity.over_loads import (
     ROUND_OFF,
     Levels,
     reaction_history,
-    relative_errors,
 )
 from fe_drivetrain.histories.model_errors import (
     Measured,
@@ -38,6 +37,7 @@ def measures(
     loads: StudyLoads,
     slopes: Sequence[float],
     within: float,
+    judged: Collection[str],
 ) -> None:
     """Add a table of errors by measure, and which level is good enough for what.
 
@@ -55,6 +55,8 @@ def measures(
         Of S-N curves.
     within : float
         What is good enough, as a share.
+    judged : collection of str
+        By which reactions levels are judged: "NAME, force" and "NAME, moment".
     """
     bounds, count = levels.bounds, len(loads.histories)
     places = np.unique(np.linspace(0, count - 1, min(count, _MOST)).astype(int))
@@ -71,11 +73,8 @@ def measures(
     for name in levels.reference.reaction_matrices:
         reference = of(levels.reference, name)
         models = {m: of(levels.models[m], name) for own in bounds.values() for m in own}
-        size = relative_errors(
-            np.concatenate(reference), np.concatenate(reference), scene.shaft.length
-        )
-        for k, first in enumerate((1, 4)):
-            if np.isnan(size[k]):
+        for kind, first in (("force", 1), ("moment", 4)):
+            if f"{name}, {kind}" not in judged:
                 continue
             spread = np.concatenate(reference)[:, first : first + 2].std(axis=0)
             if spread.max() <= ROUND_OFF * np.abs(np.concatenate(reference)).max():
@@ -125,13 +124,15 @@ def sentence(found: Mapping[str, str | None], within: float) -> str:
     share = f"{100 * within:g} %"
     if not any(found.values()):
         return (
-            f"No level below the assembly has every reaction's mean, extreme, or damage-equivalent "
-            f"load within {share} of it: none is good enough for means, extremes or fatigue."
+            "Of the component across the shaft that varies most in each reaction, no level below "
+            f"the assembly has the mean, extreme, or damage-equivalent load within {share}: none "
+            "is good enough for means, extremes or fatigue."
         )
     words = [f"for {use} {model or 'none'}" for use, model in found.items()]
     return (
-        f"The cheapest level within {share} of the assembly's reactions is {'; '.join(words)} "
-        "(fatigue: damage-equivalent loads of every slope)."
+        f"Of the component across the shaft that varies most in each reaction, the cheapest level "
+        f"within {share} of the assembly is {'; '.join(words)} (fatigue: damage-equivalent loads "
+        "of every slope)."
     )
 
 
