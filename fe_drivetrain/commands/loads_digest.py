@@ -32,7 +32,7 @@ from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.loops import find_loops, loop_statistics, time_on_loops
 from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
 
-VERSION = 3
+VERSION = 4
 """Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 LOADS = (*FORCES, "radial force", "bending moment")

@@ -29,6 +29,7 @@ from fe_drivetrain.hub_loads.channels import (
 from fe_drivetrain.hub_loads.histories import UNITS, Attribute, LoadHistory, require_sound
 
 _CSV_COLUMNS = ("time", *FORCES)
+_TABLES = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
 _CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
@@ -58,22 +59,48 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
 
     source = str(file)
     time = in_si(source, channels["time"], TIME_UNITS)
-    tables = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
     loads = [
-        in_si(source, channels[name], table) for name, table in zip(FORCES, tables, strict=True)
+        in_si(source, channels[name], table) for name, table in zip(FORCES, _TABLES, strict=True)
     ]
     columns = dict(zip(FORCES, loads, strict=True))
-    at: dict[str, Floats] = {}
     others = [name for name in channels if name not in _CSV_COLUMNS]
-    for name in others:
-        point, _, component = name.rpartition(".")
-        c = FORCES.index(component)
-        columns[name] = in_si(source, channels[name], tables[c])
-        at.setdefault(point, np.zeros((time.size, len(FORCES))))[:, c] = columns[name]
+    at = point_loads(source, [channels[name] for name in others])
+    for point, values in at.items():
+        columns |= {f"{point}.{c}": v for c, v in zip(FORCES, values.T, strict=True)}
     require_sound(f"hub loads '{source}'", time, columns, rows)
     read = ", ".join(f"{name} [{channels[name].unit}]" for name in (*FORCES, *others))
     origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
     return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at)
+
+
+def is_of_point(title: str) -> bool:
+    """Whether a column is a load at a load point, like "brake.Fz" (a title without its unit)."""
+    name = _wanted(title)
+    return name is not None and "." in name
+
+
+def point_loads(source: str, channels: Iterable[Channel]) -> dict[str, Floats]:
+    """Loads (n, 6) at load points [N, N m], by the point's name; components without a column are 0.
+
+    Parameters
+    ----------
+    source : str
+        The file, for messages.
+    channels : iterable of Channel
+        With names like "brake.Fz", see `is_of_point`.
+
+    Raises
+    ------
+    InputError
+        A unit is unknown.
+    """
+    at: dict[str, Floats] = {}
+    for channel in channels:
+        point, _, component = channel.name.rpartition(".")
+        c = [name.lower() for name in FORCES].index(component.lower())
+        values = in_si(source, channel, _TABLES[c])
+        at.setdefault(point, np.zeros((values.size, len(FORCES))))[:, c] = values
+    return at
 
 
 def _channels(
