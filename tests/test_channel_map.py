@@ -64,6 +64,17 @@ def test_moments_about_another_point_are_carried_to_the_hub_by_statics(tmp_path:
     assert "carried to the hub from 1.9 m downwind" in str(found.attributes["channels"])
 
 
+def test_the_documented_sign_of_carried_moments_is_that_of_statics(tmp_path: Path) -> None:
+    """800 kN down 1.9 m downwind of the hub turn the shaft about +y (z towards x) by 1520 kN m."""
+    loads = np.array([400e3, 50e3, -800e3, 2000e3, 1000e3, 0.0])
+    file = write_table(tmp_path / "a.csv", loads)
+    mapping = ChannelMap(channels=NAMES, units={"yaw": "kN m"}, moments_at=1.9)
+    found = read_recorded(file, mapping).history
+    np.testing.assert_allclose(found.loads[0, 3:], [2000e3, 2520e3, 95e3])
+    page = Path(__file__).parents[1].joinpath("docs", "loads.md").read_text("utf-8")
+    assert "M_hub = M + (d, 0, 0) cross F" in page
+
+
 def test_rotating_loads_are_turned_back_by_the_azimuth(tmp_path: Path) -> None:
     azimuth = np.radians(20.0) + 1.3 * TIME
     ya = np.stack([0.0 * TIME, np.cos(azimuth), np.sin(azimuth)], axis=1)
