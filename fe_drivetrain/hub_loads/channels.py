@@ -60,8 +60,7 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
     InputError
         The unit is another.
     """
-    # "N m", "N-m", "N.m", "N*m" and "N·m" are one unit; upper and lower case are not (mN, MN).
-    unit = re.sub(r"[\s·⋅*.\-]", "", channel.unit)
+    unit = _plain(channel.unit)
     if unit not in units:
         raise InputError(
             f"hub loads '{source}': channel {channel.name} has the unit '{channel.unit}', not one "
@@ -69,6 +68,22 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
         )
     with np.errstate(over="ignore"):  # an infinity is refused with its place
         return np.asarray(channel.values * units[unit])
+
+
+def without_unit(title: str) -> str:
+    """The name of a column, of its title like "brake.Fz [kN]"."""
+    return re.split(r"[\[(]", title, maxsplit=1)[0].strip()
+
+
+def is_load_unit(title: str) -> bool:
+    """Whether the title of a column ends with a unit of force or moment."""
+    unit = re.search(r"[\[(]\s*(.*?)\s*[\])]\s*$", title)
+    return unit is not None and _plain(unit[1]) in FORCE_UNITS | MOMENT_UNITS
+
+
+def _plain(unit: str) -> str:
+    # "N m", "N-m", "N.m", "N*m" and "N·m" are one unit; upper and lower case are not (mN, MN).
+    return re.sub(r"[\s·⋅*.\-]", "", unit)
 
 
 def existing_file(path: str | os.PathLike[str]) -> Path:

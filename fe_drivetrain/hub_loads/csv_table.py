@@ -51,7 +51,7 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     attributes: dict[str, Attribute] = {}
     try:
         with file.open(encoding="utf-8-sig") as stream:
-            channels, rows = _channels(file, stream, attributes)
+            channels, rows, unread = _channels(file, stream, attributes)
     except UnicodeDecodeError as error:
         raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
     except csv.Error as error:
@@ -70,7 +70,7 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     require_sound(f"hub loads '{source}'", time, columns, rows)
     read = ", ".join(f"{name} [{channels[name].unit}]" for name in (*FORCES, *others))
     origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
-    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at)
+    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at, unread)
 
 
 def is_of_point(title: str) -> bool:
@@ -105,8 +105,11 @@ def point_loads(source: str, channels: Iterable[Channel]) -> dict[str, Floats]:
 
 def _channels(
     file: Path, stream: Iterable[str], attributes: dict[str, Attribute]
-) -> tuple[dict[str, Channel], Sequence[int]]:
-    """Columns that are read, and the line of each row; memory is that of their numbers."""
+) -> tuple[dict[str, Channel], Sequence[int], tuple[str, ...]]:
+    """Columns that are read, the line of each row, and titles of other columns.
+
+    Memory is that of the numbers that are read.
+    """
     rows = array("q")
 
     def kept() -> Iterator[str]:
@@ -156,7 +159,9 @@ def _channels(
     channels = {
         name: Channel(name, unit, np.array(columns[name])) for name, (_, unit) in places.items()
     }
-    return channels, rows
+    taken = {place for place, _ in places.values()}
+    unread = tuple(title.strip() for k, title in enumerate(header) if k not in taken)
+    return channels, rows, unread
 
 
 def write_csv(

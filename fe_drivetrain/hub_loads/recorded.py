@@ -18,7 +18,13 @@ from fe_drivetrain.hub_loads.channel_map import (
     carried_to_hub,
     to_shaft_frame,
 )
-from fe_drivetrain.hub_loads.channels import ANGLE_UNITS, Channel, existing_file, in_si
+from fe_drivetrain.hub_loads.channels import (
+    ANGLE_UNITS,
+    Channel,
+    existing_file,
+    in_si,
+    without_unit,
+)
 from fe_drivetrain.hub_loads.csv_table import is_of_point, point_loads, read_csv
 from fe_drivetrain.hub_loads.files import SUFFIXES, hub_load_files
 from fe_drivetrain.hub_loads.histories import (
@@ -142,8 +148,10 @@ def read_recorded(
     else:
         history = _of_channels(file, channels, named, mapping)
         if is_table:
-            history = _with_points(history, channels, mapping, azimuth)
+            history = _with_points(file, history, channels, mapping, azimuth)
     history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
+    unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
+    history = replace(history, unread=tuple(unread))
     beside = {}
     for name, sizes in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
         candidates = (channels.get(candidate.lower()) for candidate in KNOWN[name])
@@ -210,6 +218,7 @@ def _of_channels(
 
 
 def _with_points(
+    file: Path,
     history: LoadHistory,
     channels: Mapping[str, Channel],
     mapping: ChannelMap,
@@ -218,6 +227,9 @@ def _with_points(
     """With the loads at load points, which have columns like brake.Fz of a table."""
     taken = {mapping.column(name)[0].lower() for name in mapping.channels}
     own = [c for key, c in channels.items() if key not in taken and is_of_point(c.name)]
+    read_ones = {c.name for c in own}
+    unread = (title for title in _header(file)[1] if without_unit(title) not in read_ones)
+    history = replace(history, unread=tuple(unread))
     if not own:
         return history
     read = f"{_read_of(history)}; {', '.join(f'{c.name} [{c.unit}]' for c in own)}"
@@ -321,19 +333,11 @@ def csv_channels(
     InputError
         A cell of a wanted column is not a number.
     """
-    before, titles = 0, ""
-    try:
-        with file.open(encoding="utf-8-sig") as stream:
-            for before, line in enumerate(stream, 1):  # noqa: B007
-                if line.strip() and not line.startswith("#"):
-                    titles = line
-                    break
-    except UnicodeDecodeError as error:
-        raise InputError(f"table '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
+    before, titles = _header(file)
     found: dict[str, Channel] = {}
     places: dict[str, int] = {}
     bare = {name.lower() for name in units}
-    for place, title in enumerate(next(csv.reader([titles]), [])):
+    for place, title in enumerate(titles):
         match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
         if match is None and title.strip().lower() in bare:
             match = re.fullmatch(r"\s*(.+?)()\s*", title)
@@ -360,6 +364,20 @@ def csv_channels(
     for name, column in zip(places, values.T, strict=True):
         found[name] = Channel(found[name].name, found[name].unit, column)
     return found
+
+
+def _header(file: Path) -> tuple[int, list[str]]:
+    """The line of a table's header, from 1, and its titles."""
+    before, titles = 0, ""
+    try:
+        with file.open(encoding="utf-8-sig") as stream:
+            for before, line in enumerate(stream, 1):  # noqa: B007
+                if line.strip() and not line.startswith("#"):
+                    titles = line
+                    break
+    except UnicodeDecodeError as error:
+        raise InputError(f"table '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
+    return before, [title.strip() for title in next(csv.reader([titles]), [])]
 
 
 def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:
