@@ -39,7 +39,8 @@ class Together:
     halves : ndarray
         (loads, slopes) the part of half cycles in the sums.
     lone : list of tuple
-        File, channel, number of lone samples and time of the first [s].
+        File, channel, number of lone samples, time of the first [s], and how many times as far from
+        its neighbours as usual the farthest is.
     constant : dict
         Channels that do not move, and in how many files.
     cycles : ndarray or None
@@ -76,7 +77,7 @@ class Together:
     damage: Floats | None = None
     about_zero: Floats = field(default_factory=lambda: np.zeros((1, 1)))
     halves: Floats = field(default_factory=lambda: np.zeros((1, 1)))
-    lone: list[tuple[str, str, int, float]] = field(default_factory=list)
+    lone: list[tuple[str, str, int, float, float]] = field(default_factory=list)
     constant: dict[str, int] = field(default_factory=dict)
     cycles: Floats | None = None
     torque: Floats = field(default_factory=lambda: np.zeros(5))
@@ -107,9 +108,9 @@ class Together:
         self.damage = damage if self.damage is None else self.damage + damage
         self.about_zero = self.about_zero + found["damage about zero"]
         self.halves = self.halves + found["damage of halves"]
-        for c, (number, first) in enumerate(found["lone samples"].tolist()):
+        for c, (number, first, far) in enumerate(found["lone samples"].tolist()):
             if number:
-                self.lone.append((name, LOADS[c], int(number), first))
+                self.lone.append((name, LOADS[c], int(number), first, far))
             if not found["cycles"][c, 0]:
                 self.constant[LOADS[c]] = self.constant.get(LOADS[c], 0) + 1
         channels = str(found["read"])

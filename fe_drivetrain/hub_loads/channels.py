@@ -12,6 +12,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import why_unreadable
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +87,15 @@ def _plain(unit: str) -> str:
     return re.sub(r"[\s·⋅*.\-]", "", unit)
 
 
-def existing_file(path: str | os.PathLike[str]) -> Path:
-    """The path of a file that exists; `InputError` where it does not."""
+def existing_file(path: str | os.PathLike[str], kind: str = "hub loads") -> Path:
+    """The path of a file that exists and may be read; `InputError` where it does not."""
     file = Path(path)
-    if not file.is_file():
-        raise InputError(f"hub loads '{file}': no such file; check the path")
+    try:
+        # not by opening it: a pipe would wait for ever
+        if not file.is_file():
+            raise IsADirectoryError if file.is_dir() else FileNotFoundError
+        if not os.access(file, os.R_OK):
+            raise PermissionError
+    except (OSError, ValueError) as error:
+        raise InputError(f"{kind} '{file}': {why_unreadable(error)}") from error
     return file

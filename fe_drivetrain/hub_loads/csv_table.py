@@ -53,7 +53,9 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
         with file.open(encoding="utf-8-sig") as stream:
             channels, rows, unread = _channels(file, stream, attributes)
     except UnicodeDecodeError as error:
-        raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
+        raise InputError(
+            f"hub loads '{file}': it is not UTF-8 text: save it as UTF-8 CSV"
+        ) from error
     except csv.Error as error:
         raise InputError(f"hub loads '{file}': {error}; correct the table") from error
 

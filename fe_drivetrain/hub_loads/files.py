@@ -101,11 +101,11 @@ def hub_load_files(pattern: str) -> list[Path]:
         None is found, or two are the .out and the .outb of one run.
     """
     path = Path(pattern)
-    if path.exists() or not glob.has_magic(pattern):
+    if os.path.exists(path) or not glob.has_magic(pattern):
         found = [path]
     else:
         found = sorted(Path(name) for name in glob.glob(pattern, recursive=True))
-    if found == [path] and not path.is_dir():
+    if found == [path] and not os.path.isdir(path):
         return [path]  # named by the user: read, or refused with its suffix
     files = [
         file

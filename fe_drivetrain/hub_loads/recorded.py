@@ -356,6 +356,8 @@ def csv_channels(
             ndmin=2,
             encoding="utf-8-sig",
         )
+    except UnicodeDecodeError as error:
+        raise _not_utf8(file) from error
     except ValueError as error:
         raise InputError(
             f"table '{file}': {error}, counted below the header: correct the cell, or remove "
@@ -376,8 +378,12 @@ def _header(file: Path) -> tuple[int, list[str]]:
                     titles = line
                     break
     except UnicodeDecodeError as error:
-        raise InputError(f"table '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
+        raise _not_utf8(file) from error
     return before, [title.strip() for title in next(csv.reader([titles]), [])]
+
+
+def _not_utf8(file: Path) -> InputError:
+    return InputError(f"table '{file}': it is not UTF-8 text: save it as UTF-8 CSV")
 
 
 def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:
