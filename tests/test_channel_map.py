@@ -64,6 +64,17 @@ def test_moments_about_another_point_are_carried_to_the_hub_by_statics(tmp_path:
     assert "carried to the hub from 1.9 m downwind" in str(found.attributes["channels"])
 
 
+def test_the_documented_sign_of_carried_moments_is_that_of_statics(tmp_path: Path) -> None:
+    """800 kN down 1.9 m downwind of the hub turn the shaft about +y (z towards x) by 1520 kN m."""
+    loads = np.array([400e3, 50e3, -800e3, 2000e3, 1000e3, 0.0])
+    file = write_table(tmp_path / "a.csv", loads)
+    mapping = ChannelMap(channels=NAMES, units={"yaw": "kN m"}, moments_at=1.9)
+    found = read_recorded(file, mapping).history
+    np.testing.assert_allclose(found.loads[0, 3:], [2000e3, 2520e3, 95e3])
+    page = Path(__file__).parents[1].joinpath("docs", "loads.md").read_text("utf-8")
+    assert "M_hub = M + (d, 0, 0) cross F" in page
+
+
 def test_rotating_loads_are_turned_back_by_the_azimuth(tmp_path: Path) -> None:
     azimuth = np.radians(20.0) + 1.3 * TIME
     ya = np.stack([0.0 * TIME, np.cos(azimuth), np.sin(azimuth)], axis=1)
@@ -107,3 +118,99 @@ def test_mistakes_of_a_mapping_are_one_sentence(tmp_path: Path, text: str, messa
     (tmp_path / "map.yaml").write_text(text)
     with pytest.raises(InputError, match=message):
         read_channel_map(tmp_path / "map.yaml")
+
+
+OWN = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+TURN = 20.0 * TIME  # deg
+
+
+def rotating_table(file: Path, *more: str) -> Path:
+    """A weight of 100 kN, and a moment of 30 kN m about y, as a rotating frame has them.
+
+    At an azimuth psi, ya = cos(psi) y + sin(psi) z and za = -sin(psi) y + cos(psi) z.
+    """
+    psi = np.radians(TURN)
+    columns = {
+        "Fx [kN]": 5.0 + 0.0 * psi,
+        "Fy [kN]": -100.0 * np.sin(psi),
+        "Fz [kN]": -100.0 * np.cos(psi),
+        "Mx [kN m]": 7.0 + psi,
+        "My [kN m]": 30.0 * np.cos(psi),
+        "Mz [kN m]": -30.0 * np.sin(psi),
+        "brake.Fy [kN]": -4.0 * np.sin(psi),
+        "brake.Fz [kN]": -4.0 * np.cos(psi),
+    }
+    columns |= dict.fromkeys(more, TURN)
+    header = ",".join(["time [s]", *columns])
+    table = np.column_stack([TIME, *columns.values()])
+    np.savetxt(file, table, delimiter=",", header=header, comments="", fmt="%.15g")
+    return file
+
+
+@pytest.mark.parametrize(
+    ("azimuth", "channels"),
+    [
+        ("azimuth [deg]", {}),
+        ("LSSTipPxa [deg]", {}),
+        ("angle [deg]", {"azimuth": "angle"}),
+        ("azimuth [deg]", {"Fy": "Fy"}),
+        ("Azimuth [deg]", {name: name for name in OWN}),
+    ],
+)
+def test_rotating_loads_of_a_table_are_turned_back(
+    tmp_path: Path, azimuth: str, channels: dict[str, str]
+) -> None:
+    """Turned back they are the constant weight and moment, whatever of the table is mapped."""
+    file = rotating_table(tmp_path / "a.csv", azimuth)
+    found = read_recorded(file, ChannelMap(channels=channels, rotating=True)).history
+    expected = [5e3, 0.0, -100e3, 30e3, 0.0]
+    np.testing.assert_allclose(found.loads[:, [0, 1, 2, 4, 5]], [expected] * 50, atol=1e-6)
+    np.testing.assert_allclose(found.loads[:, 3], 7e3 + 1e3 * np.radians(TURN))
+    at_brake = [0.0, 0.0, -4e3, 0.0, 0.0, 0.0]
+    np.testing.assert_allclose(found.at["brake"], [at_brake] * 50, atol=1e-8)
+    read = str(found.attributes["channels"])
+    assert f"turned back by {azimuth}" in read
+    assert "nothing turned" not in read
+
+
+def test_rotating_loads_of_a_table_start_at_the_azimuth_of_blade_1(tmp_path: Path) -> None:
+    file = rotating_table(tmp_path / "a.csv", "azimuth [deg]")
+    found = read_recorded(file, ChannelMap(rotating=True, azimuth_blade1_up=90.0)).history
+    # turned back by 90 deg less than before, what pointed down points along -y
+    np.testing.assert_allclose(found.loads[:, 1:3], [[-100e3, 0.0]] * 50, atol=1e-6)
+    assert "less 90 deg" in str(found.attributes["channels"])
+
+
+@pytest.mark.parametrize("channels", [{}, {"Fy": "Fy"}])
+def test_rotating_loads_of_a_table_need_an_azimuth(
+    tmp_path: Path, channels: dict[str, str]
+) -> None:
+    mapping = ChannelMap(channels=channels, rotating=True)
+    file = rotating_table(tmp_path / "a.csv")
+    message = r"no azimuth to turn them back: add a column 'azimuth \[deg\]'"
+    with pytest.raises(InputError, match=message):
+        read_recorded(file, mapping)
+    with pytest.raises(InputError, match=message):
+        own_loads(str(file), 0.0, library_scene("main_bearing_bonded"), mapping)
+
+
+def test_a_mapped_table_keeps_its_load_points(tmp_path: Path) -> None:
+    file = rotating_table(tmp_path / "a.csv")
+    found = read_recorded(file, ChannelMap(channels={"Fy": "-Fy"}, tilt=5.0)).history
+    psi, sin = np.radians(TURN), np.sin(np.radians(5.0))
+    np.testing.assert_allclose(found.at["brake"][:, 0], 4e3 * sin * np.cos(psi))
+    assert "brake.Fz [kN]" in str(found.attributes["channels"])
+    whole = read_recorded(file, ChannelMap(tilt=5.0)).history
+    np.testing.assert_allclose(whole.at["brake"], found.at["brake"])
+
+
+def test_openfast_channels_say_themselves_what_turns(tmp_path: Path) -> None:
+    names = ["Time", "LSShftFxa", "LSShftFys", "LSShftFzs", "RotTorq", "LSSTipMys", "LSSTipMzs"]
+    units = ["(s)", "(kN)", "(kN)", "(kN)", "(kN-m)", "(kN-m)", "(kN-m)"]
+    rows = [f"{t:g} 1 2 3 4 5 {t:g}" for t in TIME]
+    (tmp_path / "a.out").write_text(
+        "\n".join([*6 * ["-"], " ".join(names), " ".join(units), *rows])
+    )
+    assert read_recorded(tmp_path / "a.out").history.loads[0, 4] == 5e3
+    with pytest.raises(InputError, match="leave out rotating, or map the loads"):
+        read_recorded(tmp_path / "a.out", ChannelMap(rotating=True))

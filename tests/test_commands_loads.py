@@ -267,6 +267,31 @@ def test_mistakes_are_one_sentence(invoke: Callable[..., Result], histories: Pat
         assert said in err
 
 
+def test_a_site_needs_the_winds_of_all_files(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    """It weights files by their winds, in `loads` as in `life`; nothing is written otherwise."""
+    out = histories.parent / "out"
+    calm = histories.parent / "calm.csv"  # without a wind speed
+    calm.write_text(
+        "\n".join(line.rsplit(",", 2)[0] for line in (histories / "a.csv").read_text().splitlines())
+    )
+    for files, channels, said in (
+        ([histories], [], f"{histories / 'a.csv'}': there is no wind speed, by which --site"),
+        (
+            [histories / "a.csv"],
+            COLUMNS,
+            "the one file has a mean wind of 8 m/s: give files of two",
+        ),
+        ([histories / "a.csv", calm], [], "there is no wind speed"),
+    ):
+        words = ("--site", "IIB", "--rotor-speed", "15", *channels, "--out", str(out))
+        status, _, err = invoke("loads", *map(str, files), *words)
+        assert status == 2, said
+        assert said in err
+        assert not out.exists()
+
+
 def test_a_lifetime_has_the_hours_of_its_winds_and_the_events_of_its_years(
     invoke: Callable[..., Result], histories: Path
 ) -> None:

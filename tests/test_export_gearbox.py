@@ -266,7 +266,7 @@ def test_line_endings_stay_as_they_are(turbine: Path) -> None:
         (b"", "has no components.drivetrain"),
         (b"components: {drivetrain: {a: 1}}", "block style"),
         (b"components: [", "no windIO turbine file"),
-        (bytes(range(128, 256)), "not text"),
+        (bytes(range(128, 256)), "not UTF-8 text"),
         (b"components:\n  drivetrain:\n    spring_constant_user: stiff\n", "is no number"),
     ],
 )
@@ -283,7 +283,7 @@ def test_windio_is_not_overwritten_unless_told(turbine: Path) -> None:
         windio.write_torsion(turbine, turbine, NEW)
     with pytest.raises(InputError, match="must be positive"):
         windio.write_torsion(turbine, turbine.with_name("b"), Torsion(0.0, 1.0))
-    with pytest.raises(InputError, match="is not there"):
+    with pytest.raises(InputError, match="there is no such file"):
         windio.write_torsion(turbine.with_name("none"), turbine.with_name("b"), NEW)
 
 

@@ -621,7 +621,7 @@ def test_writing_into_a_missing_folder_is_refused(tmp_path: Path) -> None:
 
 def test_missing_file_and_unknown_suffix_are_refused(tmp_path: Path) -> None:
     for name in ("gone.out", "gone.outb", "gone.csv"):
-        with pytest.raises(InputError, match=f"{name}'?: no such file"):
+        with pytest.raises(InputError, match=f"{name}'?: there is no such file"):
             read_hub_loads(tmp_path / name)
     with pytest.raises(InputError, match=r"suffix '\.mat' is not one of \.out, \.outb"):
         read_hub_loads(tmp_path / "loads.mat")

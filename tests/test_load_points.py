@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.beam.sections import cowper_shear_coefficient
-from fe_drivetrain.commands.study_loads import entering, weightless
+from fe_drivetrain.commands.loads_reactions import scene_reactions
+from fe_drivetrain.commands.study_loads import entering, own_loads, weightless
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.calculix_plan import plan_deck
 from fe_drivetrain.fidelity.ladder import (
@@ -17,9 +18,11 @@ from fe_drivetrain.fidelity.ladder import (
     statics_level,
 )
 from fe_drivetrain.fidelity.over_loads import imbalance, reaction_history
+from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.csv_table import read_csv, write_csv
 from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.histories import LoadHistory
+from fe_drivetrain.hub_loads.recorded import OWN_NAMES, read_recorded
 from fe_drivetrain.response.cached import solved_content
 from fe_drivetrain.response.model import Model, build_model, mesh_scene, scene_loads
 from fe_drivetrain.response.unit_loads import Response, unit_load_response
@@ -171,6 +174,15 @@ def test_a_deck_has_its_unit_loads(solved: tuple[Model, Response]) -> None:
     assert plan.loads[3 * node + 1].tolist() == [1.0, 0.0]
 
 
+def table_with(folder: Path, column: str) -> Path:
+    """Hub loads that vary, with one column more of -50 in all rows."""
+    head = f"time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m],{column}"
+    rows = [f"{t},1,2,3,4,5,{t},-50" for t in range(4)]
+    file = folder / "loads.csv"
+    file.write_text("\n".join([head, *rows]))
+    return file
+
+
 def test_a_file_has_columns_for_it(tmp_path: Path) -> None:
     head = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m],brake.Fz [kN],Brake.My [N m]"
     rows = [f"{t},1,2,3,4,5,{t},{2 * t},{3 * t}" for t in range(4)]
@@ -180,7 +192,7 @@ def test_a_file_has_columns_for_it(tmp_path: Path) -> None:
     assert list(history.at) == ["brake", "Brake"]
     np.testing.assert_array_equal(history.at["brake"][:, 2], 2e3 * np.arange(4))
     assert "brake.Fz [kN]" in str(history.attributes["channels"])
-    with pytest.raises(InputError, match=r"Brake.*no load point of the scene \(brake\)"):
+    with pytest.raises(InputError, match=r"Brake.*no load point of the scene \(brake;"):
         require_points([history], ["brake"])
     write_csv(history, file)
     again = read_csv(file)
@@ -192,6 +204,63 @@ def test_a_file_has_columns_for_it(tmp_path: Path) -> None:
     file.write_text("\n".join([head, *rows]).replace(",6,9", ",x,9"))
     with pytest.raises(InputError, match=r"brake\.Fz"):
         read_csv(file)
+
+
+@pytest.mark.parametrize("mapping", [OWN_NAMES, ChannelMap(channels={"Fy": "Fy"})])
+@pytest.mark.parametrize(
+    ("column", "message"),
+    [
+        ("barke.Fz [kN]", r"barke.Fz.*\(brake; components Fx, Fy, Fz, Mx, My, Mz\).*as of 'brake'"),
+        ("tower.Fz [kN]", "'tower'.*no load point.*or add it under load_points"),
+        ("brake_Fz [kN]", r"'brake_Fz \[kN\]'.*: brake; comp.*write it like 'brake\.Fz \[N\]'"),
+        ("brake.Fq [kN]", r"'brake\.Fq \[kN\]'.*write it like 'brake\.Fz \[N\]'"),
+        ("brake.Fq", r"write it like 'brake\.Fz"),
+        ("brakeMx [lbf ft]", r"write it like 'brake\.Mx \[N m\]'"),
+        ("Brake force (kN)", r"write it like 'brake\.Fz"),
+        ("barke_My [kN m]", r"write it like 'brake\.My \[N m\]'"),
+    ],
+)
+def test_a_misspelt_column_of_a_load_point_is_refused_by_every_command(
+    tmp_path: Path, column: str, message: str, mapping: ChannelMap
+) -> None:
+    file = table_with(tmp_path, column)
+    scene = scene_of()
+    with pytest.raises(InputError, match=message):
+        own_loads(str(file), 0.0, scene, mapping)
+    with pytest.raises(InputError, match=message):
+        scene_reactions(scene, 1).of(read_recorded(file, mapping).history)
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        "brake pressure [bar]",
+        "brake.on",
+        "RotSpeed [rpm]",
+        "RotTorq [kN-m]",
+        "TwrBsFxt [kN]",
+        "RootFxb1 [kN]",
+        "Wind1VelX [m/s]",
+        "Fx2 [kN]",
+        "",
+    ],
+)
+def test_columns_that_are_plainly_something_else_are_left_alone(
+    tmp_path: Path, column: str
+) -> None:
+    file = table_with(tmp_path, column)
+    (history,) = own_loads(str(file), 0.0, scene_of()).histories
+    assert not history.at
+    assert scene_reactions(scene_of(), 1).of(history)
+
+
+def test_a_misspelt_column_that_was_asked_for_as_another_channel_is_no_load(
+    tmp_path: Path,
+) -> None:
+    file = table_with(tmp_path, "brake_Fz [kN]")
+    found = read_recorded(file, OWN_NAMES, 0.0, ["brake_Fz"])
+    require_points([found.history], ["brake"])
+    assert found.others["brake_Fz [kN]"][0] == -50.0
 
 
 @pytest.mark.parametrize(

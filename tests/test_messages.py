@@ -6,7 +6,14 @@ import pytest
 
 from fe_drivetrain.commands.app import main
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.export.formats import windio
+from fe_drivetrain.export.formats.summary import read_summary
+from fe_drivetrain.hub_loads.channel_map import ChannelMap, read_channel_map
 from fe_drivetrain.hub_loads.csv_table import read_csv
+from fe_drivetrain.hub_loads.files import read_hub_load_files
+from fe_drivetrain.hub_loads.openfast_output import openfast_channels
+from fe_drivetrain.hub_loads.recorded import read_recorded
+from fe_drivetrain.procedure.interface_loads import read_load_json
 from fe_drivetrain.scene.reading import read_scene
 from fe_drivetrain.suite.case import find_cases
 
@@ -19,6 +26,60 @@ def test_a_pipe_or_device_as_scene_is_refused_at_once(tmp_path):
     for path in (pipe, "/dev/zero", tmp_path):
         with pytest.raises(InputError, match="it is a folder, a pipe or a device: give a file"):
             read_scene(path)
+
+
+def test_files_that_cannot_be_read_say_what_to_do(tmp_path):
+    """No number of an error and no name of a codec, whatever is read."""
+    latin, long = tmp_path / "latin.yaml", tmp_path / f"{'a' * 300}.yaml"
+    latin.write_bytes("title: a\n# M\xfchle\n".encode("latin-1"))
+    for path, says in (
+        (tmp_path / "none.yaml", "there is no such file: check the path"),
+        (latin, r"it is not UTF-8 text \(byte 0xfc in line 2\): save it as UTF-8"),
+        (long, "File name too long: give another file"),
+        (tmp_path / "a\0b.yaml", "its name cannot be that of a file"),
+    ):
+        for read in (
+            read_scene,
+            read_channel_map,
+            windio.read_torsion,
+            read_summary,
+            read_load_json,
+        ):
+            with pytest.raises(InputError, match=f"cannot read .*{says}") as caught:
+                read(path)
+            assert "Errno" not in str(caught.value)
+            assert "codec" not in str(caught.value)
+
+
+def test_files_of_loads_that_cannot_be_read_say_what_to_do(tmp_path):
+    table = tmp_path / "a.csv"
+    table.write_bytes(f"{HEADER}\n0,1,2,3,4,5,6\n# M\xfchle\n".encode("latin-1"))
+    mapped = ChannelMap(channels={"Fx": "Fx"})
+    for path, says in (
+        (table, "it is not UTF-8 text: save it as UTF-8 CSV"),
+        (tmp_path / "none.csv", "there is no such file: check the path"),
+        (tmp_path / f"{'a' * 300}.csv", "File name too long: give another file"),
+    ):
+        for read in (read_csv, read_recorded, lambda file: read_recorded(file, mapped)):
+            with pytest.raises(InputError, match=says) as caught:
+                read(path)
+            assert "codec" not in str(caught.value)
+        with pytest.raises(InputError, match=says):
+            read_hub_load_files(str(path))
+    with pytest.raises(InputError, match="it is a folder: give a file"):
+        read_csv(tmp_path)
+
+
+def test_an_openfast_file_may_have_letters_of_any_code_in_its_header(tmp_path):
+    names = "Time LSShftFxa LSShftFys LSShftFzs RotTorq LSSTipMys LSSTipMzs"
+    rows = [f"{t} 1 2 3 4 5 {t}" for t in range(9)]
+    lines = ["", "of M\xfchle", "", "", "", "", names, "(s) " + 6 * "(kN) ", *rows]
+    file = tmp_path / "a.out"
+    file.write_bytes("\n".join(lines).replace("(kN)", "(kN-m)").encode("latin-1"))
+    assert openfast_channels(file)["lsstipmzs"].values.tolist() == list(range(9))
+    file.write_bytes("\n".join([*lines, "9 1 2 x 4 5 9"]).encode("latin-1"))
+    with pytest.raises(InputError, match="line 18, channel LSShftFzs: 'x' is not a number"):
+        openfast_channels(file)
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from fe_drivetrain.life.limits import Limits
 from fe_drivetrain.life.roller_damage import Damage, LifeRules, Steps, damage_of_steps
 from fe_drivetrain.scene.scene import Scene
 
-VERSION = 1
+VERSION = 2
 """Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 WINDOWS = 60

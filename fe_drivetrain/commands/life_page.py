@@ -17,7 +17,7 @@ from fe_drivetrain.commands.life_digest import (
 )
 from fe_drivetrain.commands.life_sections import BearingLife, laminae, places, winds
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.commands.loads_together import require_winds, rounded_wind
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.histories.sites import Site
 from fe_drivetrain.life.at_site import site_lives
@@ -28,9 +28,6 @@ from fe_drivetrain.scene.scene import Scene
 from fe_drivetrain.suite.page import Page
 from fe_drivetrain.suite.records import Record
 from fe_drivetrain.suite.run import Run
-
-WIND_BIN = 1.0
-"""Files whose mean winds are nearer stand for one wind [m/s]."""
 
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
 
@@ -130,24 +127,9 @@ def _of_bearing(
         for found in digests[1:]:
             whole = whole + found.damage
         return BearingLife(one, digests, whole, None)
-    for file, found in zip(files, digests, strict=True):
-        if np.isnan(found.wind):
-            raise InputError(
-                f"hub loads '{file}': there is no wind speed, by which --site weights files: name "
-                "its channel, as in --channel 'wind speed=Vhub', or leave --site out"
-            )
-    at = [(_bin(found.wind), found.damage) for found in digests]
-    if len({wind for wind, _ in at}) < 2:
-        raise InputError(
-            f"--site weights winds, and all {len(at)} files have a mean wind of {at[0][0]:g} m/s: "
-            "give files of two winds or more, or leave --site out"
-        )
-    life = site_lives(at, site)
+    require_winds(files, [found.wind for found in digests])
+    life = site_lives([(rounded_wind(found.wind), found.damage) for found in digests], site)
     return BearingLife(one, digests, life.a_year, life)
-
-
-def _bin(wind: float) -> float:
-    return WIND_BIN * float(np.round(wind / WIND_BIN))
 
 
 def _years(value: float) -> str:
@@ -199,7 +181,7 @@ def _scatter(life: BearingLife) -> float | None:
     rates: dict[float, list[float]] = {}
     for one in life.digests:
         rate = one.damage.totals["L10mr"] / one.damage.seconds
-        rates.setdefault(_bin(one.wind), []).append(rate)
+        rates.setdefault(rounded_wind(one.wind), []).append(rate)
     if min(map(len, rates.values())) < 2:
         return None
     each = [rates[float(speed)] for speed in site.speeds]

@@ -16,7 +16,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.classes import Classes, in_classes
 from fe_drivetrain.histories.cycles import Residue, gated, rainflow_cycles
 from fe_drivetrain.histories.damage import FREQUENCY, goodman
-from fe_drivetrain.histories.faults import lone_samples
+from fe_drivetrain.histories.faults import lone_samples, times_as_far
 from fe_drivetrain.histories.levels import torque_reversals
 from fe_drivetrain.histories.polar import direction
 from fe_drivetrain.histories.spectra import (
@@ -32,7 +32,7 @@ from fe_drivetrain.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.hub_loads.loops import find_loops, loop_statistics, time_on_loops
 from fe_drivetrain.hub_loads.recorded import OWN_NAMES, Recorded
 
-VERSION = 3
+VERSION = 5
 """Raise whenever a change alters a digest: kept ones of another version are not used."""
 
 LOADS = (*FORCES, "radial force", "bending moment")
@@ -124,6 +124,9 @@ Digest = dict[str, NDArray[Any]]
 channels were read is text."""
 
 
+_NONE = (np.nan, np.nan)  # time and distance of the lone samples of a channel that has none
+
+
 def digest(found: Recorded, options: Options) -> Digest:
     """Statistics, counts and distributions of one file.
 
@@ -160,7 +163,10 @@ def digest(found: Recorded, options: Options) -> Digest:
     _count_cycles(result, loads, options)
     alone = [lone_samples(column) for column in history.loads.T]
     result["lone samples"] = np.array(
-        [[len(k), history.time[k[0]] if len(k) else np.nan] for k in alone]
+        [
+            [len(k), history.time[k[0]], times_as_far(column, k).max()] if len(k) else [0, *_NONE]
+            for k, column in zip(alone, history.loads.T, strict=True)
+        ]
     )
     _spectra(result, loads, speed, step)
     for c, name in enumerate(LOADS):

@@ -8,6 +8,7 @@ from fe_drivetrain.commands.loads_digest import LOADS, Options
 from fe_drivetrain.commands.loads_together import Together
 from fe_drivetrain.histories.faults import FAR
 from fe_drivetrain.histories.windows import TEN_MINUTES
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.suite.page import Page
 
 MUCH = 0.1
@@ -28,11 +29,18 @@ def faults(page: Page, found: Together, options: Options) -> None:
     options : Options
         How they were counted.
     """
-    for file, channel, number, first in found.lone[:_NAMED]:
+    for file, channel, number, first, far in found.lone[:_NAMED]:
         samples = "one sample stands" if number == 1 else f"{number} samples stand"
+        most = "up to " if number > 1 else ""
+        distance = (
+            f"{most}{formatted(far, 2)} times as far from both neighbours as usual (named from "
+            f"{FAR:g} times on)"
+            if np.isfinite(far)
+            else "away from both neighbours, which are usually equal"
+        )
         page.note(
-            f"{file}: {samples} alone in {channel}, {FAR:g} times as far from both neighbours as "
-            f"usual, the first at {first:g} s: look at it, since one range may decide the damage; "
+            f"{file}: {samples} alone in {channel}, {distance}, the first at {first:g} s: look at "
+            "it, since one range may decide the damage; "
             "nothing is taken out."
         )
     if len(found.lone) > _NAMED:

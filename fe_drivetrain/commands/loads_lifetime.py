@@ -63,6 +63,12 @@ class Event:
         return np.asarray(np.mean([d["damage"] for d in self.digests], axis=0))
 
 
+def mean_winds(found: Together) -> list[float]:
+    """Mean wind speed of each file [m/s]; NaN where it has none."""
+    winds = [row["mean wind speed [m/s]"] for row in found.files]
+    return [np.nan if wind is None else float(wind) for wind in winds]
+
+
 def lifetime(
     page: Page, found: Together, options: Options, site: Site, events: Sequence[Event] = ()
 ) -> dict[str, list[Record]]:
@@ -73,7 +79,7 @@ def lifetime(
     page : Page
         Takes the tables.
     found : Together
-        All files.
+        All files, of two winds or more: see `require_winds`.
     options : Options
         How they were counted.
     site : Site
@@ -82,14 +88,8 @@ def lifetime(
         Transients of the lifetime.
     """
     page.section("Lifetime at a site")
-    wind = np.array([row["mean wind speed [m/s]"] or np.nan for row in found.files], dtype=float)
-    bins = np.array([rounded_wind(speed) for speed in wind])
-    speeds = np.unique(bins[~np.isnan(bins)])
-    if len(speeds) < 2:
-        page.text(
-            "A lifetime needs files of two mean wind speeds or more, with the wind speed in them."
-        )
-        return {}
+    bins = np.array([rounded_wind(speed) for speed in mean_winds(found)])
+    speeds = np.unique(bins)
     edges = midpoint_edges(speeds)
     hours = site.hours(edges)
     seconds = np.array([row["step [s]"] * row["samples"] for row in found.files])

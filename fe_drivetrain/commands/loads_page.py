@@ -13,7 +13,7 @@ from fe_drivetrain.commands.loads_against import beside
 from fe_drivetrain.commands.loads_counts import answer_of_counts, counts
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, UNITS, Digest, Options
 from fe_drivetrain.commands.loads_faults import faults
-from fe_drivetrain.commands.loads_lifetime import Event, lifetime
+from fe_drivetrain.commands.loads_lifetime import Event, lifetime, mean_winds
 from fe_drivetrain.commands.loads_reactions import (
     OTHER,
     SceneReactions,
@@ -24,7 +24,7 @@ from fe_drivetrain.commands.loads_reactions import (
 )
 from fe_drivetrain.commands.loads_shape import shape
 from fe_drivetrain.commands.loads_tables import write_tables
-from fe_drivetrain.commands.loads_together import WIND_BIN, Together, windows_table
+from fe_drivetrain.commands.loads_together import WIND_BIN, Together, require_winds, windows_table
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.errors import InputError
@@ -115,7 +115,7 @@ def loaded(
     Raises
     ------
     InputError
-        A file cannot be read, or holds no loads.
+        A file cannot be read, or holds no loads, or a site is given and files have no wind speed.
     """
     page.seed = None
     every = {name: Together() for name in ("", *(reactions.names if reactions else ()))}
@@ -128,6 +128,8 @@ def loaded(
             if against:
                 own.append(one)
     _require_loads(found)
+    if site is not None:
+        require_winds(files, mean_winds(found))
     rule = Cycles(np.zeros(0), np.zeros(0), np.zeros(0), options.residue).rule
     if options.gate:
         rule += (

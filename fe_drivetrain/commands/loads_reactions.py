@@ -25,6 +25,7 @@ from fe_drivetrain.fidelity.ladder import LevelModel, assembly_level, shaft_leve
 from fe_drivetrain.fidelity.over_loads import ROUND_OFF, reaction_history
 from fe_drivetrain.histories.spectra import MULTIPLES, SEGMENT
 from fe_drivetrain.histories.windows import COLUMNS
+from fe_drivetrain.hub_loads.files import require_points
 from fe_drivetrain.hub_loads.histories import LoadHistory
 from fe_drivetrain.hub_loads.recorded import Recorded
 from fe_drivetrain.report.charts import trace
@@ -72,7 +73,13 @@ class SceneReactions:
         ----------
         history : LoadHistory
             Its moments are about the point that the scene states.
+
+        Raises
+        ------
+        InputError
+            It has loads at a point that the scene does not have.
         """
+        require_points([history], list(self.scene.bands))
         moved = history.moved(self.scene.loads_at, self.scene.shaft.front)
         driving, weight = entering(self.scene, moved), self.scene.gearbox.weight
         found = {n: reaction_history(self.model, n, driving, weight, GRAVITY) for n in self.names}

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
 from fe_drivetrain.commands.loads_digest import CHANNELS, LOADS, Digest, classes_of
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.histories.classes import Classes, added
 from fe_drivetrain.histories.windows import COLUMNS
 from fe_drivetrain.suite.records import Record
@@ -37,7 +39,8 @@ class Together:
     halves : ndarray
         (loads, slopes) the part of half cycles in the sums.
     lone : list of tuple
-        File, channel, number of lone samples and time of the first [s].
+        File, channel, number of lone samples, time of the first [s], and how many times as far from
+        its neighbours as usual the farthest is.
     constant : dict
         Channels that do not move, and in how many files.
     cycles : ndarray or None
@@ -74,7 +77,7 @@ class Together:
     damage: Floats | None = None
     about_zero: Floats = field(default_factory=lambda: np.zeros((1, 1)))
     halves: Floats = field(default_factory=lambda: np.zeros((1, 1)))
-    lone: list[tuple[str, str, int, float]] = field(default_factory=list)
+    lone: list[tuple[str, str, int, float, float]] = field(default_factory=list)
     constant: dict[str, int] = field(default_factory=dict)
     cycles: Floats | None = None
     torque: Floats = field(default_factory=lambda: np.zeros(5))
@@ -105,9 +108,9 @@ class Together:
         self.damage = damage if self.damage is None else self.damage + damage
         self.about_zero = self.about_zero + found["damage about zero"]
         self.halves = self.halves + found["damage of halves"]
-        for c, (number, first) in enumerate(found["lone samples"].tolist()):
+        for c, (number, first, far) in enumerate(found["lone samples"].tolist()):
             if number:
-                self.lone.append((name, LOADS[c], int(number), first))
+                self.lone.append((name, LOADS[c], int(number), first, far))
             if not found["cycles"][c, 0]:
                 self.constant[LOADS[c]] = self.constant.get(LOADS[c], 0) + 1
         channels = str(found["read"])
@@ -222,6 +225,35 @@ class Together:
 def rounded_wind(wind: float) -> float:
     """Mean wind speed for which a file stands: histories of one round to one [m/s]."""
     return float(WIND_BIN * np.round(wind / WIND_BIN))
+
+
+def require_winds(files: Sequence[Path], winds: Sequence[float]) -> None:
+    """Refuse files that a site's winds cannot weight.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        The histories.
+    winds : sequence of float
+        Mean wind speed of each [m/s]; NaN where it has none.
+
+    Raises
+    ------
+    InputError
+        A file has no wind speed, or all stand for one wind.
+    """
+    for file, wind in zip(files, winds, strict=True):
+        if np.isnan(wind):
+            raise InputError(
+                f"hub loads '{file}': there is no wind speed, by which --site weights files: name "
+                "its channel, as in --channel 'wind speed=Vhub', or leave --site out"
+            )
+    if len({rounded_wind(wind) for wind in winds}) < 2:
+        count = f"all {len(files)} files have" if len(files) > 1 else "the one file has"
+        raise InputError(
+            f"--site weights winds, and {count} a mean wind of {rounded_wind(winds[0]):g} m/s: "
+            "give files of two winds or more, or leave --site out"
+        )
 
 
 def windows_table(found: Together, units: Mapping[str, str]) -> list[Record]:

@@ -23,6 +23,56 @@ _LONGEST_KEY = 100  # characters of a dotted key in a message
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
+def why_unreadable(error: OSError | ValueError) -> str:
+    """Why a user's file cannot be read, and what to do: the end of a sentence.
+
+    Parameters
+    ----------
+    error : OSError or ValueError
+        From opening the file, or from decoding all of it.
+
+    Returns
+    -------
+    str
+        As in "there is no such file: check the path".
+    """
+    if isinstance(error, FileNotFoundError | NotADirectoryError):
+        return "there is no such file: check the path"
+    if isinstance(error, PermissionError):
+        return "it may not be read: change its permissions, or copy it"
+    if isinstance(error, IsADirectoryError):
+        return "it is a folder: give a file"
+    if isinstance(error, UnicodeDecodeError):
+        line = error.object.count(b"\n", 0, error.start) + 1
+        return (
+            f"it is not UTF-8 text (byte 0x{error.object[error.start]:02x} in line {line}): save "
+            "it as UTF-8"
+        )
+    if isinstance(error, OSError):
+        return f"{error.strerror or error}: give another file"
+    return "its name cannot be that of a file: check the path"  # with a null byte
+
+
+def unreadable(path: str | Path, kind: str, error: OSError | ValueError) -> InputError:
+    """The sentence about a user's file that cannot be read.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    kind : str
+        What it should hold: "scene file", "ElastoDyn input".
+    error : OSError or ValueError
+        See `why_unreadable`.
+
+    Returns
+    -------
+    InputError
+        To be raised from the error.
+    """
+    return InputError(f"cannot read {kind} {path}: {why_unreadable(error)}")
+
+
 def read_text(path: str | Path, kind: str) -> str:
     """Text of a file of at most 1 MB.
 
@@ -56,7 +106,7 @@ def read_text(path: str | Path, kind: str) -> str:
             )
         return content.decode("utf-8")
     except (OSError, ValueError) as error:  # no file, no text, or no name of a file
-        raise InputError(f"cannot read {kind} file {path}: {error}") from error
+        raise unreadable(path, f"{kind} file", error) from error
 
 
 def parse_mapping(text: str, source: str) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from .farm import Piece as Piece
 from .farm import counted_histories as counted_histories
 from .farm import piece as piece
 from .faults import lone_samples as lone_samples
+from .faults import times_as_far as times_as_far
 from .levels import Levels as Levels
 from .levels import Reversals as Reversals
 from .levels import equivalent_level as equivalent_level

@@ -36,11 +36,37 @@ def lone_samples(signal: ArrayLike) -> Ints:
     values: Floats = np.asarray(signal, dtype=float)
     if values.size < 3:
         return np.zeros(0, dtype=np.intp)
-    before, after = np.diff(values)[:-1], -np.diff(values)[1:]
-    away = 0.5 * (before + after)
-    usual = _NORMAL * float(np.median(np.abs(away)))
+    before, after, away, usual = _distances(values)
     least = max(FAR * usual, OF_SCATTER * float(values.std()))
     # one step leads there and another of its size back: neither a jump that stays, nor what stands
     # beside a spike
     there_and_back = np.minimum(before * np.sign(away), after * np.sign(away)) > 0.5 * np.abs(away)
     return np.flatnonzero((np.abs(away) > least) & there_and_back & (least > 0.0)) + 1
+
+
+def times_as_far(signal: ArrayLike, places: Ints) -> Floats:
+    """How far samples are from the middle of both their neighbours, over its usual size.
+
+    Parameters
+    ----------
+    signal : array_like, (n,)
+        A channel.
+    places : ndarray, (m,)
+        Numbers of samples, as of `lone_samples`.
+
+    Returns
+    -------
+    ndarray, (m,)
+        From `FAR` on; infinite where the usual distance is 0, as of a channel that else stands
+        still.
+    """
+    *_, away, usual = _distances(np.asarray(signal, dtype=float))
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.abs(away[places - 1]) / usual)
+
+
+def _distances(values: Floats) -> tuple[Floats, Floats, Floats, float]:
+    """From each sample but the first and last to its neighbours and their middle; the usual one."""
+    before, after = np.diff(values)[:-1], -np.diff(values)[1:]
+    away = 0.5 * (before + after)
+    return before, after, away, _NORMAL * float(np.median(np.abs(away)))

@@ -42,11 +42,12 @@ class ChannelMap(BaseModel):
     units : dict
         Unit of columns, by the files' names, where the header has none or a wrong one.
     rotating : bool
-        Mapped Fy, Fz, My, Mz turn with the rotor; the files need an azimuth then.
+        Fy, Fz, My, Mz of a table, or those that are mapped, turn with the rotor; the files need an
+        azimuth then.
     azimuth_blade1_up : float
         Azimuth that is written when blade 1 points up [deg].
     tilt : float
-        Of the shaft, positive with the rotor raised, where mapped loads are in a horizontal frame:
+        Of the shaft, positive with the rotor raised, where loads are in a horizontal frame:
         they are turned into the shaft's [deg].
     moments_at : float
         How far downwind of the hub along the shaft the point is that moments are about, where it

@@ -12,6 +12,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import why_unreadable
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +61,7 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
     InputError
         The unit is another.
     """
-    # "N m", "N-m", "N.m", "N*m" and "N·m" are one unit; upper and lower case are not (mN, MN).
-    unit = re.sub(r"[\s·⋅*.\-]", "", channel.unit)
+    unit = _plain(channel.unit)
     if unit not in units:
         raise InputError(
             f"hub loads '{source}': channel {channel.name} has the unit '{channel.unit}', not one "
@@ -71,9 +71,31 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
         return np.asarray(channel.values * units[unit])
 
 
-def existing_file(path: str | os.PathLike[str]) -> Path:
-    """The path of a file that exists; `InputError` where it does not."""
+def without_unit(title: str) -> str:
+    """The name of a column, of its title like "brake.Fz [kN]"."""
+    return re.split(r"[\[(]", title, maxsplit=1)[0].strip()
+
+
+def is_load_unit(title: str) -> bool:
+    """Whether the title of a column ends with a unit of force or moment."""
+    unit = re.search(r"[\[(]\s*(.*?)\s*[\])]\s*$", title)
+    return unit is not None and _plain(unit[1]) in FORCE_UNITS | MOMENT_UNITS
+
+
+def _plain(unit: str) -> str:
+    # "N m", "N-m", "N.m", "N*m" and "N·m" are one unit; upper and lower case are not (mN, MN).
+    return re.sub(r"[\s·⋅*.\-]", "", unit)
+
+
+def existing_file(path: str | os.PathLike[str], kind: str = "hub loads") -> Path:
+    """The path of a file that exists and may be read; `InputError` where it does not."""
     file = Path(path)
-    if not file.is_file():
-        raise InputError(f"hub loads '{file}': no such file; check the path")
+    try:
+        # not by opening it: a pipe would wait for ever
+        if not file.is_file():
+            raise IsADirectoryError if file.is_dir() else FileNotFoundError
+        if not os.access(file, os.R_OK):
+            raise PermissionError
+    except (OSError, ValueError) as error:
+        raise InputError(f"{kind} '{file}': {why_unreadable(error)}") from error
     return file

@@ -29,6 +29,7 @@ from fe_drivetrain.hub_loads.channels import (
 from fe_drivetrain.hub_loads.histories import UNITS, Attribute, LoadHistory, require_sound
 
 _CSV_COLUMNS = ("time", *FORCES)
+_TABLES = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
 _CSV_EXAMPLE = "time [s],Fx [N],Fy [N],Fz [N],Mx [N m],My [N m],Mz [N m]"
 
 
@@ -50,36 +51,67 @@ def read_csv(path: str | os.PathLike[str]) -> LoadHistory:
     attributes: dict[str, Attribute] = {}
     try:
         with file.open(encoding="utf-8-sig") as stream:
-            channels, rows = _channels(file, stream, attributes)
+            channels, rows, unread = _channels(file, stream, attributes)
     except UnicodeDecodeError as error:
-        raise InputError(f"hub loads '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
+        raise InputError(
+            f"hub loads '{file}': it is not UTF-8 text: save it as UTF-8 CSV"
+        ) from error
     except csv.Error as error:
         raise InputError(f"hub loads '{file}': {error}; correct the table") from error
 
     source = str(file)
     time = in_si(source, channels["time"], TIME_UNITS)
-    tables = (FORCE_UNITS,) * 3 + (MOMENT_UNITS,) * 3
     loads = [
-        in_si(source, channels[name], table) for name, table in zip(FORCES, tables, strict=True)
+        in_si(source, channels[name], table) for name, table in zip(FORCES, _TABLES, strict=True)
     ]
     columns = dict(zip(FORCES, loads, strict=True))
-    at: dict[str, Floats] = {}
     others = [name for name in channels if name not in _CSV_COLUMNS]
-    for name in others:
-        point, _, component = name.rpartition(".")
-        c = FORCES.index(component)
-        columns[name] = in_si(source, channels[name], tables[c])
-        at.setdefault(point, np.zeros((time.size, len(FORCES))))[:, c] = columns[name]
+    at = point_loads(source, [channels[name] for name in others])
+    for point, values in at.items():
+        columns |= {f"{point}.{c}": v for c, v in zip(FORCES, values.T, strict=True)}
     require_sound(f"hub loads '{source}'", time, columns, rows)
     read = ", ".join(f"{name} [{channels[name].unit}]" for name in (*FORCES, *others))
     origin = {"source": file.name, "channels": f"{read}; signs as in the file, nothing turned"}
-    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at)
+    return LoadHistory(file.stem, time, np.column_stack(loads), origin | attributes, at, unread)
+
+
+def is_of_point(title: str) -> bool:
+    """Whether a column is a load at a load point, like "brake.Fz" (a title without its unit)."""
+    name = _wanted(title)
+    return name is not None and "." in name
+
+
+def point_loads(source: str, channels: Iterable[Channel]) -> dict[str, Floats]:
+    """Loads (n, 6) at load points [N, N m], by the point's name; components without a column are 0.
+
+    Parameters
+    ----------
+    source : str
+        The file, for messages.
+    channels : iterable of Channel
+        With names like "brake.Fz", see `is_of_point`.
+
+    Raises
+    ------
+    InputError
+        A unit is unknown.
+    """
+    at: dict[str, Floats] = {}
+    for channel in channels:
+        point, _, component = channel.name.rpartition(".")
+        c = [name.lower() for name in FORCES].index(component.lower())
+        values = in_si(source, channel, _TABLES[c])
+        at.setdefault(point, np.zeros((values.size, len(FORCES))))[:, c] = values
+    return at
 
 
 def _channels(
     file: Path, stream: Iterable[str], attributes: dict[str, Attribute]
-) -> tuple[dict[str, Channel], Sequence[int]]:
-    """Columns that are read, and the line of each row; memory is that of their numbers."""
+) -> tuple[dict[str, Channel], Sequence[int], tuple[str, ...]]:
+    """Columns that are read, the line of each row, and titles of other columns.
+
+    Memory is that of the numbers that are read.
+    """
     rows = array("q")
 
     def kept() -> Iterator[str]:
@@ -129,7 +161,9 @@ def _channels(
     channels = {
         name: Channel(name, unit, np.array(columns[name])) for name, (_, unit) in places.items()
     }
-    return channels, rows
+    taken = {place for place, _ in places.values()}
+    unread = tuple(title.strip() for k, title in enumerate(header) if k not in taken)
+    return channels, rows, unread
 
 
 def write_csv(

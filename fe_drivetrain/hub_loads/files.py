@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import glob
 import os
+import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 from pathlib import Path
 
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
+from fe_drivetrain.hub_loads.channels import is_load_unit, without_unit
 from fe_drivetrain.hub_loads.csv_table import read_csv
-from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, LoadHistory, require_variation
-from fe_drivetrain.hub_loads.openfast import read_openfast
+from fe_drivetrain.hub_loads.histories import MIN_SAMPLES, UNITS, LoadHistory, require_variation
+from fe_drivetrain.hub_loads.openfast import LOAD_CHANNELS, read_openfast
 
 SUFFIXES = (".out", ".outb", ".csv")
 _OPENFAST = (".out", ".outb")
@@ -97,11 +101,11 @@ def hub_load_files(pattern: str) -> list[Path]:
         None is found, or two are the .out and the .outb of one run.
     """
     path = Path(pattern)
-    if path.exists() or not glob.has_magic(pattern):
+    if os.path.exists(path) or not glob.has_magic(pattern):
         found = [path]
     else:
         found = sorted(Path(name) for name in glob.glob(pattern, recursive=True))
-    if found == [path] and not path.is_dir():
+    if found == [path] and not os.path.isdir(path):
         return [path]  # named by the user: read, or refused with its suffix
     files = [
         file
@@ -126,7 +130,11 @@ def hub_load_files(pattern: str) -> list[Path]:
 
 
 def require_points(histories: Sequence[LoadHistory], points: Sequence[str]) -> None:
-    """Refuse histories with loads at a point that a scene does not have.
+    """Refuse histories with columns of loads at a point that a scene does not have.
+
+    What is left of a table besides hub loads is looked through, too: a column that begins with the
+    name of a load point and is a load by its unit or name, like ``brake_Fz [kN]`` or ``brake.Fq``,
+    would be left out without a word. Others, like ``brake pressure [bar]``, are no loads.
 
     Parameters
     ----------
@@ -140,14 +148,49 @@ def require_points(histories: Sequence[LoadHistory], points: Sequence[str]) -> N
     InputError
         There is none of that name.
     """
+    known = f"{', '.join(points)}; components {', '.join(FORCES)}" if points else "it has none"
     for history in histories:
-        for point in history.at:
-            if point not in points:
+        for point, loads in history.at.items():
+            if point in points:
+                continue
+            own = [f"{point}.{c}" for c, v in zip(FORCES, loads.T, strict=True) if v.any()]
+            columns = f" ({', '.join(own)})" if own else ""
+            close = get_close_matches(point.lower(), [name.lower() for name in points], n=1)
+            meant = next((name for name in points if name.lower() in close), None)
+            hint = f" as of '{meant}'" if meant else ""
+            raise InputError(
+                f"hub loads: {history.name} has columns of {shown(point)}{columns}, which is no "
+                f"load point of the scene ({known}): rename the columns{hint}, or add it "
+                "under load_points"
+            )
+        for title in history.unread:
+            point, component = _meant(title, points)
+            if point:
                 raise InputError(
-                    f"hub loads: {history.name} has columns of {shown(point)}, which is no load "
-                    f"point of the scene ({', '.join(points) or 'it has none'}): rename the "
-                    "columns, or add it under load_points"
+                    f"hub loads: {history.name} has the column {shown(title)}, which looks like a "
+                    f"load at {point} and is not read (load points of the scene: {known}): write "
+                    f"it like '{point}.{component} [{UNITS[FORCES.index(component)]}]', or rename "
+                    "it"
                 )
+
+
+def _meant(title: str, points: Sequence[str]) -> tuple[str, str]:
+    """The load point and component that a column that is not read seems to be of; "" if of none."""
+    name = without_unit(title)
+    if name.lower() in LOAD_CHANNELS:
+        return "", ""
+    for point in sorted(points, key=len, reverse=True):
+        rest = name[len(point) :]
+        if not name.lower().startswith(point.lower()) or rest[:1].islower():
+            continue
+        component = rest.lstrip("._- ").capitalize()
+        if is_load_unit(title) or re.fullmatch(r"[FM]\w", component):
+            return point, component if component in FORCES else "Fz"
+    # brkae_Fz: a name that is nearly that of a load point, and a component
+    parts = re.fullmatch(r"(.+?)[._\- ]*([FM][xyz])", name, re.IGNORECASE)
+    lower = {point.lower(): point for point in points}
+    close = get_close_matches(parts[1].lower(), lower, n=1, cutoff=0.75) if parts else []
+    return (lower[close[0]], parts[2].capitalize()) if parts and close else ("", "")
 
 
 def _names(files: Sequence[Path]) -> list[str]:

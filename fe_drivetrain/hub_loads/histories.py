@@ -57,6 +57,9 @@ class LoadHistory:
     at : Mapping[str, Floats]
         (n, 6) loads on the shaft at other points of it, by the point's name, in the same frame and
         about that point.
+    unread : Sequence[str]
+        Titles of the other columns of the table that it was read from, in which `require_points`
+        looks for misspelt load points.
 
     Raises
     ------
@@ -70,6 +73,7 @@ class LoadHistory:
     loads: Floats
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
     at: Mapping[str, Floats] = field(default_factory=dict)
+    unread: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         time = _frozen(self.time)
@@ -123,7 +127,7 @@ class LoadHistory:
         """The samples with start <= time <= stop [s], for example without a start-up transient."""
         kept = (self.time >= start) & (self.time <= stop)
         at = {name: values[kept] for name, values in self.at.items()}
-        return LoadHistory(self.name, self.time[kept], self.loads[kept], self.attributes, at)
+        return replace(self, time=self.time[kept], loads=self.loads[kept], at=at)
 
     def moved(self, start: float, stop: float) -> LoadHistory:
         """The same loads, those at the hub with moments about another point of the shaft's axis.

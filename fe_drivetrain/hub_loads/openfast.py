@@ -35,7 +35,9 @@ from fe_drivetrain.hub_loads.openfast_output import openfast_channels, reversed_
 
 _AXIAL = ("LSShftFxa", "LSShftFxs", "LSSGagFxa", "LSSGagFxs", "RotThrust")
 _TORQUE = ("LSShftMxa", "LSShftMxs", "LSSGagMxa", "LSSGagMxs", "RotTorq", "LSShftTq")
-_AZIMUTH = ("LSSTipPxa", "LSSTipPxs", "LSSTipP", "Azimuth")
+AZIMUTH = ("LSSTipPxa", "LSSTipPxs", "LSSTipP", "Azimuth")
+"""By which names files have the azimuth, the best first."""
+
 _PAIRS = tuple(
     f"{n}*{frame}" for n in ("LSShftF", "LSSGagF", "LSSTipM", "LSSGagM") for frame in "sa"
 )
@@ -43,7 +45,7 @@ _PAIRS = tuple(
 LOAD_CHANNELS = frozenset(
     name.lower()
     for name in (
-        *("Time", *_AXIAL, *_TORQUE, *_AZIMUTH),
+        *("Time", *_AXIAL, *_TORQUE, *AZIMUTH),
         *(pair.replace("*", axis) for pair in _PAIRS for axis in "yz"),
     )
 )
@@ -131,7 +133,7 @@ def loads_from_channels(
         if found is None:
             raise InputError(
                 f"hub loads '{source}': no channel for the {what}; add one of "
-                f"{', '.join(names)} to OutList and run again"
+                f"{', '.join(names)} to OutList and run again, or map yours (--mapping)"
             )
         return found
 
@@ -151,7 +153,7 @@ def loads_from_channels(
     if shear is None:
         raise InputError(
             f"hub loads '{source}': no pair of shear-force channels; add LSShftFys and LSShftFzs "
-            "to OutList and run again"
+            "to OutList and run again, or map yours, both Fy and Fz (--mapping)"
         )
     bending = pair(("LSSTipM*s",), ("LSSTipM*a",))
     at_gage = bending is None
@@ -160,7 +162,7 @@ def loads_from_channels(
         if bending is None:
             raise InputError(
                 f"hub loads '{source}': no pair of bending-moment channels; add LSSTipMys and "
-                "LSSTipMzs to OutList and run again"
+                "LSSTipMzs to OutList and run again, or map yours, both My and Mz (--mapping)"
             )
         if gage_distance is None:
             raise InputError(
@@ -171,7 +173,7 @@ def loads_from_channels(
 
     azimuth = None
     if shear[1] or bending[1]:
-        azimuth = first(_AZIMUTH)
+        azimuth = first(AZIMUTH)
         if azimuth is None:
             rotating = ", ".join(c.name for p, turns in (shear, bending) if turns for c in p)
             raise InputError(

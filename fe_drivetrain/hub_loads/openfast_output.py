@@ -159,7 +159,7 @@ def _text(file: Path, wanted: Collection[str] | None) -> tuple[list[str], list[s
         lines = sum(1 for _ in islice(stream, _HEADER_LINES, None))
     if not lines:
         return names, [], np.zeros((0, 0))
-    values = np.loadtxt(file, skiprows=_HEADER_LINES, ndmin=2, comments=None)
+    values = np.loadtxt(file, skiprows=_HEADER_LINES, ndmin=2, comments=None, encoding="latin-1")
     if values.shape[1] != len(names):
         raise ValueError(f"it has {values.shape[1]} columns and {len(names)} names of channels")
     return names, [unit.strip("()") for unit in units], values[:, _chosen(names, wanted)]
@@ -170,8 +170,8 @@ def _first_bad_cell(file: Path) -> str | None:
     if file.suffix.lower() != ".out":
         return None
     try:
-        lines = file.read_text().splitlines()
-    except (OSError, UnicodeDecodeError):
+        lines = file.read_text("latin-1").splitlines()
+    except OSError:
         return None
     if len(lines) <= _HEADER_LINES:
         return f"it has {len(lines)} lines and no samples"

@@ -18,8 +18,14 @@ from fe_drivetrain.hub_loads.channel_map import (
     carried_to_hub,
     to_shaft_frame,
 )
-from fe_drivetrain.hub_loads.channels import Channel, existing_file, in_si
-from fe_drivetrain.hub_loads.csv_table import read_csv
+from fe_drivetrain.hub_loads.channels import (
+    ANGLE_UNITS,
+    Channel,
+    existing_file,
+    in_si,
+    without_unit,
+)
+from fe_drivetrain.hub_loads.csv_table import is_of_point, point_loads, read_csv
 from fe_drivetrain.hub_loads.files import SUFFIXES, hub_load_files
 from fe_drivetrain.hub_loads.histories import (
     MIN_SAMPLES,
@@ -27,7 +33,12 @@ from fe_drivetrain.hub_loads.histories import (
     require_sound,
     require_variation,
 )
-from fe_drivetrain.hub_loads.openfast import LOAD_CHANNELS, loads_from_channels
+from fe_drivetrain.hub_loads.openfast import (
+    AZIMUTH,
+    LOAD_CHANNELS,
+    loads_from_channels,
+    turn_to_fixed,
+)
 from fe_drivetrain.hub_loads.openfast_output import openfast_channels
 
 SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
@@ -38,6 +49,8 @@ KNOWN = {
     "wind speed": ("wind speed", "RtVAvgxh", "WindHubVelX", "Wind1VelX", "HorWindV", "WindVxi"),
 }
 """Channels beside the loads, and by which names files have them, the best first."""
+
+_NOTHING_TURNED = ", nothing turned"
 
 OWN_NAMES = ChannelMap()
 """Files whose channels have the names of OpenFAST, or of the tables that are written here."""
@@ -114,10 +127,12 @@ def read_recorded(
     beside_loads = [n.lower() for names in KNOWN.values() for n in names]
     wanted = {*beside_loads, *(mapping.column(name)[0].lower() for name in mapping.channels)}
     wanted |= {name.lower() for name in also}
+    if is_table and mapping.rotating:
+        wanted |= {name.lower() for name in AZIMUTH}
     if is_table and loads_mapped:
-        wanted |= {name.lower() for name in LOAD_NAMES}
+        wanted |= {name.lower() for name in LOAD_NAMES} | LOAD_CHANNELS
     channels = (
-        csv_channels(file, wanted, mapping.units)
+        csv_channels(file, wanted, mapping.units, points=bool(loads_mapped))
         if is_table
         else openfast_channels(file, wanted | LOAD_CHANNELS)
     )
@@ -125,11 +140,18 @@ def read_recorded(
     channels = {n: replace(c, unit=units.get(n, c.unit)) for n, c in channels.items()}
     named = {name: _named(file, channels, *mapping.column(name)) for name in mapping.channels}
     further = [_named(file, channels, name) for name in also]
+    azimuth = _azimuth(file, channels, named) if is_table and mapping.rotating else None
     if is_table and not loads_mapped:
         history = read_csv(file)
+        if azimuth is not None:
+            history = _turned_back(history, _read_of(history), azimuth, mapping)
     else:
         history = _of_channels(file, channels, named, mapping)
+        if is_table:
+            history = _with_points(file, history, channels, mapping, azimuth)
     history = _at_hub(history, mapping, own_names=not (is_table or loads_mapped))
+    unread = [t for t in history.unread if without_unit(t).lower() not in wanted]
+    history = replace(history, unread=tuple(unread))
     beside = {}
     for name, sizes in (("rotor speed", SPEED_UNITS), ("wind speed", WIND_UNITS)):
         candidates = (channels.get(candidate.lower()) for candidate in KNOWN[name])
@@ -182,10 +204,12 @@ def _of_channels(
     """Loads of OpenFAST's channels, or of those that are mapped in their place."""
     if file.suffix.lower() == ".csv":  # the columns of a table, but for those that are mapped
         shared = {name: channels.get(name.lower()) for name in LOAD_NAMES}
-        channels = channels | {LOAD_NAMES[n]: c for n, c in shared.items() if c is not None}
-    for name in mapping.loads_mapped:
-        channels.pop(LOAD_NAMES[name], None)  # fixed ones would be taken before rotating ones
-        channels = channels | {mapping.read_as(name): named[name]}
+        named = {name: c for name, c in shared.items() if c is not None} | dict(named)
+    channels = dict(channels)
+    for name in LOAD_NAMES:
+        if name in named:
+            channels.pop(LOAD_NAMES[name], None)  # fixed ones would be taken before rotating ones
+            channels[mapping.read_as(name)] = named[name]
     at_gage = mapping.moments_at if "My" not in mapping.channels and mapping.moments_at else None
     time, loads, read = loads_from_channels(
         str(file), channels, at_gage, np.radians(mapping.azimuth_blade1_up)
@@ -193,9 +217,38 @@ def _of_channels(
     return LoadHistory(file.stem, time, loads, {"source": file.name, "channels": read})
 
 
+def _with_points(
+    file: Path,
+    history: LoadHistory,
+    channels: Mapping[str, Channel],
+    mapping: ChannelMap,
+    azimuth: Channel | None,
+) -> LoadHistory:
+    """With the loads at load points, which have columns like brake.Fz of a table."""
+    taken = {mapping.column(name)[0].lower() for name in mapping.channels}
+    own = [c for key, c in channels.items() if key not in taken and is_of_point(c.name)]
+    read_ones = {c.name for c in own}
+    unread = (title for title in _header(file)[1] if without_unit(title) not in read_ones)
+    history = replace(history, unread=tuple(unread))
+    if not own:
+        return history
+    read = f"{_read_of(history)}; {', '.join(f'{c.name} [{c.unit}]' for c in own)}"
+    at = point_loads(str(history.attributes["source"]), own)
+    if azimuth is not None:  # those at the hub are turned already
+        there = replace(history, at=at)
+        at = dict(_turned_back(there, read, azimuth, mapping).at)
+        read += " turned back, too"
+    return replace(history, at=at, attributes={**history.attributes, "channels": read})
+
+
 def _at_hub(history: LoadHistory, mapping: ChannelMap, own_names: bool) -> LoadHistory:
     """Loads in the shaft's frame, about the hub; those of OpenFAST's names stand there already."""
-    loads, read = history.loads, str(history.attributes.get("channels", "as in the file"))
+    loads, at, read = history.loads, history.at, _read_of(history)
+    if mapping.rotating and own_names:
+        raise InputError(
+            f"hub loads '{history.attributes['source']}': the names of OpenFAST's own channels say "
+            "which of them turn with the rotor: leave out rotating, or map the loads"
+        )
     if mapping.tilt and own_names:
         raise InputError(
             f"hub loads '{history.attributes['source']}': loads of OpenFAST's own names are in the "
@@ -203,17 +256,63 @@ def _at_hub(history: LoadHistory, mapping: ChannelMap, own_names: bool) -> LoadH
         )
     if mapping.tilt:
         loads = to_shaft_frame(loads, mapping.tilt)
+        at = {point: to_shaft_frame(own, mapping.tilt) for point, own in at.items()}
+        read = read.removesuffix(_NOTHING_TURNED)
         read += f"; turned from a horizontal frame by the shaft's tilt of {mapping.tilt:g} deg"
     if mapping.moments_at and (not own_names or "My" in mapping.channels):
         loads = carried_to_hub(loads, mapping.moments_at)
         read += f"; moments carried to the hub from {mapping.moments_at:g} m downwind of it"
     if loads is history.loads:
         return history
-    return replace(history, loads=loads, attributes={**history.attributes, "channels": read})
+    return replace(history, loads=loads, at=at, attributes={**history.attributes, "channels": read})
+
+
+def _read_of(history: LoadHistory) -> str:
+    """What loads were read from, in words."""
+    return str(history.attributes.get("channels", "as in the file"))
+
+
+def _azimuth(file: Path, channels: Mapping[str, Channel], named: Mapping[str, Channel]) -> Channel:
+    """The azimuth of a table whose loads turn with the rotor."""
+    candidates = [named.get("azimuth"), *(channels.get(name.lower()) for name in AZIMUTH)]
+    found = next((channel for channel in candidates if channel is not None), None)
+    if found is None:
+        raise InputError(
+            f"hub loads '{file}': with rotating, Fy, Fz, My and Mz turn with the rotor, and the "
+            "file has no azimuth to turn them back: add a column 'azimuth [deg]', name that of the "
+            "file in the mapping, as in channels: {azimuth: Psi}, or leave out rotating"
+        )
+    return found
+
+
+def _turned_back(
+    history: LoadHistory, read: str, azimuth: Channel, mapping: ChannelMap
+) -> LoadHistory:
+    """Loads of a rotating frame, at the hub and at load points, in the frame that does not turn."""
+    source, back = f"hub loads '{history.attributes['source']}'", mapping.azimuth_blade1_up
+    angle = in_si(str(history.attributes["source"]), azimuth, ANGLE_UNITS)
+    require_sound(source, history.time, {azimuth.name: angle})
+    words = f"; Fy, Fz, My, Mz turned back by {azimuth.name} [{azimuth.unit}]"
+    words += f" less {back:g} deg" if back else ""
+    read = read.removesuffix(_NOTHING_TURNED) + words
+    return replace(
+        history,
+        loads=_of_fixed_frame(history.loads, angle - np.radians(back)),
+        at={p: _of_fixed_frame(own, angle - np.radians(back)) for p, own in history.at.items()},
+        attributes={**history.attributes, "channels": read},
+    )
+
+
+def _of_fixed_frame(loads: Floats, angle: Floats) -> Floats:
+    """Loads (n, 6) of a frame turned by an angle (n,) about +x."""
+    turned = loads.copy()
+    for y in (1, 4):
+        turned[:, y], turned[:, y + 1] = turn_to_fixed(loads[:, y], loads[:, y + 1], angle)
+    return turned
 
 
 def csv_channels(
-    file: Path, wanted: Collection[str], units: Collection[str] = ()
+    file: Path, wanted: Collection[str], units: Collection[str] = (), points: bool = False
 ) -> dict[str, Channel]:
     """Columns of a table that have a unit, by their names in lower case.
 
@@ -226,12 +325,51 @@ def csv_channels(
         memory of what is used.
     units : collection of str
         Names of columns whose unit is known though their title has none.
+    points : bool
+        Whether columns like ``brake.Fz [kN]``, of loads at load points, are wanted, too.
 
     Raises
     ------
     InputError
         A cell of a wanted column is not a number.
     """
+    before, titles = _header(file)
+    found: dict[str, Channel] = {}
+    places: dict[str, int] = {}
+    bare = {name.lower() for name in units}
+    for place, title in enumerate(titles):
+        match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
+        if match is None and title.strip().lower() in bare:
+            match = re.fullmatch(r"\s*(.+?)()\s*", title)
+        if match is not None and match[1].lower() not in found:
+            found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
+            if match[1].lower() in wanted or (points and is_of_point(match[1])):
+                places[match[1].lower()] = place
+    if not places:
+        return found
+    try:
+        values = np.loadtxt(
+            file,
+            delimiter=",",
+            skiprows=before,
+            usecols=list(places.values()),
+            ndmin=2,
+            encoding="utf-8-sig",
+        )
+    except UnicodeDecodeError as error:
+        raise _not_utf8(file) from error
+    except ValueError as error:
+        raise InputError(
+            f"table '{file}': {error}, counted below the header: correct the cell, or remove "
+            "the line"
+        ) from error
+    for name, column in zip(places, values.T, strict=True):
+        found[name] = Channel(found[name].name, found[name].unit, column)
+    return found
+
+
+def _header(file: Path) -> tuple[int, list[str]]:
+    """The line of a table's header, from 1, and its titles."""
     before, titles = 0, ""
     try:
         with file.open(encoding="utf-8-sig") as stream:
@@ -240,33 +378,12 @@ def csv_channels(
                     titles = line
                     break
     except UnicodeDecodeError as error:
-        raise InputError(f"table '{file}': not UTF-8 text; save it as UTF-8 CSV") from error
-    found: dict[str, Channel] = {}
-    places: list[int] = []
-    bare = {name.lower() for name in units}
-    for place, title in enumerate(next(csv.reader([titles]), [])):
-        match = re.fullmatch(r"\s*(.+?)\s*[\[(]\s*(.*?)\s*[\])]\s*", title)
-        if match is None and title.strip().lower() in bare:
-            match = re.fullmatch(r"\s*(.+?)()\s*", title)
-        if match is not None and match[1].lower() not in found:
-            found[match[1].lower()] = Channel(match[1], match[2], np.zeros(0))
-            if match[1].lower() in wanted:
-                places.append(place)
-    if not places:
-        return found
-    try:
-        values = np.loadtxt(
-            file, delimiter=",", skiprows=before, usecols=places, ndmin=2, encoding="utf-8-sig"
-        )
-    except ValueError as error:
-        raise InputError(
-            f"table '{file}': {error}, counted below the header: correct the cell, or remove "
-            "the line"
-        ) from error
-    used = [name for name in found if name in wanted]
-    for name, column in zip(used, values.T, strict=True):
-        found[name] = Channel(found[name].name, found[name].unit, column)
-    return found
+        raise _not_utf8(file) from error
+    return before, [title.strip() for title in next(csv.reader([titles]), [])]
+
+
+def _not_utf8(file: Path) -> InputError:
+    return InputError(f"table '{file}': it is not UTF-8 text: save it as UTF-8 CSV")
 
 
 def _named(file: Path, channels: Mapping[str, Channel], column: str, sign: float = 1.0) -> Channel:

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.hub_loads.aero_rotor import Rotor, aerodynamic_hub_loads, operating_point
+from fe_drivetrain.hub_loads.channels import existing_file
 from fe_drivetrain.hub_loads.histories import Attribute, LoadHistory
 from fe_drivetrain.hub_loads.wind import power_law
 
@@ -229,9 +230,7 @@ def read_bts(path: str | os.PathLike[str]) -> WindBox:
     InputError
         It is missing, or of another kind.
     """
-    file = Path(path)
-    if not file.is_file():
-        raise InputError(f"wind '{file}': no such file; check the path")
+    file = existing_file(path, "wind")
     with file.open("rb") as stream:
         head = stream.read(_HEADER.size)
         if len(head) < _HEADER.size:
@@ -315,9 +314,7 @@ def read_hawc2(
     InputError
         The file is missing or of another size, or the wind speed is not positive.
     """
-    file = Path(path)
-    if not file.is_file():
-        raise InputError(f"wind '{file}': no such file; check the path")
+    file = existing_file(path, "wind")
     n, ny, nz = shape
     if file.stat().st_size != 4 * n * ny * nz:
         raise InputError(

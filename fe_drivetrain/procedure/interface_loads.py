@@ -20,6 +20,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.common.spatial import wrench_transport
 from fe_drivetrain.histories.cycles import Cycles, rainflow_cycles
 from fe_drivetrain.histories.damage import damage_equivalent_load
@@ -362,7 +363,11 @@ def read_load_json(path: str | Path) -> LoadTable:
         The file cannot be read, or does not hold such a table.
     """
     try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise unreadable(path, "a load table from", error) from error
+    try:
+        content = json.loads(text)
         interfaces = tuple(
             Interface(
                 row["name"],
@@ -385,7 +390,7 @@ def read_load_json(path: str | Path) -> LoadTable:
             for row in content["bodies"]
         )
         time = np.array(content["time [s]"], dtype=np.float64)
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"cannot read a load table from {path} ({error!r}): give a file that write_load_json "
             "wrote"

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
-from fe_drivetrain.common.reading import value_changes
+from fe_drivetrain.common.reading import value_changes, why_unreadable
 from fe_drivetrain.procedure.assessment import StepState
 from fe_drivetrain.procedure.project import SECTIONS, Project
 from fe_drivetrain.procedure.steps import STEPS, Evidence, Procedure, Visit
@@ -87,7 +87,9 @@ def read_log(path: Path) -> tuple[Entry, ...]:
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError) as error:
-        raise InputError(f"cannot read the log {path}: {error}: restore it, or move it") from error
+        raise InputError(
+            f"cannot read the log {path}: {why_unreadable(error)}, or restore or move the log"
+        ) from error
     for number, line in enumerate(lines, start=1):
         try:
             entries.append(Entry.model_validate_json(line))

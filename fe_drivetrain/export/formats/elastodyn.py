@@ -15,6 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.reading import unreadable
 
 SPRING, DAMPER = "DTTorSpr", "DTTorDmp"
 
@@ -117,8 +118,8 @@ def read_elastodyn(path: str | Path) -> dict[str, Any]:
 def _text(path: Path) -> str:
     try:
         return path.read_bytes().decode(_ENCODING)
-    except FileNotFoundError as error:
-        raise InputError(f"{path} is not there: give an ElastoDyn input") from error
+    except (OSError, ValueError) as error:
+        raise unreadable(path, "ElastoDyn input", error) from error
 
 
 def _line(path: Path, text: str, key: str) -> re.Match[str]:

@@ -16,6 +16,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.export.superelement import FRAME, UNITS, Origin, Superelement
 
 _WIDTH = 78
@@ -136,12 +137,12 @@ def text_of(path: Path, kind: str) -> str:
     Raises
     ------
     InputError
-        It is not text.
+        It cannot be read, or is not text.
     """
     try:
         text = path.read_text("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is no {kind}: it is not text") from error
+    except (OSError, ValueError) as error:
+        raise unreadable(path, kind, error) from error
     if "\0" in text:
         raise InputError(f"{path} is no {kind}: it is not text")
     return text

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.scaling import least_eigenvalue
+from fe_drivetrain.export.formats.superelement_json import read_content
 from fe_drivetrain.export.superelement import FRAME
 
 
@@ -86,4 +87,4 @@ def write_stiffness_json(
 
 def read_stiffness_json(path: str | Path) -> StiffnessFile:
     """Read and validate a stiffness.json."""
-    return StiffnessFile.model_validate_json(Path(path).read_text(encoding="utf-8"))
+    return read_content(Path(path), StiffnessFile, "stiffness.json")

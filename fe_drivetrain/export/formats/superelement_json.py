@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.export.superelement import FRAME, UNITS, Origin, Superelement
 
@@ -116,16 +117,19 @@ def read_content(path: Path, kind: type[_Content], what: str) -> _Content:
     Raises
     ------
     InputError
-        The file is no JSON, or not of that kind; the message says what is wrong in it first.
+        The file cannot be read, is no JSON, or not of that kind; the message says what is wrong in
+        it first.
     """
     try:
-        return kind.model_validate_json(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise unreadable(path, what, error) from error
+    try:
+        return kind.model_validate_json(text)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "the file"
         raise InputError(f"{path} is no {what}: {where}: {first['msg']}") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is no {what}: it is not text") from error
 
 
 def _compliance(element: Superelement) -> list[list[float]] | None:

@@ -18,6 +18,7 @@ import yaml
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.export.formats.elastodyn import Torsion
 
 Program = Literal["wisdem", "windio"]
@@ -138,10 +139,8 @@ def _number(value: float) -> str:
 def _text(path: Path) -> str:
     try:
         return path.read_bytes().decode("utf-8")
-    except FileNotFoundError as error:
-        raise InputError(f"{path} is not there: give a windIO turbine file") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is no windIO turbine file: it is not text") from error
+    except (OSError, ValueError) as error:
+        raise unreadable(path, "windIO turbine file", error) from error
 
 
 def _drivetrain(path: Path, text: str) -> yaml.MappingNode:
