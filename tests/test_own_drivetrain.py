@@ -17,6 +17,7 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
+from fe_drivetrain.commands.scene_page import describe
 from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -43,6 +44,7 @@ from fe_drivetrain.scene.arrangements import (
 )
 from fe_drivetrain.scene.reading import change_scene, is_component, library_scene, parse_scene
 from fe_drivetrain.scene.scene import Scene
+from fe_drivetrain.suite.page import Page
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
@@ -236,6 +238,16 @@ def test_check_says_what_a_scene_is(
     assert shaft["mass [kg]"] == pytest.approx(7850 * volume, rel=1e-3)
     assert housing["density [kg/m³]"] == 7800
     assert found["Bearings"][0]["carries moments"] == "no: spherical joint"
+
+
+def test_check_shows_the_point_that_hub_loads_are_about(bonded_model: Model) -> None:
+    scene = bonded_model.scene
+    for x, shown in ((None, []), (scene.shaft.front - 0.5, [scene.shaft.front - 0.5])):
+        page = Page()
+        describe(page, replace(bonded_model, scene=change_scene(scene, {"hub.loads_at": x})))
+        found = [i for section in page.sections for i in section.items if isinstance(i, Table)]
+        rows = [row for table in found for row in table.rows]
+        assert [row[1] for row in rows if "hub.loads_at" in str(row[0])] == shown
 
 
 def test_forecast_is_of_the_systems_that_are_solved(

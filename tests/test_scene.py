@@ -88,6 +88,16 @@ def test_round_trip_through_a_change():
         ({"bearing_units.0.bearing.kind": "ring"}, "cannot have the spherical-joint interface"),
         ({"bearing_units.7.interface": "bonded"}, "there is no '7'"),
         (
+            {"uncertainty": {"shaft.nosuch": {"uniform": 0.1}}},
+            "uncertainty of 'shaft.nosuch': the scene has no number there",
+        ),
+        (
+            {"uncertainty": {"gearbox.stiffness.5": {"uniform": 0.1}}},
+            "'gearbox.stiffness.5': the value is 0, and a spread is relative",
+        ),
+        ({"hub.loads_at": 50}, "hub.loads_at is 50 m but must be from -11 to 9 m, at most 5 len"),
+        ({"hub.loads_at": -11.5}, "hub.loads_at is -11.5 m but must be from -11 to 9 m"),
+        (
             {"materials": {"m": {"youngs_modulus": 210, "poisson_ratio": 0.3, "density": 1}}},
             "youngs",
         ),
@@ -145,3 +155,13 @@ def test_file_limits_and_absence(tmp_path):
     binary.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="cannot read"):
         read_scene(binary)
+
+
+def test_uncertain_values_may_be_of_materials_that_come_with_the_program():
+    spreads = {"materials.steel.youngs_modulus": {"normal": 0.02}}
+    assert set(parse_scene(TEXT, {"uncertainty": spreads}).uncertainty) == set(spreads)
+
+
+def test_hub_loads_may_be_about_the_rotor_or_the_axis_of_the_tower():
+    for x in (-2.5, 0.0, 9.0):
+        assert parse_scene(TEXT, {"hub.loads_at": x}).loads_at == x

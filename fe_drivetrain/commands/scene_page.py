@@ -132,6 +132,17 @@ def describe(page: Page, model: Model) -> None:
         }
         for point in scene.load_points
     ]
+    if scene.loads_at != scene.shaft.front:
+        points.insert(
+            1,
+            {
+                "point": "what hub loads of files are about (hub.loads_at), moved to the hub",
+                "x [m]": scene.loads_at,
+                "coupling": None,
+                "weight [N]": None,
+                "held by": "nothing",
+            },
+        )
     page.table("Where loads enter the shaft", points)
     page.text(
         "Frame: x downwind along the shaft, z up, y = z cross x. Lengths in m, forces in N, "
