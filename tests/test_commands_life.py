@@ -95,9 +95,15 @@ def test_lives_of_constant_loads_are_those_of_one_step(
     assert answer.computed == pytest.approx(float(lives["L10mr [years]"]), rel=1e-5)
     assert answer.band is None  # each wind has one file
     assert any("ISO" in note for note in results.notes)
+    # bearing S stands on the thesis's shaft, which is thinner than its bore
+    misfit = "entry bearing_s_o20 is 635 mm, the shaft at its seat 400 mm"
+    assert misfit in printed
+    assert any(misfit in note for note in results.notes)
     charts = [i.caption for s in results.sections for i in s.items if i.kind == "chart"]
     assert sum("looking downwind" in caption for caption in charts) == 1
     assert sum("pressure along" in caption for caption in charts) == 1
+    shown = {i.caption for s in results.sections for i in s.items if i.kind == "table"}
+    assert "Bearings on their seats" in shown
 
 
 CHOICES_REST = (True, "rollers", "rigid", True)
@@ -173,6 +179,10 @@ def test_a_bearing_that_stands_is_said_to_stand(
         (["--bearing", "main_bearing"], "NAME=ENTRY"),
         (["--bearing", "rear=bearing_s"], "has no bearing 'rear'"),
         (["--bearing", "main_bearing=nothing"], "in no catalogue"),
+        (
+            ["--bearing", "main_bearing=planet_nj2232"],
+            "planet_nj2232 is 160 mm, the shaft at its seat 400 mm",
+        ),
         (["--lubricant", "honey"], "VG 460"),
         (["--supply", "water"], "oil bath"),
         (["--cleanliness", "dirty"], "very severe"),

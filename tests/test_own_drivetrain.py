@@ -17,7 +17,7 @@ from tiny_case import Result
 
 from fe_drivetrain.commands import study_loads
 from fe_drivetrain.commands.app import main
-from fe_drivetrain.commands.scene_page import describe
+from fe_drivetrain.commands.scene_page import catalogue_warnings, describe
 from fe_drivetrain.commands.study_loads import own_loads
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -248,6 +248,22 @@ def test_check_shows_the_point_that_hub_loads_are_about(bonded_model: Model) -> 
         found = [i for section in page.sections for i in section.items if isinstance(i, Table)]
         rows = [row for table in found for row in table.rows]
         assert [row[1] for row in rows if "hub.loads_at" in str(row[0])] == shown
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ("nosuch", "Catalogue entry 'nosuch' of bearing 'main_bearing' is none of the program's"),
+        ("planet_nj2232", "planet_nj2232 is 160 mm, the shaft at its seat 600 mm"),
+        ("bearing_s", "bearing_s is 635 mm, the shaft at its seat 600 mm"),
+        ("three_point_main", None),
+    ],
+)
+def test_check_says_what_life_will_say_of_catalogue_entries(entry: str, words: str | None) -> None:
+    scene = library_scene("three_point_suspension")
+    found = catalogue_warnings(change_scene(scene, {"bearing_units.main_bearing.catalogue": entry}))
+    assert len(found) == (words is not None)
+    assert words is None or words in found[0]
 
 
 def test_forecast_is_of_the_systems_that_are_solved(

@@ -96,6 +96,9 @@ def lived(
         for one in bearings:
             found.append(_of_bearing(one, list(islice(made, len(files))), files, site))
     _answer(page, found, rules, site)
+    for one in bearings:
+        if one.misfit is not None:
+            page.note(one.misfit)
     page.note(UNVERIFIED)
     _lives(page, found)
     _limits(page, found, rules)
@@ -271,6 +274,17 @@ def _lives(page: Page, found: Sequence[BearingLife]) -> None:
         "The m stands for lubricant and contamination."
     )
     page.data("lives", rows)
+    seats: list[Record] = [
+        {
+            "bearing": life.one.name,
+            "entry": life.one.entry_name,
+            "bore [mm]": None if life.one.entry.bore is None else 1e3 * life.one.entry.bore,
+            "inside of its rolling elements [mm]": 1e3 * life.one.entry.inside,
+            "shaft at its seat [mm]": 1e3 * life.one.seat,
+        }
+        for life in found
+    ]
+    page.table("Bearings on their seats", seats)
     sources: list[Record] = [
         {"bearing": life.one.name, "rating": name, "source": text}
         for life in found
