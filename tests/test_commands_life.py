@@ -80,6 +80,9 @@ def test_lives_of_constant_loads_are_those_of_one_step(
     assert float(lives["L10r [years]"]) == pytest.approx(at_site, rel=1e-6)
     ratio = float(lives["C [kN]"]) / float(lives["P_ref [kN]"])
     assert ratio ** (10 / 3) == pytest.approx(float(lives["L10r [Mrev]"]), rel=1e-6)
+    covered, years_here = float(shares.sum()), float(lives["L10mr [years]"])
+    assert f"blow {100 * covered:.3g} % of the time and the rest is taken to do no" in printed
+    assert f"blew all the time it would live {covered * years_here:.3g} years" in printed
     places = rows_of(out / "places.csv")
     laminae = rows_of(out / "laminae.csv")
     assert len(places) == 72

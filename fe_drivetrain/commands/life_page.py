@@ -160,12 +160,13 @@ def _years(value: float) -> str:
 
 
 def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Site | None) -> None:
-    at = (
-        "if these files followed each other for ever"
-        if site is None
-        else f"at a mean wind of {site.mean_wind:g} m/s"
-    )
     for life in found:
+        at = "if these files followed each other for ever"
+        if site is not None and life.site is not None:
+            at = (
+                f"at a mean wind of {site.mean_wind:g} m/s, where the winds of these files blow "
+                f"{100 * life.site.covered:.3g} % of the time and the rest is taken to do no damage"
+            )
         years, parts = life.years, life.damage.of_rows(rules.lubricant is not None)
         row, ring = np.unravel_index(int(np.argmax(parts)), parts.shape)
         whole = parts.sum()
@@ -187,6 +188,9 @@ def _answer(page: Page, found: Sequence[BearingLife], rules: LifeRules, site: Si
             shares = life.site.of_winds("L10mr")
             most = life.site.speeds[np.argmax(shares)]
             words += f", winds about {most:g} m/s {100 * shares.max():.0f} %"
+            if whole:
+                always = _years(years["L10mr"] * life.site.covered)
+                words += f"; if these winds blew all the time it would live {always}"
         page.answer(words + ".")
 
 
