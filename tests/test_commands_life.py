@@ -186,6 +186,11 @@ def test_a_bearing_that_stands_is_said_to_stand(
             ["--bearing", "main_bearing=planet_nj2232"],
             "planet_nj2232 is 160 mm, the shaft at its seat 400 mm",
         ),
+        (
+            ["--bearing", "main_bearing=bearing_s", "--bearing", "main_bearing=bearing_s_o20"],
+            "--bearing main_bearing is given twice",
+        ),
+        (["--channel", "rotor speed=a", "--channel", "rotor speed=b"], "speed is given twice"),
         (["--lubricant", "honey"], "VG 460"),
         (["--supply", "water"], "oil bath"),
         (["--cleanliness", "dirty"], "very severe"),
