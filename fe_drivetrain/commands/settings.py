@@ -71,7 +71,7 @@ def parse_settings(texts: Iterable[str], option: str = "--set") -> dict[str, Any
 
     from fe_drivetrain.common.strict_yaml import PlainLoader, shown
 
-    settings = {}
+    settings: dict[str, Any] = {}
     for text in texts:
         key, equals, value = text.partition("=")
         key = key.strip()
