@@ -61,9 +61,8 @@ def test_wrong_loads_are_refused(texts: list[str], message: str) -> None:
         parse_loads(texts, LOADS)
 
 
-def test_a_setting_is_given_once() -> None:
-    with pytest.raises(InputError, match=r"--set mesh\.shaft is given twice"):
-        parse_settings(["mesh.shaft=0.1", "gearbox.weight=1", " mesh.shaft =0.2"])
+def test_of_a_setting_that_is_given_twice_the_last_counts() -> None:
+    assert parse_settings(["mesh.shaft=0.1", "mesh.shaft=0.2"]) == {"mesh.shaft": 0.2}
 
 
 def test_loads_are_factors_of_the_unit_loads() -> None:

@@ -60,12 +60,12 @@ def parse_settings(texts: Iterable[str], option: str = "--set") -> dict[str, Any
     Returns
     -------
     dict
-        Values by key.
+        Values by key; of a repeated ``--set`` the last, so that a script's can be changed.
 
     Raises
     ------
     InputError
-        There is no "=", no key, a key is given twice, or the value is not plain YAML.
+        There is no "=", no key, a load is given twice, or the value is not plain YAML.
     """
     import yaml
 
@@ -96,7 +96,8 @@ def parse_settings(texts: Iterable[str], option: str = "--set") -> dict[str, Any
                 f"{option} {key}: value {shown(value)} must be a number, a word or a list of "
                 "them: give the keys below it one by one"
             )
-        refuse_again(option, key, settings)
+        if option == "--load":
+            refuse_again(option, key, settings)
         settings[key] = parsed
     return settings
 
